@@ -1,0 +1,85 @@
+//! Disparities in fixed point, and ranges of them.
+
+use crate::{
+    error::{Error, Result},
+    image::Plane,
+};
+
+/// Steps of a fixed-point disparity in a pixel: 1/256 px, so that a KITTI 16-bit PNG loses nothing.
+pub const SCALE: i32 = 256;
+
+/// The fixed-point disparity that says 'none here'. Zero is a disparity like any other.
+pub const NONE: i32 = i32::MIN;
+
+/// A disparity a pixel, in 1/256 px, or [`NONE`].
+///
+/// In the left view's map, pixel `(x, y)` with disparity `d` corresponds to `(x - d, y)` of the
+/// right view; in the right view's map, `(x, y)` corresponds to `(x + d, y)` of the left.
+pub type DisparityMap = Plane<i32>;
+
+/// A fixed-point disparity in pixels, or `None`.
+pub fn pixels(disparity: i32) -> Option<f32> {
+    (disparity != NONE).then(|| disparity as f32 / SCALE as f32)
+}
+
+/// The share of pixels that have a disparity, 0 to 1.
+pub fn coverage(map: &DisparityMap) -> f64 {
+    map.data().iter().filter(|&&d| d != NONE).count() as f64 / map.data().len() as f64
+}
+
+/// The whole-pixel disparities of a search: `min`, `min + 1`, ..., `min + count - 1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DisparityRange {
+    /// The smallest disparity, in pixels; may be negative.
+    pub min: i32,
+    /// How many disparities there are, at least 1.
+    pub count: u32,
+}
+
+impl DisparityRange {
+    /// The largest magnitude of a disparity that is accepted, in pixels.
+    pub const LIMIT: i32 = 1 << 20;
+
+    /// The `count` disparities from `min` on.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if `count` is 0 or an end lies beyond [`Self::LIMIT`].
+    pub fn new(min: i32, count: u32) -> Result<Self> {
+        if count == 0 {
+            return Err(Error::Parameter {
+                name: "the number of disparities",
+                value: "0".into(),
+                expected: "it must be at least 1".into(),
+            });
+        }
+        let last = i64::from(min) + i64::from(count) - 1;
+        let limit = i64::from(Self::LIMIT);
+        if i64::from(min) < -limit || last > limit {
+            return Err(Error::Parameter {
+                name: "the disparity range",
+                value: format!("{min} to {last}"),
+                expected: format!("it must lie within -{limit} and {limit}"),
+            });
+        }
+        Ok(Self { min, count })
+    }
+
+    /// From the smallest to the largest disparity, both included.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; also if `last` is below `first`.
+    pub fn inclusive(first: i32, last: i32) -> Result<Self> {
+        let count = i64::from(last) - i64::from(first) + 1;
+        Self::new(first, u32::try_from(count).unwrap_or(0))
+    }
+
+    /// The largest disparity.
+    pub fn last(&self) -> i32 {
+        self.min + (self.count - 1) as i32
+    }
+
+    /// Whether `disparity` (whole pixels) is one of the range.
+    pub fn contains(&self, disparity: i32) -> bool {
+        (self.min..=self.last()).contains(&disparity)
+    }
+}

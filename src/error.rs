@@ -1,0 +1,120 @@
+//! Everything that can go wrong, each with the value, the limit and the way out.
+
+use std::path::PathBuf;
+
+/// A result of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why a call could not do what it was asked.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The two views do not have the same size.
+    #[error(
+        "the left view is {}x{} and the right view {}x{} pixels: a rectified pair has one size, scale or crop one of them",
+        left.0, left.1, right.0, right.1
+    )]
+    SizesDiffer {
+        /// Width and height of the left view.
+        left: (u32, u32),
+        /// Width and height of the right view.
+        right: (u32, u32),
+    },
+
+    /// The picture has no use for the work asked of it, because of its size.
+    #[error("a picture of {width}x{height} pixels is too small for {what}: {way_out}")]
+    TooSmall {
+        /// Width of the picture.
+        width: u32,
+        /// Height of the picture.
+        height: u32,
+        /// What was asked.
+        what: String,
+        /// What to do about it.
+        way_out: String,
+    },
+
+    /// A buffer for this picture would be larger than the device can bind.
+    #[error("{what} needs {needed} bytes in one buffer, and this device binds at most {limit}: {way_out}")]
+    TooLarge {
+        /// What the memory is for.
+        what: String,
+        /// Bytes that are needed.
+        needed: u64,
+        /// Bytes that the device allows.
+        limit: u64,
+        /// What to do about it.
+        way_out: String,
+    },
+
+    /// A parameter lies outside its range.
+    #[error("{name} is {value}, but {expected}")]
+    Parameter {
+        /// The parameter's name as its user writes it.
+        name: &'static str,
+        /// The value that was given.
+        value: String,
+        /// What would be accepted.
+        expected: String,
+    },
+
+    /// The pair's rows do not correspond, so a search along rows would find nothing but noise.
+    #[error("the pair is not rectified: {diagnosis}")]
+    NotRectified {
+        /// The figures, and what to do.
+        diagnosis: String,
+    },
+
+    /// Too few points of one view were found in the other to tell the disparity range.
+    #[error("the disparity range could not be found: {reason}; name it with --min-disparity and --disparities")]
+    NoRange {
+        /// What was found instead.
+        reason: String,
+    },
+
+    /// No adapter at all.
+    #[error(
+        "no GPU adapter was found: install a Vulkan driver (Debian and Ubuntu: apt-get install mesa-vulkan-drivers, \
+         a driver that needs no GPU), or use the CPU with --device cpu"
+    )]
+    NoAdapter,
+
+    /// No adapter of the name or index asked for.
+    #[error("no device matches '{wanted}'; there are: {available}")]
+    NoSuchDevice {
+        /// What was asked for.
+        wanted: String,
+        /// The devices that exist.
+        available: String,
+    },
+
+    /// The device lacks what the kernels need.
+    #[error("the device cannot run this: {0}")]
+    Unsupported(String),
+
+    /// The device ran out of memory.
+    #[error("the device ran out of memory for {0}: use a smaller picture or another device")]
+    OutOfMemory(String),
+
+    /// The device was lost; it has to be opened anew.
+    #[error("the device was lost ({0}): open it again")]
+    DeviceLost(String),
+
+    /// A file could not be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+
+    /// A file's content is not what its format says.
+    #[error("{}: {reason}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what would be right.
+        reason: String,
+    },
+}

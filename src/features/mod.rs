@@ -1,0 +1,9 @@
+//! The sparse half (paper, steps 2-4): interest points of a picture, each with a descriptor.
+//!
+//! luma -> integral image -> determinant of the Hessian -> non-maximum suppression -> orientation
+//! -> descriptor. Bay, Ess, Tuytelaars, Van Gool: 'Speeded-Up Robust Features (SURF)', CVIU 110,
+//! 2008; Evans: 'Notes on the OpenSURF Library', 2009.
+
+mod config;
+
+pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};

@@ -1,0 +1,169 @@
+//! A kernel: WGSL text with its constants written in front, its bindings and its pipeline.
+
+use wgpu::util::DeviceExt;
+
+use crate::error::{Error, Result};
+
+/// One binding of a kernel's only bind group, in the order of `@binding`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binding {
+    /// A uniform buffer of this many bytes.
+    Uniform(u64),
+    /// A storage buffer that is only read.
+    Read,
+    /// A storage buffer that is written.
+    Write,
+}
+
+/// What a stage's kernel is made of; enough to build it, and to check it without any GPU.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The stage's name: that of its shader, its Rust file, its CPU twin and its test.
+    pub name: &'static str,
+    /// The shader's text, without its constants.
+    pub source: &'static str,
+    /// The buffers of bind group 0, in order.
+    pub bindings: &'static [Binding],
+    /// Constants that host and shader share; written in front of the text.
+    pub constants: Vec<(&'static str, i64)>,
+}
+
+impl Stage {
+    /// The whole module: the constants, then the shader's text.
+    pub fn wgsl(&self) -> String {
+        let mut text = String::new();
+        for (name, value) in &self.constants {
+            text += &format!("const {name} = {value};\n");
+        }
+        text + self.source
+    }
+}
+
+/// A stage's compute pipeline on one device.
+pub(crate) struct Kernel {
+    name: &'static str,
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Kernel {
+    /// Compiles `stage`, whose entry point is `main`.
+    pub(crate) fn new(device: &wgpu::Device, stage: &Stage) -> Self {
+        let label = Some(stage.name);
+        let entries: Vec<_> = (0..)
+            .zip(stage.bindings)
+            .map(|(binding, kind)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: match kind {
+                        Binding::Uniform(_) => wgpu::BufferBindingType::Uniform,
+                        Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                        Binding::Write => wgpu::BufferBindingType::Storage { read_only: false },
+                    },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            })
+            .collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Wgsl(stage.wgsl().into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label,
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        Self { name: stage.name, layout, pipeline }
+    }
+
+    /// Binds whole buffers in the order of the stage's bindings.
+    pub(crate) fn bind(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.name),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Records one dispatch of `groups` workgroups, in a pass of its own.
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, groups: [u32; 3]) {
+        let mut pass = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+        let [x, y, z] = groups;
+        pass.dispatch_workgroups(x, y, z);
+    }
+}
+
+/// A storage buffer that a kernel fills or reads, and that can be copied from and to.
+///
+/// # Errors
+/// [`Error::TooLarge`] where the device could not bind it.
+pub(crate) fn storage_buffer(device: &wgpu::Device, label: &'static str, bytes: u64) -> Result<wgpu::Buffer> {
+    let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+    if bytes > limit {
+        return Err(Error::TooLarge {
+            what: label.into(),
+            needed: bytes,
+            limit,
+            way_out: "use a smaller picture, or a device with larger buffers".into(),
+        });
+    }
+    Ok(device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        // An empty binding is refused by wgpu; a copy needs whole words.
+        size: bytes.next_multiple_of(4).max(4),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    }))
+}
+
+/// A uniform buffer that holds `params` from the start, so that recording writes nothing.
+pub(crate) fn uniform_buffer<P: bytemuck::NoUninit>(
+    device: &wgpu::Device,
+    label: &'static str,
+    params: &P,
+) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents: bytemuck::bytes_of(params),
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+    })
+}
+
+/// Runs `build`, which creates things on `device`, and turns what the device has to say about it
+/// into an [`Error`] instead of a call of the application's error handler.
+pub(crate) fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let built = build();
+    for scope in [internal, memory, validation] {
+        match pollster::block_on(scope.pop()) {
+            None => {}
+            Some(wgpu::Error::OutOfMemory { .. }) => return Err(Error::OutOfMemory(what.into())),
+            Some(error) => return Err(Error::Unsupported(format!("{what}: {error}"))),
+        }
+    }
+    built
+}

@@ -1,0 +1,10 @@
+//! The bit of wgpu that every stage shares: choosing a device, building kernels, reading results.
+
+mod device;
+mod kernel;
+mod readback;
+
+pub use device::{DeviceChoice, Gpu, list_adapters};
+pub use kernel::{Binding, Stage};
+pub(crate) use kernel::{Kernel, guarded, storage_buffer, uniform_buffer};
+pub(crate) use readback::Readback;

@@ -1,0 +1,10 @@
+//! Stereo depth from two photographs, on any GPU.
+
+pub mod disparity;
+pub mod error;
+pub mod features;
+pub mod gpu;
+pub mod image;
+
+pub use error::{Error, Result};
+pub use wgpu;
