@@ -15,6 +15,20 @@ pub struct Plane<T> {
 /// An 8-bit grey picture, 0 to 255.
 pub type Luma = Plane<u8>;
 
+/// Luma as the kernels read it: rows of `width.div_ceil(4)` words, pixel x in byte x % 4 (the lowest
+/// first) of word x / 4, zeros behind the last.
+pub fn pack(luma: &Luma) -> Vec<u32> {
+    let mut words = Vec::with_capacity(luma.width.div_ceil(4) as usize * luma.height as usize);
+    for row in luma.data.chunks(luma.width as usize) {
+        words.extend(row.chunks(4).map(|four| {
+            let mut bytes = [0; 4];
+            bytes[..four.len()].copy_from_slice(four);
+            u32::from_le_bytes(bytes)
+        }));
+    }
+    words
+}
+
 impl<T> Plane<T> {
     /// Wraps `data`, row by row.
     ///

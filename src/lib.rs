@@ -1,10 +1,12 @@
 //! Stereo depth from two photographs, on any GPU.
 
+pub mod dense;
 pub mod disparity;
 pub mod error;
 pub mod features;
 pub mod gpu;
 pub mod image;
+pub mod reference;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -2,6 +2,7 @@
 
 use wgpu::util::DeviceExt;
 
+use super::unroll::unrolled;
 use crate::error::{Error, Result};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
@@ -29,17 +30,18 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The whole module: the constants, then the shader's text.
+    /// The whole module: the constants, then the shader's text with its marked loops written out.
     pub fn wgsl(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.constants {
             text += &format!("const {name} = {value};\n");
         }
-        text + self.source
+        text + &unrolled(self.source, &self.constants)
     }
 }
 
 /// A stage's compute pipeline on one device.
+#[derive(Clone)]
 pub(crate) struct Kernel {
     name: &'static str,
     layout: wgpu::BindGroupLayout,
@@ -104,14 +106,33 @@ impl Kernel {
         })
     }
 
+    /// [`Self::bind`] and a number of workgroups, ready to be recorded any number of times.
+    pub(crate) fn dispatch(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: [u32; 3]) -> Dispatch {
+        Dispatch { kernel: self.clone(), bind_group: self.bind(device, buffers), groups }
+    }
+
     /// Records one dispatch of `groups` workgroups, in a pass of its own.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, groups: [u32; 3]) {
-        let mut pass = encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bind_group, &[]);
         let [x, y, z] = groups;
         pass.dispatch_workgroups(x, y, z);
+    }
+}
+
+/// A kernel with its buffers and its size: all that is left to do is to record it.
+pub struct Dispatch {
+    kernel: Kernel,
+    bind_group: wgpu::BindGroup,
+    groups: [u32; 3],
+}
+
+impl Dispatch {
+    /// Records it, in a pass of its own.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.kernel.record(encoder, &self.bind_group, self.groups);
     }
 }
 

@@ -3,8 +3,9 @@
 mod device;
 mod kernel;
 mod readback;
+mod unroll;
 
 pub use device::{DeviceChoice, Gpu, list_adapters};
-pub use kernel::{Binding, Stage};
+pub use kernel::{Binding, Dispatch, Stage};
 pub(crate) use kernel::{Kernel, guarded, storage_buffer, uniform_buffer};
 pub(crate) use readback::Readback;

@@ -24,6 +24,11 @@ impl Readback {
         encoder.copy_buffer_to_buffer(source, 0, &self.staging, 0, Some(self.staging.size().min(source.size())));
     }
 
+    /// The buffer to copy to.
+    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
+        &self.staging
+    }
+
     /// Waits for the submitted work and returns the first `count` values.
     ///
     /// # Errors

@@ -1,0 +1,214 @@
+// Block matching: the sum of absolute differences (SAD) over a square window, winner-take-all,
+// uniqueness and sub-pixel interpolation in one pass that stores no cost volume.
+//
+// A thread owns 4 x TILE_HEIGHT pixels and walks through the disparities, four a step. It keeps the
+// reference rows in registers, and of the rows that it searches it loads one word a row and step:
+// four disparities on, the same words serve again, one place further. A window's sum is never
+// added up from its (2 RADIUS + 1)^2 terms: running sums along the row, then down the column.
+//
+// A cost is carried shifted left by SHIFT, with the disparity's index in the free bits: that number
+// is the comparison key and the answer at once, and of equal costs the smaller disparity wins.
+//
+// The loops marked 'unroll' are written out before compilation (src/gpu/unroll.rs): only then do
+// their arrays become registers, which is worth a factor of forty on software drivers.
+
+struct Params {
+    width: u32,
+    rows: u32,
+    // Words a row of the padded reference and of the padded searched plane; where the latter begins.
+    reference_stride: u32,
+    searched_stride: u32,
+    searched_offset: u32,
+    min_disparity: i32,
+    disparities: u32,
+    // Steps of four disparities.
+    steps: u32,
+    // Per cent by which the rival's cost must exceed the winner's.
+    uniqueness: u32,
+    // Whether columns are counted from the right: the planes are mirrored.
+    mirrored: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+// The padded reference plane, then the padded searched plane, four pixels a word.
+@group(0) @binding(1) var<storage, read> planes: array<u32>;
+// Fixed-point disparities, one a pixel.
+@group(0) @binding(2) var<storage, read_write> disparities: array<i32>;
+// 0 to 255, one a pixel.
+@group(0) @binding(3) var<storage, read_write> confidences: array<u32>;
+
+const NOTHING = 0xffffffffu;
+const INDEX_MASK = (1u << SHIFT) - 1u;
+
+// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING.
+struct Search {
+    best: vec4<u32>,
+    // The best up to the last disparity but one.
+    before: vec4<u32>,
+    // The best that is not a direct neighbour of the winner.
+    rival: vec4<u32>,
+    // The winner's two neighbours.
+    below: vec4<u32>,
+    above: vec4<u32>,
+    // The last key seen.
+    previous: vec4<u32>,
+}
+
+fn consider(s: Search, key: vec4<u32>) -> Search {
+    let nothing = vec4<u32>(NOTHING);
+    let wins = key < s.best;
+    // Whether the winner so far lies at least two disparities back, so that it and this key are
+    // rivals. If not, a new winner's rival is what was best before the old one.
+    let apart = s.best == s.before;
+    var next: Search;
+    next.rival = min(s.rival, select(select(nothing, s.before, wins), max(key, s.best), apart));
+    next.below = select(s.below, s.previous, wins);
+    next.above = select(select(key, s.above, apart), nothing, wins);
+    next.before = s.best;
+    next.best = min(s.best, key);
+    next.previous = key;
+    return next;
+}
+
+// The four bytes of a word, as costs: each is shifted once, by as much as its place is off, and masked.
+const PLACES = vec4<i32>(SHIFT, SHIFT - 8, SHIFT - 16, SHIFT - 24);
+const UP = vec4<u32>(max(PLACES, vec4<i32>(0)));
+const DOWN = vec4<u32>(max(-PLACES, vec4<i32>(0)));
+
+fn unpack(word: u32) -> vec4<i32> {
+    return vec4<i32>(((vec4<u32>(word) << UP) >> DOWN) & vec4<u32>(255u << SHIFT));
+}
+
+// The exact quotient, rounded down, where it is below 2^16. By way of floats, since software drivers
+// divide integers lane by lane: the estimate is off by one at most, whatever the rounding.
+fn quotient(numerator: u32, divisor: u32) -> u32 {
+    let estimate = u32(f32(numerator) / f32(divisor));
+    let rest = i32(numerator - estimate * divisor);
+    return estimate - select(0u, 1u, rest < 0) + select(0u, 1u, rest >= i32(divisor));
+}
+
+// The minimum's place between its neighbours' costs, in 1/256 px from the winner, -128 to 128: the
+// nearest integer to 128 (left - right) / divisor, halves up.
+fn subpixel(below: u32, best: u32, above: u32) -> i32 {
+    let left = below - best;
+    let right = above - best;
+    var divisor = 0u;
+    if INTERPOLATION == PARABOLA {
+        divisor = left + right;
+    } else if INTERPOLATION == EQUIANGULAR {
+        divisor = max(left, right);
+    }
+    if divisor == 0u {
+        return 0;
+    }
+    // 128 is added before the division, and taken away after it, to keep it unsigned.
+    return i32(quotient(256u * (left - right) + 257u * divisor, 2u * divisor)) - 128;
+}
+
+@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = 4u * id.x;
+    let y0 = TILE_HEIGHT * id.y;
+    if x >= params.width || y0 >= params.rows {
+        return;
+    }
+
+    var reference: array<array<u32, WORDS>, ROWS>;
+    // One word more: the four pixels further left that the next step needs come in front.
+    var searched: array<array<u32, WORDS + 1>, ROWS>;
+    for (var y = 0; y < ROWS; y++) { // unroll
+        for (var j = 0; j < WORDS; j++) { // unroll
+            reference[y][j] = planes[(y0 + y) * params.reference_stride + id.x + j];
+            searched[y][j] = planes[params.searched_offset + (y0 + y) * params.searched_stride + params.steps + id.x + j];
+        }
+    }
+
+    let nothing = vec4<u32>(NOTHING);
+    var searches: array<Search, ROWS>;
+    for (var y = 0; y < ROWS; y++) { // unroll
+        searches[y] = Search(nothing, nothing, nothing, nothing, nothing, nothing);
+    }
+
+    for (var step = 0u; step < params.steps; step++) {
+        // What is ored to a cost: the disparity's index; or, where it leads out of the picture or
+        // the range, all ones. A matrix in all but name: a row for each disparity of the step.
+        var tags: array<vec4<u32>, 4>;
+        for (var k = 0; k < 4; k++) { // unroll
+            let index = 4u * step + k;
+            let partner = vec4<i32>(i32(x) - params.min_disparity - i32(index)) + vec4<i32>(0, 1, 2, 3);
+            let exists = vec4<u32>(partner) < vec4<u32>(select(0u, params.width, index < params.disparities));
+            tags[k] = select(nothing, vec4<u32>(index), exists);
+        }
+
+        // Row sums of each row, behind RADIUS * 2 + 1 rows of zeros that the first windows 'lose'.
+        var sums: array<array<vec4<u32>, 4>, ROWS + SIDE>;
+        var window: array<vec4<u32>, 4>;
+        for (var y = 0; y < ROWS; y++) { // unroll
+            let row = params.searched_offset + (y0 + y) * params.searched_stride;
+            for (var j = 0; j < WORDS; j++) { // unroll
+                searched[y][WORDS - j] = searched[y][WORDS - j - 1];
+            }
+            searched[y][0] = planes[row + params.steps - 1u - step + id.x];
+
+            var a: array<vec4<i32>, WORDS>;
+            var b: array<vec4<i32>, WORDS + 1>;
+            b[0] = unpack(searched[y][0]);
+            for (var j = 0; j < WORDS; j++) { // unroll
+                a[j] = unpack(reference[y][j]);
+                b[j + 1] = unpack(searched[y][j + 1]);
+            }
+            for (var k = 0; k < 4; k++) { // unroll
+                var difference: array<u32, SIDE + 3>;
+                for (var i = 0; i < SIDE + 3; i++) { // unroll
+                    const p = FIRST + i;
+                    const q = FIRST + i + 4 - k;
+                    difference[i] = u32(abs(a[p / 4][p % 4] - b[q / 4][q % 4]));
+                }
+                var sum = 0u;
+                for (var i = 0; i < SIDE; i++) { // unroll
+                    sum += difference[i];
+                }
+                let sum1 = sum + difference[SIDE] - difference[0];
+                let sum2 = sum1 + difference[SIDE + 1] - difference[1];
+                let sum3 = sum2 + difference[SIDE + 2] - difference[2];
+                sums[y + SIDE][k] = vec4<u32>(sum, sum1, sum2, sum3);
+                window[k] += sums[y + SIDE][k] - sums[y][k];
+                if y >= SIDE - 1 {
+                    searches[y] = consider(searches[y], window[k] | tags[k]);
+                }
+            }
+        }
+    }
+
+    for (var n = 0; n < TILE_HEIGHT; n++) { // unroll
+        let s = searches[n + SIDE - 1];
+        for (var t = 0; t < 4; t++) { // unroll
+            finish(x + t, y0 + n, s.best[t], s.rival[t], s.below[t], s.above[t]);
+        }
+    }
+}
+
+// Writes the answer of one pixel.
+fn finish(x: u32, y: u32, best: u32, rival: u32, below: u32, above: u32) {
+    if x >= params.width || y >= params.rows {
+        return;
+    }
+    var disparity = NONE;
+    var confidence = 0u;
+    let cost = best >> SHIFT;
+    let rival_cost = rival >> SHIFT;
+    if best != NOTHING && (rival == NOTHING || rival_cost * 100u > cost * (100u + params.uniqueness) || params.uniqueness == 0u) {
+        disparity = (params.min_disparity + i32(best & INDEX_MASK)) * SCALE;
+        if below != NOTHING && above != NOTHING {
+            disparity += subpixel(below >> SHIFT, cost, above >> SHIFT);
+        }
+        confidence = 1u;
+        if rival != NOTHING && rival_cost != 0u {
+            confidence += quotient(254u * (rival_cost - cost), rival_cost);
+        }
+    }
+    let column = select(x, params.width - 1u - x, params.mirrored != 0u);
+    let pixel = y * params.width + column;
+    disparities[pixel] = disparity;
+    confidences[pixel] = confidence;
+}

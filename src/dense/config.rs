@@ -1,0 +1,128 @@
+//! What the dense half is asked to do.
+
+use crate::{
+    disparity::DisparityRange,
+    error::{Error, Result},
+};
+
+/// One of the two views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// The left view: its pixel x corresponds to x - d of the right.
+    Left,
+    /// The right view: its pixel x corresponds to x + d of the left.
+    Right,
+}
+
+impl View {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
+/// How a disparity is placed between whole pixels, from the costs of the winner and its two
+/// neighbours c-, c, c+; always rounded to the nearest 1/256 px, halves up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Whole pixels.
+    None,
+    /// The vertex of a parabola: (c- - c+) / 2(c- - 2c + c+).
+    Parabola,
+    /// The tip of two lines of equal slope: (c- - c+) / 2(max(c-, c+) - c). Shimizu and Okutomi:
+    /// 'Precise sub-pixel estimation on area-based matching', ICCV 2001: absolute differences have
+    /// a pointed minimum, which a parabola pulls to whole pixels.
+    Equiangular,
+}
+
+/// Block matching and its checks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DenseConfig {
+    /// Side of the square window in pixels, odd, 3 to 31.
+    pub window: u32,
+    /// The disparities to search.
+    pub range: DisparityRange,
+    /// The view whose pixels get a disparity.
+    pub reference: View,
+    /// Sub-pixel interpolation.
+    pub interpolation: Interpolation,
+    /// By how many per cent the cost of the best rival, two or more disparities away, must exceed
+    /// the winner's; 0 accepts every winner, at most 100.
+    pub uniqueness: u32,
+    /// The largest difference, in 1/256 px, between a pixel's disparity and that of its partner in
+    /// the other view; `None` accepts every winner.
+    pub consistency: Option<u32>,
+}
+
+impl DenseConfig {
+    /// Plain block matching over `range`: a 7x7 window, the left view, no checks.
+    pub fn new(range: DisparityRange) -> Self {
+        Self {
+            window: 7,
+            range,
+            reference: View::Left,
+            interpolation: Interpolation::Equiangular,
+            uniqueness: 0,
+            consistency: None,
+        }
+    }
+
+    /// Half the window without its centre.
+    pub fn radius(&self) -> u32 {
+        self.window / 2
+    }
+
+    /// The disparities that are searched in a picture of this width: those of the range that give at
+    /// least one pixel a partner.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where there are none, or more than the kernel's keys can tell apart.
+    pub fn searched(&self, width: u32) -> Result<DisparityRange> {
+        let reach = i32::try_from(width - 1).unwrap_or(i32::MAX);
+        let (first, last) = (self.range.min.max(-reach), self.range.last().min(reach));
+        let refuse = |expected| {
+            let value = format!("{} to {}", self.range.min, self.range.last());
+            Err(Error::Parameter { name: "the disparity range", value, expected })
+        };
+        if first > last {
+            return refuse(format!("no pixel of a picture {width} px wide has a partner that far away"));
+        }
+        let range = DisparityRange::inclusive(first, last)?;
+        let limit = (1 << self.index_bits()) - 1;
+        if range.count > limit {
+            return refuse(format!("at most {limit} disparities fit beside the cost of a window of {}", self.window));
+        }
+        Ok(range)
+    }
+
+    /// The bits of a 32-bit key that the largest cost of the window leaves for the disparity's index.
+    pub(crate) fn index_bits(&self) -> u32 {
+        (255 * self.window * self.window).leading_zeros()
+    }
+
+    /// Refuses what no kernel could work with.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the accepted range.
+    pub fn validate(&self) -> Result<()> {
+        let check = |ok: bool, name, value: u32, expected: &str| {
+            if ok {
+                Ok(())
+            } else {
+                Err(Error::Parameter { name, value: value.to_string(), expected: expected.into() })
+            }
+        };
+        let odd = self.window % 2 == 1 && (3..=31).contains(&self.window);
+        check(odd, "window", self.window, "it must be odd and 3 to 31")?;
+        check(self.uniqueness <= 100, "uniqueness", self.uniqueness, "it must be 0 to 100 per cent")?;
+        check(
+            self.consistency.is_none_or(|d| d <= 1 << 16),
+            "consistency",
+            self.consistency.unwrap_or(0),
+            "it must be at most 65536 (256 px)",
+        )
+    }
+}

@@ -1,0 +1,66 @@
+//! Left-right consistency. `shaders/consistency.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::config::View;
+use crate::{
+    disparity::{NONE, SCALE},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [64, 1];
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    width: u32,
+    rows: u32,
+    direction: i32,
+    max_difference: u32,
+}
+
+/// The left-right consistency kernel.
+pub struct Consistency(Kernel);
+
+impl Consistency {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "consistency",
+            source: include_str!("../../shaders/consistency.wgsl"),
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("SCALE", SCALE.into()),
+                ("SCALE_BITS", SCALE.ilog2().into()),
+                ("NONE", NONE.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Takes away from `disparities` (and `confidences`) of `view`, `width` x `rows` of them, what
+    /// the other view's `others` contradict by more than `max_difference` / 256 px.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, rows): (u32, u32),
+        view: View,
+        max_difference: u32,
+        others: &wgpu::Buffer,
+        [disparities, confidences]: [&wgpu::Buffer; 2],
+    ) -> Dispatch {
+        let direction = match view {
+            View::Left => -1,
+            View::Right => 1,
+        };
+        let params = uniform_buffer(device, "consistency", &Params { width, rows, direction, max_difference });
+        let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&params, others, disparities, confidences], groups)
+    }
+}

@@ -1,0 +1,227 @@
+//! The dense half of one pair size: all kernels, all memory, and the order of things.
+
+use super::{
+    block_match::{BlockMatch, Layout},
+    config::{DenseConfig, View},
+    consistency::Consistency,
+    pad::Pad,
+};
+use crate::{
+    disparity::DisparityMap,
+    error::{Error, Result},
+    gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
+    image::{Luma, Plane, pack},
+};
+
+/// More rows than this are never matched at once: bands keep single dispatches short on devices
+/// that are also drawing the desktop, and below 65,535 workgroups.
+const MAX_BAND_ROWS: u32 = 8192;
+
+/// A disparity for each pixel of the reference view, and how far it can be trusted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dense {
+    /// Fixed-point disparities; see [`crate::disparity`].
+    pub disparity: DisparityMap,
+    /// 0 where there is no disparity, otherwise 1 to 255: the margin by which the winner's cost is
+    /// below its best rival's, as a share of the rival's.
+    pub confidence: Plane<u8>,
+}
+
+/// Dense matching of pairs of one size on a borrowed device.
+///
+/// Pictures whose planes do not fit in one buffer are matched in bands of rows; no result depends
+/// on where they are cut.
+pub struct Matcher {
+    size: (u32, u32),
+    bands: Vec<Band>,
+    disparities: wgpu::Buffer,
+    confidences: wgpu::Buffer,
+    bytes: u64,
+}
+
+struct Band {
+    first_row: u32,
+    rows: u32,
+    dispatches: Vec<Dispatch>,
+}
+
+impl Matcher {
+    /// Compiles the kernels and allocates all memory for packed `left` and `right` of `size`
+    /// (rows of `width.div_ceil(4)` words, four pixels a word).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
+    /// the device cannot bind, and what the device says.
+    pub fn new(
+        device: &wgpu::Device,
+        size: (u32, u32),
+        config: &DenseConfig,
+        left: &wgpu::Buffer,
+        right: &wgpu::Buffer,
+    ) -> Result<Self> {
+        Self::with_band_rows(device, size, config, left, right, MAX_BAND_ROWS)
+    }
+
+    /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_band_rows(
+        device: &wgpu::Device,
+        size: (u32, u32),
+        config: &DenseConfig,
+        left: &wgpu::Buffer,
+        right: &wgpu::Buffer,
+        band_rows: u32,
+    ) -> Result<Self> {
+        config.validate()?;
+        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        let band_rows = band_rows_within(limit, size, config, band_rows)?;
+        guarded(device, "dense matching", || Self::build(device, size, config, [left, right], band_rows))
+    }
+
+    fn build(
+        device: &wgpu::Device,
+        size: (u32, u32),
+        config: &DenseConfig,
+        [left, right]: [&wgpu::Buffer; 2],
+        band_rows: u32,
+    ) -> Result<Self> {
+        let (width, height) = size;
+        let pad = Pad::new(device);
+        let block_match = BlockMatch::new(device, config);
+        let consistency = config.consistency.map(|limit| (Consistency::new(device), limit));
+
+        let mut bytes = 0;
+        let mut buffer = |label, words: u64| {
+            bytes += 4 * words;
+            storage_buffer(device, label, 4 * words)
+        };
+        let pixels = u64::from(width) * u64::from(band_rows);
+        let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config)?.words())?;
+        let disparities = buffer("disparities", pixels)?;
+        let confidences = buffer("confidences", pixels)?;
+        let others = match consistency {
+            Some(_) => Some([buffer("other disparities", pixels)?, buffer("other confidences", pixels)?]),
+            None => None,
+        };
+
+        let match_view = |layout: &Layout, view: View, uniqueness, outputs: [&wgpu::Buffer; 2]| {
+            let [reference, searched] = match view {
+                View::Left => [left, right],
+                View::Right => [right, left],
+            };
+            let [reference_padding, searched_padding] = layout.padding(view);
+            [
+                pad.prepare(device, reference_padding, reference, &planes),
+                pad.prepare(device, searched_padding, searched, &planes),
+                block_match.prepare(device, layout, uniqueness, view, &planes, outputs),
+            ]
+        };
+        let mut bands = Vec::new();
+        for first_row in (0..height).step_by(band_rows as usize) {
+            let rows = band_rows.min(height - first_row);
+            let layout = Layout::new(size, first_row, rows, config)?;
+            let mut dispatches = Vec::new();
+            dispatches.extend(match_view(&layout, config.reference, config.uniqueness, [&disparities, &confidences]));
+            if let (Some((consistency, limit)), Some([disparities2, confidences2])) = (&consistency, &others) {
+                let other_view = config.reference.other();
+                // A partner is asked where it points, not whether it is unique.
+                dispatches.extend(match_view(&layout, other_view, 0, [disparities2, confidences2]));
+                let outputs = [&disparities, &confidences];
+                let band = (width, rows);
+                dispatches.push(consistency.prepare(device, band, config.reference, *limit, disparities2, outputs));
+            }
+            bands.push(Band { first_row, rows, dispatches });
+        }
+        Ok(Self { size, bands, disparities, confidences, bytes })
+    }
+
+    /// Bytes of device memory that this matcher holds.
+    pub fn memory(&self) -> u64 {
+        self.bytes
+    }
+
+    /// In how many bands of rows the pair is matched.
+    pub fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// Records the whole matching, which ends with `disparities` (`i32`) and `confidences` (`u32`,
+    /// 0 to 255) of every pixel of the reference view in the caller's buffers, row by row. Both
+    /// need `COPY_DST`.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer) {
+        for band in &self.bands {
+            for dispatch in &band.dispatches {
+                dispatch.record(encoder);
+            }
+            let row_bytes = 4 * u64::from(self.size.0);
+            let (offset, length) = (row_bytes * u64::from(band.first_row), row_bytes * u64::from(band.rows));
+            encoder.copy_buffer_to_buffer(&self.disparities, 0, disparities, offset, Some(length));
+            encoder.copy_buffer_to_buffer(&self.confidences, 0, confidences, offset, Some(length));
+        }
+    }
+}
+
+/// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes.
+fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, wanted: u32) -> Result<u32> {
+    let (width, height) = size;
+    let mut rows = wanted.clamp(1, height.min(MAX_BAND_ROWS));
+    loop {
+        let planes = 4 * Layout::new(size, 0, rows, config)?.words();
+        let needed = planes.max(4 * u64::from(width) * u64::from(rows));
+        if needed <= limit {
+            return Ok(rows);
+        }
+        if rows == 1 {
+            return Err(Error::TooLarge {
+                what: format!("one row of a picture {width} px wide with {} disparities", config.range.count),
+                needed,
+                limit,
+                way_out: "search fewer disparities or scale the pictures down".into(),
+            });
+        }
+        rows = rows.div_ceil(2);
+    }
+}
+
+/// Matches one pair on `gpu` and waits for the result.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
+pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    if left.size() != right.size() {
+        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+    }
+    let device = &gpu.device;
+    let upload = |label, luma: &Luma| -> Result<wgpu::Buffer> {
+        let words = pack(luma);
+        let buffer = storage_buffer(device, label, 4 * words.len() as u64)?;
+        gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+        Ok(buffer)
+    };
+    let matcher =
+        Matcher::new(device, left.size(), config, &upload("left luma", left)?, &upload("right luma", right)?)?;
+    matcher.run(gpu)
+}
+
+impl Matcher {
+    /// Submits the whole matching on `gpu` and waits for the result.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    pub fn run(&self, gpu: &Gpu) -> Result<Dense> {
+        let (width, height) = self.size;
+        let pixels = width as usize * height as usize;
+        let device = &gpu.device;
+        let [disparities, confidences] = guarded(device, "the disparity map", || {
+            Ok(["disparities", "confidences"].map(|label| Readback::new(device, label, 4 * pixels as u64)))
+        })?;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
+        self.record(&mut encoder, disparities.buffer(), confidences.buffer());
+        gpu.queue.submit([encoder.finish()]);
+        let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
+        let confidence = Plane::new(width, height, confidences.read::<u32>(device, pixels)?)?.map(|&c| c as u8);
+        Ok(Dense { disparity, confidence })
+    }
+}

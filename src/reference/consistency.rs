@@ -1,0 +1,56 @@
+//! Left-right consistency, from the definition.
+
+use crate::{
+    dense::{Dense, View},
+    disparity::{DisparityMap, NONE, SCALE},
+};
+
+/// Takes away what the other view contradicts: the partner of a pixel, at the nearest whole
+/// disparity, must exist and must have a disparity that differs by at most `max_difference` / 256 px.
+pub fn check_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+    let (width, height) = dense.disparity.size();
+    for y in 0..height {
+        for x in 0..width {
+            let disparity = dense.disparity.get(x, y);
+            if disparity == NONE {
+                continue;
+            }
+            let whole = (disparity + SCALE / 2).div_euclid(SCALE);
+            let partner = match view {
+                View::Left => i64::from(x) - i64::from(whole),
+                View::Right => i64::from(x) + i64::from(whole),
+            };
+            let confirmed = (0..i64::from(width)).contains(&partner) && {
+                let other = others.get(partner as u32, y);
+                other != NONE && disparity.abs_diff(other) <= max_difference
+            };
+            if !confirmed {
+                dense.disparity.set(x, y, NONE);
+                dense.confidence.set(x, y, 0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Plane;
+
+    #[test]
+    fn by_hand() {
+        let plane = |values: &[i32]| Plane::new(values.len() as u32, 1, values.to_vec()).unwrap();
+        let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
+        let mut dense = Dense { confidence: disparity.map(|_| 9), disparity };
+        // Partners: 0 of 0; 0 of 1; 1 of 2 (300 is nearest to one pixel); 1 of 3; outside.
+        let others = plane(&[40, 260, NONE, 0, 0, 0]);
+        check_consistency(&mut dense, View::Left, &others, 40);
+        assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
+        assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 9, 0]);
+
+        let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled(3, 1, 9) };
+        // -128 is a half: up, to 0.
+        check_consistency(&mut dense, View::Right, &plane(&[-128, 0, 256]), 0);
+        assert_eq!(dense.disparity.data(), [-128, 256, NONE]);
+    }
+}

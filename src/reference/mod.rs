@@ -1,0 +1,12 @@
+//! The CPU twins: every stage written from its definition, for reading, with no GPU in sight.
+//!
+//! They are what the kernels are tested against, and what computes where there is no adapter.
+//! Integer stages equal their kernels bit for bit.
+
+mod block_match;
+mod consistency;
+mod dense;
+
+pub use block_match::{block_match, cost};
+pub use consistency::check_consistency;
+pub use dense::compute_dense;
