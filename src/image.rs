@@ -15,6 +15,12 @@ pub struct Plane<T> {
 /// An 8-bit grey picture, 0 to 255.
 pub type Luma = Plane<u8>;
 
+/// The grey value of a colour: `(77 R + 150 G + 29 B + 128) >> 8`, the weights of ITU-R BT.601 in
+/// 1/256, rounded.
+pub const fn luma([red, green, blue]: [u8; 3]) -> u8 {
+    ((77 * red as u32 + 150 * green as u32 + 29 * blue as u32 + 128) >> 8) as u8
+}
+
 impl<T> Plane<T> {
     /// Wraps `data`, row by row.
     ///
@@ -109,5 +115,27 @@ impl<T: Copy> Plane<T> {
         let x = x.clamp(0, i64::from(self.width) - 1) as u32;
         let y = y.clamp(0, i64::from(self.height) - 1) as u32;
         self.get(x, y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn luma_of_known_colours() {
+        assert_eq!(luma([0, 0, 0]), 0);
+        assert_eq!(luma([255, 255, 255]), 255);
+        // 77 * 255 = 19635, + 128 = 19763, / 256 = 77.2
+        assert_eq!(luma([255, 0, 0]), 77);
+        // 77 * 10 + 150 * 20 + 29 * 30 + 128 = 4768, / 256 = 18.6
+        assert_eq!(luma([10, 20, 30]), 18);
+    }
+
+    #[test]
+    fn luma_keeps_grey() {
+        for grey in 0..=255 {
+            assert_eq!(luma([grey; 3]), grey);
+        }
     }
 }
