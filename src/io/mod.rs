@@ -7,11 +7,23 @@
 //! Picture codecs and whole-file writing come with the feature `cli`; PFM, calibrations, PLY and
 //! colour maps are always there.
 
+#[cfg(feature = "cli")]
+pub mod atomic;
 pub mod calibration;
 pub mod color;
+#[cfg(feature = "cli")]
+pub mod disparity_png;
+#[cfg(feature = "cli")]
+pub mod figure;
+#[cfg(feature = "cli")]
+mod jpeg;
+#[cfg(feature = "cli")]
+pub mod load;
 pub mod pfm;
 pub mod picture;
 pub mod ply;
+#[cfg(feature = "cli")]
+pub mod png;
 
 pub use calibration::Calibration;
 pub use picture::Picture;
