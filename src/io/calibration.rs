@@ -202,7 +202,8 @@ impl Entry<'_> {
     }
 
     fn positive(&self, rule: &str) -> Result<f64> {
-        finite(self.value).filter(|&value| value > 0.0).ok_or_else(|| self.wrong(rule))
+        // Not so small that another unit would make it 0.
+        finite(self.value).filter(|&value| value >= f64::MIN_POSITIVE).ok_or_else(|| self.wrong(rule))
     }
 
     fn side(&self) -> Result<u32> {
@@ -277,6 +278,7 @@ mod tests {
             ("baseline=193.001", "baseline=-1", "line 4: baseline is '-1', but it must be a distance in mm above 0"),
             ("baseline=193.001", "baseline=0", "line 4"),
             ("baseline=193.001", "baseline=inf", "line 4"),
+            ("baseline=193.001", "baseline=5e-324", "line 4"),
             ("height=497", "height=0", "line 6: height is '0'"),
             ("width=741", "width=-741", "line 5"),
             ("ndisp=70", "doffs=70", "line 7: doffs is there twice"),
