@@ -15,18 +15,10 @@ pub struct Plane<T> {
 /// An 8-bit grey picture, 0 to 255.
 pub type Luma = Plane<u8>;
 
-/// Luma as the kernels read it: rows of `width.div_ceil(4)` words, pixel x in byte x % 4 (the lowest
-/// first) of word x / 4, zeros behind the last.
-pub fn pack(luma: &Luma) -> Vec<u32> {
-    let mut words = Vec::with_capacity(luma.width.div_ceil(4) as usize * luma.height as usize);
-    for row in luma.data.chunks(luma.width as usize) {
-        words.extend(row.chunks(4).map(|four| {
-            let mut bytes = [0; 4];
-            bytes[..four.len()].copy_from_slice(four);
-            u32::from_le_bytes(bytes)
-        }));
-    }
-    words
+/// The grey value of a colour: `(77 R + 150 G + 29 B + 128) >> 8`, the weights of ITU-R BT.601 in
+/// 1/256, rounded.
+pub const fn luma([red, green, blue]: [u8; 3]) -> u8 {
+    ((77 * red as u32 + 150 * green as u32 + 29 * blue as u32 + 128) >> 8) as u8
 }
 
 impl<T> Plane<T> {
@@ -123,5 +115,27 @@ impl<T: Copy> Plane<T> {
         let x = x.clamp(0, i64::from(self.width) - 1) as u32;
         let y = y.clamp(0, i64::from(self.height) - 1) as u32;
         self.get(x, y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn luma_of_known_colours() {
+        assert_eq!(luma([0, 0, 0]), 0);
+        assert_eq!(luma([255, 255, 255]), 255);
+        // 77 * 255 = 19635, + 128 = 19763, / 256 = 77.2
+        assert_eq!(luma([255, 0, 0]), 77);
+        // 77 * 10 + 150 * 20 + 29 * 30 + 128 = 4768, / 256 = 18.6
+        assert_eq!(luma([10, 20, 30]), 18);
+    }
+
+    #[test]
+    fn luma_keeps_grey() {
+        for grey in 0..=255 {
+            assert_eq!(luma([grey; 3]), grey);
+        }
     }
 }

@@ -6,6 +6,7 @@ pub mod error;
 pub mod features;
 pub mod gpu;
 pub mod image;
+pub mod io;
 pub mod reference;
 
 pub use error::{Error, Result};

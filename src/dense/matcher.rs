@@ -10,7 +10,8 @@ use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
     gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
-    image::{Luma, Plane, pack},
+    image::{Luma, Plane},
+    luma::pack,
 };
 
 /// More rows than this are never matched at once: bands keep single dispatches short on devices

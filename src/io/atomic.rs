@@ -1,0 +1,163 @@
+//! Output files that are written whole or not at all.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+use crate::error::{Error, Result};
+
+/// Gives `write` a file that takes its place at `path` only once all of it is written. Whatever
+/// fails, an older file at `path` stays as it was.
+///
+/// A file that is replaced hands on its permissions, and one that is read-only is not replaced; a
+/// link is followed; what is no regular file (`/dev/null`, a pipe) is written to directly.
+///
+/// # Errors
+/// [`Error::Io`] with `path`, whatever went wrong.
+pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<T> {
+    replace(path, write).map_err(|source| Error::Io { path: path.into(), source })
+}
+
+fn replace<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
+    let old = fs::metadata(path).ok();
+    match &old {
+        Some(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Some(old) if !old.is_file() => return fill(&OpenOptions::new().write(true).open(path)?, write),
+        Some(old) if old.permissions().readonly() => {
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+        }
+        _ => {}
+    }
+    let target = if old.is_some() { fs::canonicalize(path)? } else { path.into() };
+    let folder = folder(&target);
+    if !folder.is_dir() {
+        let reason = format!("there is no folder '{}': create it first", folder.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, reason));
+    }
+
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is its owner's alone unless told otherwise; the umask still applies.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    // The temporary file's name in these errors would say nothing to anyone.
+    let temporary = builder.prefix(".hsad-").tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
+    let written = fill(temporary.as_file(), write)?;
+    if let Some(old) = old {
+        temporary.as_file().set_permissions(old.permissions())?;
+    }
+    temporary.persist(target).map_err(|error| error.error)?;
+    Ok(written)
+}
+
+fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
+    let mut writer = BufWriter::new(file);
+    let written = write(&mut writer)?;
+    writer.flush()?;
+    Ok(written)
+}
+
+/// The folder that `path` is in.
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent.into(),
+        _ => PathBuf::from("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn writes_and_replaces() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map");
+        assert_eq!(write_whole(&path, |out| out.write_all(b"one").map(|()| 7)).unwrap(), 7);
+        write_whole(&path, |out| out.write_all(b"two")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(names(folder.path()), ["map"]);
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map");
+        fs::write(&path, "old").unwrap();
+        let error = write_whole(&path, |out| {
+            out.write_all(b"half")?;
+            Err::<(), _>(io::Error::other("no more"))
+        });
+        assert_eq!(error.unwrap_err().to_string(), format!("{}: no more", path.display()));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["map"]);
+    }
+
+    #[test]
+    fn a_missing_folder_and_a_folder_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("no/map");
+        let error = write_whole(&missing, |_| Ok(())).unwrap_err().to_string();
+        assert!(error.contains("no/map: there is no folder") && error.contains("create it"), "{error}");
+        let error = write_whole(folder.path(), |_| Ok(())).unwrap_err();
+        assert!(matches!(error, Error::Io { source, .. } if source.kind() == io::ErrorKind::IsADirectory));
+    }
+
+    #[test]
+    fn a_name_alone_is_in_the_current_folder() {
+        assert_eq!(folder(Path::new("map.pfm")), Path::new("."));
+        assert_eq!(folder(Path::new("out/map.pfm")), Path::new("out"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_any_new_file_or_of_the_old_one() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        let (usual, ours) = (folder.path().join("usual"), folder.path().join("ours"));
+        fs::write(&usual, "").unwrap();
+        write_whole(&ours, |_| Ok(())).unwrap();
+        assert_eq!(mode(&ours), mode(&usual));
+
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o640)).unwrap();
+        write_whole(&ours, |_| Ok(())).unwrap();
+        assert_eq!(mode(&ours), 0o640);
+
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o444)).unwrap();
+        assert!(write_whole(&ours, |_| Ok(())).unwrap_err().to_string().contains("read-only"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_whole(&link, |out| out.write_all(b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_written_to_and_stays() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        write_whole(&pipe, |out| out.write_all(b"through")).unwrap();
+        assert_eq!(reader.join().unwrap(), b"through");
+        assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    }
+}

@@ -1,0 +1,103 @@
+//! Disparities in false colours, and confidences in grey, for people to look at.
+
+use crate::{
+    disparity::{DisparityMap, NONE},
+    image::{Luma, Plane},
+};
+
+/// Where the colours of disparities begin on Turbo, which is nearly black at 0.
+const FAR: f32 = 0.05;
+
+/// The smallest and the largest disparity that are told apart, in 1/256 px: the 1st and the 99th
+/// percentile of `map`, so that a few outliers do not take all the colours. `None` if it is empty.
+pub fn disparity_range(map: &DisparityMap) -> Option<(i32, i32)> {
+    let mut known: Vec<i32> = map.data().iter().copied().filter(|&d| d != NONE).collect();
+    let last = known.len().checked_sub(1)?;
+    // Rounded outwards, so that a map of a few pixels keeps its extremes.
+    let (low, high) = (last / 100, last - last / 100);
+    let smallest = *known.select_nth_unstable(low).1;
+    let largest = *known.select_nth_unstable(high).1;
+    Some((smallest, largest))
+}
+
+/// `map` in Turbo's colours: blue at the smallest (far) and red at the largest (near) disparity of
+/// `range`, which is in 1/256 px; beyond its ends their colours go on. [`NONE`] is black.
+pub fn disparity_colors(map: &DisparityMap, range: (i32, i32)) -> Plane<[u8; 3]> {
+    let (low, high) = (f64::from(range.0), f64::from(range.1));
+    let share = |d: i32| if high > low { ((f64::from(d) - low) / (high - low)) as f32 } else { 0.5 };
+    map.map(|&d| if d == NONE { [0; 3] } else { turbo(FAR + (1.0 - FAR) * share(d).clamp(0.0, 1.0)) })
+}
+
+/// Confidences of 0 to 1 as grey of 0 to 255; what is beyond is clamped, and NaN is 0.
+pub fn confidence_grey(confidence: &Plane<f32>) -> Luma {
+    confidence.map(|&value| to_byte(value))
+}
+
+/// Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour
+/// map: 'Turbo, An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
+/// <https://gist.github.com/mikhailov-work/0d177465a8151eb6ede1768d51d476c7>.
+pub fn turbo(t: f32) -> [u8; 3] {
+    /// Coefficients of red, green and blue, from t^0 to t^5.
+    const COEFFICIENTS: [[f32; 6]; 3] = [
+        [0.135_721_38, 4.615_392_6, -42.660_324, 132.131_08, -152.942_4, 59.286_38],
+        [0.091_402_61, 2.194_188_4, 4.842_966_6, -14.185_033, 4.277_298_6, 2.829_566],
+        [0.106_673_3, 12.641_946, -60.582_05, 110.362_77, -89.903_11, 27.348_25],
+    ];
+    let t = t.clamp(0.0, 1.0);
+    COEFFICIENTS.map(|c| to_byte(c.iter().rev().fold(0.0, |sum, coefficient| sum * t + coefficient)))
+}
+
+fn to_byte(value: f32) -> u8 {
+    // A cast saturates, and takes NaN to 0.
+    (value * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turbo_by_hand() {
+        // 255 times the constant terms, and 255 times the sums of the coefficients.
+        assert_eq!(turbo(0.0), [35, 23, 27]);
+        assert_eq!(turbo(1.0), [144, 13, 0]);
+        assert_eq!(turbo(-1.0), turbo(0.0));
+        assert_eq!(turbo(2.0), turbo(1.0));
+        // Blue, green and red follow one another.
+        assert_eq!([0.15, 0.5, 0.85].map(|t| turbo(t).iter().enumerate().max_by_key(|c| c.1).unwrap().0), [2, 1, 0]);
+    }
+
+    #[test]
+    fn no_disparity_is_nearly_black() {
+        let map = DisparityMap::from_fn(1001, 1, |x, _| x as i32);
+        assert!(disparity_colors(&map, (0, 1000)).data().iter().all(|rgb| rgb.iter().any(|&channel| channel > 100)));
+    }
+
+    #[test]
+    fn colors_span_the_range_and_none_is_black() {
+        let map = DisparityMap::new(6, 1, vec![NONE, -256, 0, 256, i32::MAX, i32::MIN + 1]).unwrap();
+        let expected = [[0; 3], turbo(0.05), turbo(0.525), turbo(1.0), turbo(1.0), turbo(0.05)];
+        assert_eq!(disparity_colors(&map, (-256, 256)).data(), expected);
+    }
+
+    #[test]
+    fn a_flat_map_has_one_colour() {
+        let map = DisparityMap::filled(2, 2, 512);
+        assert_eq!(disparity_colors(&map, disparity_range(&map).unwrap()).data(), [turbo(0.525); 4]);
+    }
+
+    #[test]
+    fn range_is_the_first_and_last_percentile() {
+        // 0..=200 in a mixed order, among as many pixels without a disparity.
+        let map = DisparityMap::from_fn(201, 2, |x, y| if y == 0 { (x * 77 % 201) as i32 } else { NONE });
+        assert_eq!(disparity_range(&map), Some((2, 198)));
+        assert_eq!(disparity_range(&DisparityMap::new(3, 1, vec![5, -7, 6]).unwrap()), Some((-7, 6)));
+        assert_eq!(disparity_range(&DisparityMap::filled(3, 1, NONE)), None);
+    }
+
+    #[test]
+    fn confidence_by_hand() {
+        let confidence = Plane::new(5, 1, vec![0.0, 0.5, 1.0, 2.0, f32::NAN]).unwrap();
+        assert_eq!(confidence_grey(&confidence).data(), [0, 128, 255, 255, 0]);
+    }
+}

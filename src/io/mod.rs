@@ -1,0 +1,89 @@
+//! Files in and out: pictures, disparity maps, calibrations, point clouds and figures.
+//!
+//! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes
+//! and its path, which is there to be named in errors. No header is believed: memory is reserved
+//! only for bytes that are really there, or up to [`MAX_PIXELS`] where a codec expands them.
+//!
+//! Picture codecs and whole-file writing come with the feature `cli`; PFM, calibrations, PLY and
+//! colour maps are always there.
+
+#[cfg(feature = "cli")]
+pub mod atomic;
+pub mod calibration;
+pub mod color;
+#[cfg(feature = "cli")]
+pub mod disparity_png;
+#[cfg(feature = "cli")]
+pub mod figure;
+#[cfg(feature = "cli")]
+mod jpeg;
+#[cfg(feature = "cli")]
+pub mod load;
+pub mod pfm;
+pub mod picture;
+pub mod ply;
+#[cfg(feature = "cli")]
+pub mod png;
+
+pub use calibration::Calibration;
+pub use picture::Picture;
+
+use std::{fs::File, io::Read, path::Path};
+
+use crate::error::{Error, Result};
+
+/// The most pixels of a picture or map that is read: 2^27, about 134 million.
+///
+/// A file of a few kilobytes can claim to hold any number of them.
+pub const MAX_PIXELS: u64 = 1 << 27;
+
+/// The bytes of a file, if there are any and at most `limit`.
+fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
+    let failed = |source| Error::Io { path: path.into(), source };
+    let mut bytes = Vec::new();
+    // The length that the system reports says nothing about pipes and devices, so it is not asked.
+    File::open(path).map_err(failed)?.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.is_empty() {
+        return Err(malformed(path, "the file is empty: it was not written, or not copied"));
+    }
+    if bytes.len() as u64 > limit {
+        return Err(malformed(path, format!("the file is longer than {limit} bytes, the most that is read")));
+    }
+    Ok(bytes)
+}
+
+/// Refuses a size that is empty or above [`MAX_PIXELS`].
+fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
+    if width == 0 || height == 0 {
+        return Err(malformed(path, format!("its size is {width}x{height}: there is nothing in it")));
+    }
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        let reason = format!("{width}x{height} pixels are more than the {MAX_PIXELS} that are read: scale it down");
+        return Err(malformed(path, reason));
+    }
+    Ok(())
+}
+
+fn malformed(path: &Path, reason: impl Into<String>) -> Error {
+    Error::Format { path: path.into(), reason: reason.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reading_names_what_is_wrong_with_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        assert!(
+            matches!(read_whole(&file, 9), Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound)
+        );
+        assert!(matches!(read_whole(folder.path(), 9), Err(Error::Io { .. })));
+        std::fs::write(&file, "").unwrap();
+        assert!(matches!(read_whole(&file, 9), Err(Error::Format { reason, .. }) if reason.contains("empty")));
+        std::fs::write(&file, "123456789").unwrap();
+        assert_eq!(read_whole(&file, 9).unwrap(), b"123456789");
+        assert!(matches!(read_whole(&file, 8), Err(Error::Format { reason, .. }) if reason.contains("8 bytes")));
+    }
+}

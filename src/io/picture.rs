@@ -1,0 +1,37 @@
+//! Colour pictures in memory.
+
+use crate::image::{Luma, Plane, luma};
+
+/// A colour picture: red, green, blue and alpha, 8 bits each. Alpha means nothing here.
+pub type Picture = Plane<[u8; 4]>;
+
+impl Picture {
+    /// Its bytes, four a pixel, row by row: what a GPU's `Rgba8Unorm` texture or buffer takes.
+    pub fn rgba(&self) -> &[u8] {
+        self.data().as_flattened()
+    }
+
+    /// The red, green and blue at `(x, y)`.
+    pub fn rgb(&self, x: u32, y: u32) -> [u8; 3] {
+        let [red, green, blue, _] = self.get(x, y);
+        [red, green, blue]
+    }
+
+    /// The grey picture that the kernels see.
+    pub fn luma(&self) -> Luma {
+        self.map(|&[red, green, blue, _]| luma([red, green, blue]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn luma_ignores_alpha() {
+        let picture = Picture::new(2, 1, vec![[10, 20, 30, 0], [255, 0, 0, 255]]).unwrap();
+        assert_eq!(picture.luma().data(), [18, 77]);
+        assert_eq!(picture.rgba(), [10, 20, 30, 0, 255, 0, 0, 255]);
+        assert_eq!(picture.rgb(0, 0), [10, 20, 30]);
+    }
+}

@@ -1,0 +1,109 @@
+//! Coloured point clouds as PLY, the Stanford polygon format.
+//!
+//! Points are in camera coordinates of the left view, in metres: x right, y down, z forward.
+//! Viewers that take y as up show them upside down; turn them by 180 degrees around x.
+
+use std::io::{self, Write};
+
+use super::{Calibration, Picture};
+use crate::{
+    error::{Error, Result},
+    image::Plane,
+};
+
+/// A point with its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// x (right), y (down) and z (forward) in metres.
+    pub position: [f32; 3],
+    /// Red, green and blue.
+    pub color: [u8; 3],
+}
+
+/// The points that a depth map and the picture it belongs to make, in raster order. Pixels without
+/// a depth make none.
+///
+/// # Errors
+/// [`Error::Parameter`] if the two differ in size.
+pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
+    if depth.size() != picture.size() {
+        return Err(Error::Parameter {
+            name: "the depth map",
+            value: format!("{}x{}", depth.width(), depth.height()),
+            expected: format!("its picture is {}x{}: both need one size", picture.width(), picture.height()),
+        });
+    }
+    let Calibration { focal, cx, cy, .. } = *calibration;
+    let mut points = Vec::new();
+    for y in 0..depth.height() {
+        for x in 0..depth.width() {
+            let z = depth.get(x, y);
+            if z.is_finite() {
+                let across = |pixel: u32, centre: f64| ((f64::from(pixel) - centre) * f64::from(z) / focal) as f32;
+                points.push(Point { position: [across(x, cx), across(y, cy), z], color: picture.rgb(x, y) });
+            }
+        }
+    }
+    Ok(points)
+}
+
+/// Writes `points` as a binary little-endian PLY.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(out: &mut impl Write, points: &[Point]) -> io::Result<()> {
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\n\
+         comment camera coordinates in metres: x right, y down, z forward\n\
+         element vertex {}\n\
+         property float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+        points.len()
+    )?;
+    for Point { position, color } in points {
+        for coordinate in position {
+            out.write_all(&coordinate.to_le_bytes())?;
+        }
+        out.write_all(color)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_by_hand() {
+        let depth = Plane::new(2, 2, vec![f32::INFINITY, 4.0, 2.0, f32::NAN]).unwrap();
+        let picture = Picture::from_fn(2, 2, |x, y| [x as u8, y as u8, 7, 255]);
+        let calibration = Calibration { focal: 8.0, baseline: 1.0, doffs: 0.0, cx: 0.0, cy: 0.5, size: None };
+        assert_eq!(
+            points(&depth, &picture, &calibration).unwrap(),
+            [
+                // (1 - 0) * 4 / 8, (0 - 0.5) * 4 / 8
+                Point { position: [0.5, -0.25, 4.0], color: [1, 0, 7] },
+                Point { position: [0.0, 0.125, 2.0], color: [0, 1, 7] },
+            ]
+        );
+    }
+
+    #[test]
+    fn sizes_must_agree() {
+        let calibration = Calibration::centred(1.0, 1.0, 0.0, (2, 1)).unwrap();
+        let error = points(&Plane::filled(2, 1, 1.0), &Picture::filled(1, 2, [0; 4]), &calibration).unwrap_err();
+        assert_eq!(error.to_string(), "the depth map is 2x1, but its picture is 1x2: both need one size");
+    }
+
+    #[test]
+    fn writes_exactly_these_bytes() {
+        let mut out = Vec::new();
+        write(&mut out, &[Point { position: [1.0, -2.0, 0.5], color: [1, 2, 3] }]).unwrap();
+        let (header, body) = out.split_at(out.len() - 15);
+        assert!(header.starts_with(b"ply\nformat binary_little_endian 1.0\n"));
+        assert!(header.ends_with(b"property uchar blue\nend_header\n"));
+        assert!(String::from_utf8_lossy(header).contains("\nelement vertex 1\n"));
+        assert_eq!(body, b"\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\x01\x02\x03");
+    }
+}

@@ -1,0 +1,366 @@
+//! Files in and out: round trips, and decoders that are given anything at all.
+
+#![cfg(feature = "cli")]
+
+mod allocation;
+
+use std::{io::Cursor, path::Path};
+
+use allocation::largest_allocation;
+use hsad::{
+    Error,
+    disparity::{DisparityMap, NONE},
+    image::Plane,
+    io::{Calibration, MAX_PIXELS, disparity_png, load, pfm, ply, png},
+};
+use image::{DynamicImage, ImageFormat};
+use proptest::prelude::*;
+
+const FORMATS: [ImageFormat; 6] =
+    [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
+
+/// A decoded picture's largest layout, with room for what a codec keeps beside it.
+const MAX_PICTURE_BYTES: usize = 9 * MAX_PIXELS as usize;
+
+fn path() -> &'static Path {
+    Path::new("given.bytes")
+}
+
+fn reason<T: std::fmt::Debug>(result: Result<T, Error>) -> String {
+    match result {
+        Err(Error::Format { path, reason }) if path == self::path() => reason,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    image.write_to(&mut Cursor::new(&mut bytes), format).unwrap();
+    bytes
+}
+
+/// 24x16 RGB, smooth enough for JPEG to keep it.
+fn photograph() -> DynamicImage {
+    let pixel = |x: u32, y: u32| image::Rgb([(x * 10) as u8, (y * 15) as u8, (200 - 3 * x - 5 * y) as u8]);
+    DynamicImage::ImageRgb8(image::RgbImage::from_fn(24, 16, pixel))
+}
+
+fn plane<T: std::fmt::Debug + Clone>(value: impl Strategy<Value = T>) -> impl Strategy<Value = Plane<T>> {
+    let value = proptest::collection::vec(value, 1..200);
+    (value, 1..20_u32).prop_map(|(mut data, width)| {
+        let width = width.min(data.len() as u32);
+        let height = data.len() as u32 / width;
+        data.truncate((width * height) as usize);
+        Plane::new(width, height, data).unwrap()
+    })
+}
+
+fn number_or_infinity() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => proptest::num::f32::NORMAL | proptest::num::f32::ZERO, 1 => Just(f32::INFINITY)]
+}
+
+/// A PFM by the format's description, independent of the library's writer.
+fn big_endian_pfm(plane: &Plane<f32>) -> Vec<u8> {
+    let mut bytes = format!("Pf\n{} {}\n1.0\n", plane.width(), plane.height()).into_bytes();
+    for y in (0..plane.height()).rev() {
+        bytes.extend((0..plane.width()).flat_map(|x| plane.get(x, y).to_be_bytes()));
+    }
+    bytes
+}
+
+/// `bytes` with some of them changed, and perhaps an end cut off.
+fn mutated(bytes: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
+    let length = bytes.len();
+    let changes = proptest::collection::vec((0..length, any::<u8>()), 0..6);
+    // Most of what steers a decoder stands at the front.
+    let header_changes = proptest::collection::vec((0..length.min(64), any::<u8>()), 0..3);
+    (changes, header_changes, prop_oneof![Just(length), 0..length]).prop_map(move |(changes, header_changes, end)| {
+        let mut bytes = bytes.clone();
+        for (index, value) in changes.into_iter().chain(header_changes) {
+            bytes[index] = value;
+        }
+        bytes.truncate(end);
+        bytes
+    })
+}
+
+proptest! {
+    #[test]
+    fn pfm_comes_back(plane in plane(number_or_infinity())) {
+        let mut little = Vec::new();
+        pfm::write(&mut little, &plane).unwrap();
+        prop_assert_eq!(&pfm::decode(&little, path()).unwrap(), &plane);
+        prop_assert_eq!(&pfm::decode(&big_endian_pfm(&plane), path()).unwrap(), &plane);
+    }
+
+    #[test]
+    fn ply_has_a_record_for_each_depth(depth in plane(prop_oneof![0.1..100.0_f32, Just(f32::INFINITY)])) {
+        let (width, height) = depth.size();
+        let picture = Plane::from_fn(width, height, |x, y| [x as u8, y as u8, 1, 255]);
+        let calibration = Calibration::centred(50.0, 0.1, 0.0, (width, height)).unwrap();
+        let points = ply::points(&depth, &picture, &calibration).unwrap();
+        prop_assert_eq!(points.len(), depth.data().iter().filter(|z| z.is_finite()).count());
+        let mut bytes = Vec::new();
+        ply::write(&mut bytes, &points).unwrap();
+        let end = b"end_header\n";
+        let header = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+        prop_assert_eq!(bytes.len(), header + 15 * points.len());
+        let count = format!("element vertex {}\n", points.len());
+        prop_assert!(String::from_utf8_lossy(&bytes[..header]).contains(&count));
+    }
+
+    #[test]
+    fn pfm_of_random_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        check_pfm(&bytes)?;
+        check_pfm(&[b"Pf\n", &bytes[..]].concat())?;
+    }
+
+    #[test]
+    fn pfm_of_mutated_bytes(bytes in mutated(big_endian_pfm(&Plane::from_fn(5, 4, |x, y| (x + y) as f32)))) {
+        check_pfm(&bytes)?;
+    }
+
+    #[test]
+    fn pfm_of_claimed_sizes(width in any::<u32>(), height in any::<u32>(), rest in any::<[u8; 16]>()) {
+        let header = format!("Pf {width} {height} -1\n").into_bytes();
+        check_pfm(&[header, rest.to_vec()].concat())?;
+    }
+
+    #[test]
+    fn calibration_of_random_text(text in "\\PC{0,200}", lines in "((cam[01]|doffs|baseline|width)=?[-0-9.eENainf;\\[\\] ]{0,40}\n){0,8}") {
+        for text in [text, lines] {
+            if let Ok(calibration) = Calibration::parse(&text, path()) {
+                prop_assert!(calibration.validate().is_ok(), "{:?}", calibration);
+            }
+        }
+    }
+}
+
+fn check_pfm(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let (result, allocated) = largest_allocation(|| pfm::decode(bytes, path()));
+    prop_assert!(allocated <= 2 * bytes.len() + 1024, "{} bytes reserved for {}", allocated, bytes.len());
+    if let Ok(plane) = result {
+        prop_assert!(plane.data().iter().all(|&value| value.is_finite() || value == f32::INFINITY));
+    }
+    Ok(())
+}
+
+proptest! {
+    // Each case writes a file, or decodes a picture in six formats.
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn disparity_png_comes_back(map in plane(prop_oneof![1..65536_i32, Just(NONE)])) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("map.png");
+        prop_assert_eq!(disparity_png::write(&file, &map).unwrap().total(), 0);
+        prop_assert_eq!(disparity_png::read(&file).unwrap(), map);
+    }
+
+    #[test]
+    fn png_comes_back(picture in plane(any::<[u8; 3]>())) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("picture.png");
+        png::write_rgb8(&file, &picture).unwrap();
+        prop_assert_eq!(load::load(&file).unwrap(), picture.map(|&[r, g, b]| [r, g, b, 255]));
+        let grey = picture.map(|&[r, _, _]| r);
+        png::write_grey8(&file, &grey).unwrap();
+        prop_assert_eq!(load::load(&file).unwrap().luma(), grey);
+    }
+
+    #[test]
+    fn pictures_of_random_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        for format in FORMATS {
+            let magic = &encoded(&photograph(), format)[..12];
+            check_picture(&[magic, &bytes].concat())?;
+        }
+        check_picture(&bytes)?;
+    }
+
+    #[test]
+    fn pictures_of_mutated_bytes(files in FORMATS.map(|format| mutated(encoded(&photograph(), format)))) {
+        for bytes in files {
+            check_picture(&bytes)?;
+        }
+    }
+}
+
+fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let (result, allocated) = largest_allocation(|| load::decode(bytes, path()));
+    prop_assert!(allocated <= MAX_PICTURE_BYTES, "{} bytes reserved", allocated);
+    if let Ok(picture) = result {
+        prop_assert!(picture.data().iter().all(|pixel| pixel[3] == 255));
+    }
+    // Both read the same files, but only one of them 16-bit grey.
+    let _ = disparity_png::decode(bytes, path());
+    Ok(())
+}
+
+#[test]
+fn every_format_is_read() {
+    let expected = photograph().to_rgba8().into_raw();
+    for format in FORMATS {
+        let picture = load::decode(&encoded(&photograph(), format), path()).unwrap();
+        assert_eq!(picture.size(), (24, 16), "{format:?}");
+        let worst = picture.rgba().iter().zip(&expected).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(if format == ImageFormat::Jpeg { worst < 12 } else { worst == 0 }, "{format:?} is off by {worst}");
+    }
+}
+
+#[test]
+fn every_layout_is_read() {
+    // 257 * v is v as 16 bits; 0x12ff shows that the lower byte is dropped.
+    let sixteen = [257 * 200, 0x12ff, 257 * 7, 0];
+    let rgba = image::Rgba(sixteen);
+    let pixel = [200, 0x12, 7, 255];
+    let grey = [200, 200, 200, 255];
+    for (image, expected) in [
+        (DynamicImage::ImageLuma8(image::GrayImage::from_pixel(2, 1, image::Luma([200]))), grey),
+        (DynamicImage::ImageLumaA8(image::GrayAlphaImage::from_pixel(2, 1, image::LumaA([200, 0]))), grey),
+        (DynamicImage::ImageRgb8(image::RgbImage::from_pixel(2, 1, image::Rgb([200, 0x12, 7]))), pixel),
+        (DynamicImage::ImageRgba8(image::RgbaImage::from_pixel(2, 1, image::Rgba([200, 0x12, 7, 0]))), pixel),
+        (DynamicImage::ImageLuma16(image::ImageBuffer::from_pixel(2, 1, image::Luma([0xc8ff]))), grey),
+        (DynamicImage::ImageLumaA16(image::ImageBuffer::from_pixel(2, 1, image::LumaA([0xc8ff, 9]))), grey),
+        (
+            DynamicImage::ImageRgb16(image::ImageBuffer::from_pixel(
+                2,
+                1,
+                image::Rgb([sixteen[0], sixteen[1], sixteen[2]]),
+            )),
+            pixel,
+        ),
+        (DynamicImage::ImageRgba16(image::ImageBuffer::from_pixel(2, 1, rgba)), pixel),
+    ] {
+        let picture = load::decode(&encoded(&image, ImageFormat::Png), path()).unwrap();
+        assert_eq!(picture.data(), [expected; 2], "{:?}", image.color());
+    }
+}
+
+#[test]
+fn tiny_pnm_by_hand() {
+    let picture = load::decode(b"P6\n2 1\n255\n\x01\x02\x03\xff\xfe\xfd", path()).unwrap();
+    assert_eq!(picture.data(), [[1, 2, 3, 255], [255, 254, 253, 255]]);
+    let bits = load::decode(b"P1\n2 1\n1 0\n", path()).unwrap();
+    assert_eq!(bits.luma().data(), [0, 255]);
+}
+
+#[test]
+fn a_picture_that_is_cut_off_is_refused() {
+    for format in FORMATS {
+        let bytes = encoded(&photograph(), format);
+        for length in (1..=bytes.len() * 3 / 4).step_by(7) {
+            let reason = reason(load::decode(&bytes[..length], path()));
+            assert!(!reason.is_empty(), "{format:?} of {length} bytes");
+        }
+        let half = reason(load::decode(&bytes[..bytes.len() / 2], path()));
+        assert!(half.contains("again"), "{format:?}: {half}");
+    }
+}
+
+#[test]
+fn what_is_no_picture_is_told() {
+    assert!(reason(load::decode(b"Dear reader,", path())).contains("PNG, JPEG, PNM, BMP, TIFF and WebP"));
+    assert!(reason(load::decode(b"GIF89a\x01\0\x01\0\0\0\0;", path())).contains("convert the picture to PNG"));
+    let empty = reason(load::decode(b"P5\n0 7\n255\n", path()));
+    assert!(empty.contains("0x7") || empty.contains("damaged"), "{empty}");
+}
+
+#[test]
+fn floats_and_cmyk_are_refused() {
+    let floats = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5; 3])));
+    let reason_floats = reason(load::decode(&encoded(&floats, ImageFormat::Tiff), path()));
+    assert!(reason_floats.contains("floating-point values: convert it"), "{reason_floats}");
+    let reason_cmyk = reason(load::decode(&cmyk_tiff(), path()));
+    assert!(reason_cmyk.contains("CMYK: convert it"), "{reason_cmyk}");
+}
+
+/// A TIFF of one CMYK pixel: header, directory of ten entries, bits of each sample, the pixel.
+fn cmyk_tiff() -> Vec<u8> {
+    let bits_at = 8 + 2 + 9 * 12 + 4;
+    let entries: [(u16, u16, u32, u32); 9] = [
+        (256, 3, 1, 1),
+        (257, 3, 1, 1),
+        (258, 3, 4, bits_at),
+        (259, 3, 1, 1),
+        // Photometric interpretation: separated.
+        (262, 3, 1, 5),
+        (273, 4, 1, bits_at + 8),
+        (277, 3, 1, 4),
+        (278, 3, 1, 1),
+        (279, 4, 1, 4),
+    ];
+    let mut bytes = b"II*\0\x08\0\0\0\x09\0".to_vec();
+    for (tag, kind, count, value) in entries {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend(kind.to_le_bytes());
+        bytes.extend(count.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0, 0, 0, 0, 8, 0, 8, 0, 8, 0, 8, 0, 10, 20, 30, 40]);
+    bytes
+}
+
+#[test]
+fn a_decompression_bomb_is_refused_by_its_header() {
+    let mut bytes = encoded(&photograph(), ImageFormat::Bmp);
+    // Width and height of a BMP.
+    bytes[18..22].copy_from_slice(&60_000_u32.to_le_bytes());
+    bytes[22..26].copy_from_slice(&60_000_u32.to_le_bytes());
+    let (result, allocated) = largest_allocation(|| load::decode(&bytes, path()));
+    assert!(reason(result).contains("60000x60000 pixels are more than"));
+    assert!(allocated < 1 << 20, "{allocated} bytes reserved");
+    assert!(reason(load::decode(b"P5\n100000 100000\n255\n1", path())).contains("scale it down"));
+}
+
+#[test]
+fn exif_orientation_is_applied() {
+    // A TIFF directory with one entry: orientation (0x112), a short, 6 = to be turned clockwise.
+    let exif = b"Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
+    let mut bytes = encoded(&photograph(), ImageFormat::Jpeg);
+    let segment = [&[0xff, 0xe1], &(exif.len() as u16 + 2).to_be_bytes()[..], exif].concat();
+    let upright = load::decode(&bytes, path()).unwrap();
+    bytes.splice(2..2, segment);
+    let turned = load::decode(&bytes, path()).unwrap();
+    assert_eq!(turned, Plane::from_fn(16, 24, |x, y| upright.get(y, 15 - x)));
+}
+
+#[test]
+fn the_file_is_named_in_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    for file in [folder.path().join("missing.png"), folder.path().into()] {
+        let error = load::load(&file).unwrap_err();
+        assert!(matches!(&error, Error::Io { path, .. } if *path == file), "{error}");
+        assert!(error.to_string().starts_with(&file.display().to_string()));
+        assert!(matches!(pfm::read(&file), Err(Error::Io { path, .. }) if path == file));
+        assert!(matches!(Calibration::read(&file), Err(Error::Io { path, .. }) if path == file));
+    }
+    let empty = folder.path().join("empty.png");
+    std::fs::write(&empty, "").unwrap();
+    assert!(load::load(&empty).unwrap_err().to_string().contains("the file is empty"));
+}
+
+#[test]
+fn lost_disparities_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("map.png");
+    let map = DisparityMap::new(5, 1, vec![-256, 0, 256, 256 * 256, NONE]).unwrap();
+    let lost = disparity_png::write(&file, &map).unwrap();
+    assert_eq!((lost.negative, lost.too_large), (1, 1));
+    assert_eq!(disparity_png::read(&file).unwrap().data(), [NONE, 1, 256, NONE, NONE]);
+}
+
+#[test]
+fn real_maps_are_read() {
+    let folder = Path::new("/work/shared/data/stereo/Motorcycle_Q");
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is not there", folder.display());
+        return;
+    }
+    let map = pfm::read_disparities(&folder.join("disp_left.pfm")).unwrap();
+    assert_eq!(map.size(), load::load(&folder.join("left.png")).unwrap().size());
+    // From the scene's meta.json: 97.91 % known, 9.178 to 62.877 px.
+    assert!((hsad::disparity::coverage(&map) - 0.9791).abs() < 1e-4);
+    let known = || map.data().iter().filter(|&&d| d != NONE).map(|&d| f64::from(d) / 256.0);
+    let (smallest, largest) = (known().fold(f64::MAX, f64::min), known().fold(f64::MIN, f64::max));
+    assert!((smallest - 9.178).abs() < 0.003 && (largest - 62.877).abs() < 0.003, "{smallest} {largest}");
+}
