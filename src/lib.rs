@@ -5,6 +5,14 @@ pub mod error;
 pub mod features;
 pub mod gpu;
 pub mod image;
+pub mod luma;
 
 pub use error::{Error, Result};
 pub use wgpu;
+
+/// Every stage there is, for checks that need no GPU.
+pub fn stages() -> Vec<gpu::Stage> {
+    let mut stages = vec![luma::stage()];
+    stages.extend(features::stages());
+    stages
+}

@@ -1,0 +1,61 @@
+//! The 64 values that describe each keypoint's surroundings (Agrawal et al., ECCV 2008, section
+//! 3.3: M-SURF).
+
+use super::{
+    DESCRIPTOR_LENGTH,
+    keypoints::{DISPATCH_WIDTH, PARAMS, Params},
+};
+use crate::{
+    error::Result,
+    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+};
+
+/// The stage.
+pub fn stage() -> Stage {
+    Stage {
+        name: "descriptor",
+        source: concat!(include_str!("../../shaders/haar.wgsl"), include_str!("../../shaders/descriptor.wgsl")),
+        bindings: &[PARAMS, Binding::Read, Binding::Read, Binding::Read, Binding::Write],
+        constants: vec![("DISPATCH_WIDTH", DISPATCH_WIDTH.into())],
+    }
+}
+
+/// The descriptors of one keypoint list.
+pub struct Descriptor {
+    kernel: Kernel,
+    bind_group: wgpu::BindGroup,
+    descriptors: wgpu::Buffer,
+}
+
+impl Descriptor {
+    /// Reads the `integral` image of a picture, the `list` of its keypoints (with room for
+    /// `capacity`) and their `orientations`.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device cannot bind so many descriptors.
+    pub fn new(
+        device: &wgpu::Device,
+        integral: &wgpu::Buffer,
+        list: &wgpu::Buffer,
+        orientations: &wgpu::Buffer,
+        size: (u32, u32),
+        capacity: u32,
+    ) -> Result<Self> {
+        let kernel = Kernel::new(device, &stage());
+        let params = uniform_buffer(device, "picture size", &Params { width: size.0, height: size.1 });
+        let bytes = u64::from(capacity) * size_of::<[f32; DESCRIPTOR_LENGTH]>() as u64;
+        let descriptors = storage_buffer(device, "descriptors", bytes)?;
+        let bind_group = kernel.bind(device, &[&params, integral, list, orientations, &descriptors]);
+        Ok(Self { kernel, bind_group, descriptors })
+    }
+
+    /// Records a workgroup for each keypoint; `groups` says how many (see [`super::dispatch`]).
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, groups: &wgpu::Buffer) {
+        self.kernel.record_indirect(encoder, &self.bind_group, groups);
+    }
+
+    /// [`DESCRIPTOR_LENGTH`] values a keypoint, in the list's order.
+    pub fn descriptors(&self) -> &wgpu::Buffer {
+        &self.descriptors
+    }
+}
