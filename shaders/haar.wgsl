@@ -24,9 +24,14 @@ struct KeypointList {
 @group(0) @binding(1) var<storage, read> integral: array<u32>;
 @group(0) @binding(2) var<storage, read> list: KeypointList;
 
-// Pixels to 1/16 px.
-fn sixteenths(pixels: f32) -> i32 {
-    return i32(floor(pixels * 16.0 + 0.5));
+// To the nearest whole number.
+fn whole(value: f32) -> i32 {
+    return i32(floor(value + 0.5));
+}
+
+// A position in pixels, whose centres are whole numbers, in 1/16 px from the picture's corner.
+fn from_corner(pixels: f32) -> i32 {
+    return whole(16.0 * pixels) + 8;
 }
 
 // 256 times the sum of the grey values left of and above a point in 1/16 px, where pixels are unit
@@ -46,26 +51,34 @@ fn area(x: i32, y: i32) -> u32 {
     return (16u - fy) * upper + fy * lower;
 }
 
-// Right minus left half, and lower minus upper half, of the square of side 2 * `radius` around a
-// point, both in 1/16 px; the point in pixels, whose centres are whole numbers. The result is in
-// grey levels, independent of the square's size.
-fn haar(x: f32, y: f32, radius: i32) -> vec2f {
-    let cx = sixteenths(x) + 8;
-    let cy = sixteenths(y) + 8;
-    let x0 = cx - radius;
-    let x1 = cx + radius;
-    let y0 = cy - radius;
-    let y1 = cy + radius;
-    let upper_left = area(x0, y0);
-    let upper = area(cx, y0);
-    let upper_right = area(x1, y0);
-    let left = area(x0, cy);
-    let right = area(x1, cy);
-    let lower_left = area(x0, y1);
-    let lower = area(cx, y1);
-    let lower_right = area(x1, y1);
-    let all = lower_right - lower_left - upper_right + upper_left;
-    let left_half = lower - lower_left - upper + upper_left;
-    let upper_half = right - left - upper_right + upper_left;
-    return vec2f(vec2i(bitcast<i32>(all - 2u * left_half), bitcast<i32>(all - 2u * upper_half))) / f32(radius * radius);
+// `area` at the corners and in the middle of the edges of a square.
+struct Ring {
+    upper: vec3u,
+    left: u32,
+    right: u32,
+    lower: vec3u,
+}
+
+// Right minus left half, and lower minus upper half, of a square of side 2 * `radius` in 1/16 px.
+// In grey levels, independent of the square's size.
+fn halves(ring: Ring, radius: i32) -> vec2f {
+    let all = ring.lower.z - ring.lower.x - ring.upper.z + ring.upper.x;
+    let left_half = ring.lower.y - ring.lower.x - ring.upper.y + ring.upper.x;
+    let upper_half = ring.right - ring.left - ring.upper.z + ring.upper.x;
+    return vec2f(bitcast<vec2i>(all - 2u * vec2u(left_half, upper_half))) / f32(radius * radius);
+}
+
+// `halves` of the square around (x, y), in 1/16 px from the picture's corner.
+fn haar(x: i32, y: i32, radius: i32) -> vec2f {
+    let x0 = x - radius;
+    let x1 = x + radius;
+    let y0 = y - radius;
+    let y1 = y + radius;
+    let ring = Ring(
+        vec3u(area(x0, y0), area(x, y0), area(x1, y0)),
+        area(x0, y),
+        area(x1, y),
+        vec3u(area(x0, y1), area(x, y1), area(x1, y1)),
+    );
+    return halves(ring, radius);
 }

@@ -38,7 +38,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
 
     let keypoint = list.keypoints[n];
     let s = keypoint.scale;
-    let radius = sixteenths(2.0 * s);
+    let radius = whole(16.0 * 2.0 * s);
     // The disc of radius 6 in the square of side 11.
     for (var sample = local; sample < 121u; sample += WORKGROUP) {
         let i = f32(sample % 11u) - 5.0;
@@ -46,7 +46,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
         let distance = i * i + j * j;
         if distance < 36.0 {
             let weight = exp(-distance / (2.0 * 2.5 * 2.5));
-            let response = weight * haar(keypoint.x + i * s, keypoint.y + j * s, radius);
+            let response = weight * haar(from_corner(keypoint.x + i * s), from_corner(keypoint.y + j * s), radius);
             if any(response != vec2f(0.0)) {
                 let bin = bin_of(response);
                 let fixed = vec2i(round(response * FIXED_POINT));

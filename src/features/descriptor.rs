@@ -10,13 +10,33 @@ use crate::{
     gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
 };
 
-/// The stage.
-pub fn stage() -> Stage {
+const CONSTANTS: [(&str, i64); 1] = [("DISPATCH_WIDTH", DISPATCH_WIDTH as i64)];
+
+/// The stage for keypoints with an orientation.
+pub fn turned_stage() -> Stage {
     Stage {
-        name: "descriptor",
-        source: concat!(include_str!("../../shaders/haar.wgsl"), include_str!("../../shaders/descriptor.wgsl")),
+        name: "descriptor_turned",
+        source: concat!(
+            include_str!("../../shaders/haar.wgsl"),
+            include_str!("../../shaders/descriptor.wgsl"),
+            include_str!("../../shaders/descriptor_turned.wgsl")
+        ),
         bindings: &[PARAMS, Binding::Read, Binding::Read, Binding::Read, Binding::Write],
-        constants: vec![("DISPATCH_WIDTH", DISPATCH_WIDTH.into())],
+        constants: CONSTANTS.into(),
+    }
+}
+
+/// The stage for keypoints whose orientation is 0.
+pub fn upright_stage() -> Stage {
+    Stage {
+        name: "descriptor_upright",
+        source: concat!(
+            include_str!("../../shaders/haar.wgsl"),
+            include_str!("../../shaders/descriptor.wgsl"),
+            include_str!("../../shaders/descriptor_upright.wgsl")
+        ),
+        bindings: &[PARAMS, Binding::Read, Binding::Read, Binding::Write],
+        constants: CONSTANTS.into(),
     }
 }
 
@@ -29,7 +49,7 @@ pub struct Descriptor {
 
 impl Descriptor {
     /// Reads the `integral` image of a picture, the `list` of its keypoints (with room for
-    /// `capacity`) and their `orientations`.
+    /// `capacity`) and, unless all are 0, their `orientations`.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind so many descriptors.
@@ -37,15 +57,22 @@ impl Descriptor {
         device: &wgpu::Device,
         integral: &wgpu::Buffer,
         list: &wgpu::Buffer,
-        orientations: &wgpu::Buffer,
+        orientations: Option<&wgpu::Buffer>,
         size: (u32, u32),
         capacity: u32,
     ) -> Result<Self> {
-        let kernel = Kernel::new(device, &stage());
         let params = uniform_buffer(device, "picture size", &Params { width: size.0, height: size.1 });
         let bytes = u64::from(capacity) * size_of::<[f32; DESCRIPTOR_LENGTH]>() as u64;
         let descriptors = storage_buffer(device, "descriptors", bytes)?;
-        let bind_group = kernel.bind(device, &[&params, integral, list, orientations, &descriptors]);
+        let (kernel, bind_group) = if let Some(orientations) = orientations {
+            let kernel = Kernel::new(device, &turned_stage());
+            let bind_group = kernel.bind(device, &[&params, integral, list, orientations, &descriptors]);
+            (kernel, bind_group)
+        } else {
+            let kernel = Kernel::new(device, &upright_stage());
+            let bind_group = kernel.bind(device, &[&params, integral, list, &descriptors]);
+            (kernel, bind_group)
+        };
         Ok(Self { kernel, bind_group, descriptors })
     }
 

@@ -8,7 +8,7 @@ use super::{
     integral::Integral,
     keypoints::{HEADER_BYTES, Keypoint, list_bytes},
     nonmax::Nonmax,
-    orientation::{Orientation, orientation_buffer},
+    orientation::Orientation,
 };
 use crate::{
     error::{Error, Result},
@@ -25,7 +25,6 @@ pub struct Detector {
     dispatch: Dispatch,
     /// None in upright mode.
     orientation: Option<Orientation>,
-    orientations: wgpu::Buffer,
     descriptor: Descriptor,
     /// How many keypoints there are.
     count: Readback,
@@ -55,18 +54,25 @@ impl Detector {
             let nonmax = Nonmax::new(device, &hessian, width, height, config)?;
             let dispatch = Dispatch::new(device, nonmax.list());
             let capacity = config.max_features;
-            let orientations = orientation_buffer(device, capacity)?;
-            let orientation = (!config.upright)
-                .then(|| Orientation::new(device, integral.integral(), nonmax.list(), &orientations, width, height));
-            let descriptor =
-                Descriptor::new(device, integral.integral(), nonmax.list(), &orientations, (width, height), capacity)?;
+            let orientation = if config.upright {
+                None
+            } else {
+                Some(Orientation::new(device, integral.integral(), nonmax.list(), (width, height), capacity)?)
+            };
+            let descriptor = Descriptor::new(
+                device,
+                integral.integral(),
+                nonmax.list(),
+                orientation.as_ref().map(Orientation::orientations),
+                (width, height),
+                capacity,
+            )?;
             Ok(Self {
                 integral,
                 hessian,
                 nonmax,
                 dispatch,
                 orientation,
-                orientations,
                 descriptor,
                 count: Readback::new(device, "number of keypoints", HEADER_BYTES),
                 max_features: capacity,
@@ -103,18 +109,25 @@ impl Detector {
             return Ok(Vec::new());
         }
         let found = found as usize;
+        let bytes = |each: usize| (found * each) as u64;
         let list = Readback::new(device, "keypoints", list_bytes(found as u32));
-        let orientations = Readback::new(device, "orientations", (found * size_of::<f32>()) as u64);
-        let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
+        let descriptors = Readback::new(device, "descriptors", bytes(size_of::<Values>()));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
         list.record(&mut encoder, self.nonmax.list());
-        orientations.record(&mut encoder, &self.orientations);
         descriptors.record(&mut encoder, self.descriptor.descriptors());
+        let orientations = self.orientation.as_ref().map(|orientation| {
+            let readback = Readback::new(device, "orientations", bytes(size_of::<f32>()));
+            readback.record(&mut encoder, orientation.orientations());
+            readback
+        });
         queue.submit([encoder.finish()]);
         let list = list.read::<u8>(device, list_bytes(found as u32) as usize)?;
         let keypoints = bytemuck::pod_collect_to_vec::<u8, Keypoint>(&list[HEADER_BYTES as usize..]);
-        let orientations = orientations.read::<f32>(device, found)?;
         let descriptors = descriptors.read::<Values>(device, found)?;
+        let orientations = match orientations {
+            Some(readback) => readback.read::<f32>(device, found)?,
+            None => vec![0.0; found],
+        };
 
         let mut order: Vec<_> = (0..found).collect();
         order.sort_unstable_by_key(|&i| keypoints[i].key());

@@ -30,6 +30,7 @@ pub fn stages() -> Vec<Stage> {
         nonmax::stage(),
         dispatch::stage(),
         orientation::stage(),
-        descriptor::stage(),
+        descriptor::turned_stage(),
+        descriptor::upright_stage(),
     ]
 }

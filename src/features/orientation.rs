@@ -26,40 +26,40 @@ pub fn stage() -> Stage {
     }
 }
 
-/// A buffer for the orientations of `capacity` keypoints: radians as `f32`, in the list's order,
-/// all 0 at first.
-///
-/// # Errors
-/// [`crate::Error::TooLarge`] where the device could not bind it.
-pub fn orientation_buffer(device: &wgpu::Device, capacity: u32) -> Result<wgpu::Buffer> {
-    storage_buffer(device, "orientations", 4 * u64::from(capacity))
-}
-
 /// The orientations of one keypoint list.
 pub struct Orientation {
     kernel: Kernel,
     bind_group: wgpu::BindGroup,
+    orientations: wgpu::Buffer,
 }
 
 impl Orientation {
-    /// Reads the `integral` image of a picture and the `list` of its keypoints, and writes
-    /// `orientations` (see [`orientation_buffer`]).
+    /// Reads the `integral` image of a picture and the `list` of its keypoints (with room for
+    /// `capacity`).
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device cannot bind so many orientations.
     pub fn new(
         device: &wgpu::Device,
         integral: &wgpu::Buffer,
         list: &wgpu::Buffer,
-        orientations: &wgpu::Buffer,
-        width: u32,
-        height: u32,
-    ) -> Self {
+        size: (u32, u32),
+        capacity: u32,
+    ) -> Result<Self> {
         let kernel = Kernel::new(device, &stage());
-        let params = uniform_buffer(device, "picture size", &Params { width, height });
-        let bind_group = kernel.bind(device, &[&params, integral, list, orientations]);
-        Self { kernel, bind_group }
+        let params = uniform_buffer(device, "picture size", &Params { width: size.0, height: size.1 });
+        let orientations = storage_buffer(device, "orientations", 4 * u64::from(capacity))?;
+        let bind_group = kernel.bind(device, &[&params, integral, list, &orientations]);
+        Ok(Self { kernel, bind_group, orientations })
     }
 
     /// Records a workgroup for each keypoint; `groups` says how many (see [`super::dispatch`]).
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, groups: &wgpu::Buffer) {
         self.kernel.record_indirect(encoder, &self.bind_group, groups);
+    }
+
+    /// Radians as `f32`, 0 to 2 pi, in the list's order.
+    pub fn orientations(&self) -> &wgpu::Buffer {
+        &self.orientations
     }
 }

@@ -69,7 +69,7 @@ fn every_layer_sees_a_pixel_in_its_middle() {
     for (layer, side) in [9_i32, 15, 21, 27].into_iter().enumerate() {
         let normalised = (f64::from(-510 * 256) / f64::from(side * side)).round() as i32;
         let at = layer * 387 * 387 + 193 * 387 + 193;
-        assert_eq!(all[0][at], normalised * normalised << 1, "side {side}");
+        assert_eq!(all[0][at], (normalised * normalised) << 1, "side {side}");
     }
 }
 

@@ -5,7 +5,7 @@ use hsad::{
         dispatch::Dispatch,
         integral::Integral,
         keypoints::{Keypoint, list_buffer},
-        orientation::{Orientation, orientation_buffer},
+        orientation::Orientation,
     },
     image::Luma,
 };
@@ -23,15 +23,14 @@ fn orientations(picture: &Luma, points: &[[f32; 3]]) -> Vec<f32> {
     keypoints.for_each(|keypoint| bytes.extend(bytemuck::bytes_of(&keypoint)));
     write(&list, &bytes);
     let dispatch = Dispatch::new(device, &list);
-    let angles = orientation_buffer(device, points.len() as u32).unwrap();
-    poison(&angles);
-    let stage = Orientation::new(device, integral.integral(), &list, &angles, width, height);
+    let stage = Orientation::new(device, integral.integral(), &list, (width, height), points.len() as u32).unwrap();
+    poison(stage.orientations());
     run(|encoder| {
         integral.record(encoder);
         dispatch.record(encoder);
         stage.record(encoder, dispatch.groups());
     });
-    download(&angles)
+    download(stage.orientations())
 }
 
 #[test]
