@@ -7,7 +7,16 @@ pub mod features;
 pub mod gpu;
 pub mod image;
 pub mod io;
+pub mod luma;
 pub mod reference;
 
 pub use error::{Error, Result};
 pub use wgpu;
+
+/// Every stage there is, for checks that need no GPU.
+pub fn stages() -> Vec<gpu::Stage> {
+    let mut stages = vec![luma::stage()];
+    stages.extend(features::stages());
+    stages.extend(dense::stages());
+    stages
+}

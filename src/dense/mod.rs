@@ -14,3 +14,14 @@ pub use config::{DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::Pad;
+
+/// Every stage of the dense half, for checks that need no GPU; block matching once for each window.
+pub fn stages() -> Vec<crate::gpu::Stage> {
+    let mut stages = vec![Pad::stage(), Consistency::stage()];
+    for window in (3..=31).step_by(2) {
+        stages.push(BlockMatch::stage(&DenseConfig { window, ..DenseConfig::new(SOME_RANGE) }));
+    }
+    stages
+}
+
+const SOME_RANGE: crate::disparity::DisparityRange = crate::disparity::DisparityRange { min: 0, count: 1 };

@@ -113,12 +113,26 @@ impl Kernel {
 
     /// Records one dispatch of `groups` workgroups, in a pass of its own.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, groups: [u32; 3]) {
+        let [x, y, z] = groups;
+        self.pass(encoder, bind_group).dispatch_workgroups(x, y, z);
+    }
+
+    /// Records one dispatch of as many workgroups as `groups` will hold when the device gets there.
+    pub(crate) fn record_indirect(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bind_group: &wgpu::BindGroup,
+        groups: &wgpu::Buffer,
+    ) {
+        self.pass(encoder, bind_group).dispatch_workgroups_indirect(groups, 0);
+    }
+
+    fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup) -> wgpu::ComputePass<'e> {
         let mut pass =
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bind_group, &[]);
-        let [x, y, z] = groups;
-        pass.dispatch_workgroups(x, y, z);
+        pass
     }
 }
 

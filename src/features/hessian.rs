@@ -1,0 +1,192 @@
+//! The determinant of the Hessian, by box filters of growing size over the integral image (Bay et
+//! al. 2008, section 3.2).
+
+use super::FeatureConfig;
+use crate::{
+    error::Result,
+    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+};
+
+/// Layers of an octave.
+pub const LAYERS: u32 = 4;
+
+/// Filter sides in pixels: four layers in each of five octaves (Bay et al. 2008, figure 8).
+pub const FILTER_SIZES: [[u32; LAYERS as usize]; 5] =
+    [[9, 15, 21, 27], [15, 27, 39, 51], [27, 51, 75, 99], [51, 99, 147, 195], [99, 195, 291, 387]];
+
+/// The determinant that OpenSURF would call 1: it works on grey values 0 to 1, the kernels on
+/// 1/256 grey level, and both factors of a determinant carry that scale.
+pub const DETERMINANT_SCALE: f64 = (256.0 * 255.0) * (256.0 * 255.0);
+
+/// Bay et al.'s 0.9, by which Dxy is weighted so that box filters balance as Gaussians do.
+const XY_WEIGHT: f64 = 0.9;
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// The points at which an octave's filters are centred: every `step` pixels from pixel 0 on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    /// Distance of neighbouring points in pixels.
+    pub step: u32,
+    /// Columns of points.
+    pub width: u32,
+    /// Rows of points.
+    pub height: u32,
+}
+
+impl Grid {
+    /// The grid of `octave` in a picture, where that of octave 0 has the given step.
+    pub fn new(width: u32, height: u32, step: u32, octave: u32) -> Self {
+        let step = step << octave;
+        Self { step, width: width.div_ceil(step), height: height.div_ceil(step) }
+    }
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Layer {
+    lobe: u32,
+    scale_xx: f32,
+    scale_xy: f32,
+    padding: u32,
+}
+
+impl Layer {
+    fn new(size: u32) -> Self {
+        let scale = 256.0 / f64::from(size * size);
+        Self { lobe: size / 3, scale_xx: scale as f32, scale_xy: (XY_WEIGHT * scale) as f32, padding: 0 }
+    }
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Params {
+    width: u32,
+    height: u32,
+    step: u32,
+    grid_width: u32,
+    grid_height: u32,
+    padding: [u32; 3],
+    layers: [Layer; LAYERS as usize],
+}
+
+/// The stage, for threads of `tile * tile` responses: 2 where the grid has a point for every
+/// pixel, 1 elsewhere.
+pub fn stage(tile: u32) -> Stage {
+    Stage {
+        name: "hessian",
+        source: include_str!("../../shaders/hessian.wgsl"),
+        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        constants: vec![
+            ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+            ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+            ("TILE", tile.into()),
+        ],
+    }
+}
+
+struct Octave {
+    tile: u32,
+    bind_group: wgpu::BindGroup,
+    groups: [u32; 3],
+    responses: wgpu::Buffer,
+}
+
+/// The responses of all octaves for pictures of one size.
+pub struct Hessian {
+    /// For tiles of 1 and of 2, where an octave uses them.
+    kernels: [Option<Kernel>; 2],
+    octaves: Vec<Octave>,
+}
+
+impl Hessian {
+    /// Reads the `integral` image.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device cannot bind an octave's responses.
+    pub fn new(
+        device: &wgpu::Device,
+        integral: &wgpu::Buffer,
+        width: u32,
+        height: u32,
+        config: &FeatureConfig,
+    ) -> Result<Self> {
+        let mut kernels = [None, None];
+        let octaves = (0..config.octaves).map(|octave| {
+            let sizes = FILTER_SIZES[octave as usize];
+            let grid = Grid::new(width, height, config.step, octave);
+            let tile = if grid.step == 1 { 2 } else { 1 };
+            let kernel = kernels[tile as usize - 1].get_or_insert_with(|| Kernel::new(device, &stage(tile)));
+            let params = Params {
+                width,
+                height,
+                step: grid.step,
+                grid_width: grid.width,
+                grid_height: grid.height,
+                padding: [0; 3],
+                layers: sizes.map(Layer::new),
+            };
+            let params = uniform_buffer(device, "octave", &params);
+            let bytes = 4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height);
+            let responses = storage_buffer(device, "responses of an octave", bytes)?;
+            let bind_group = kernel.bind(device, &[&params, integral, &responses]);
+            let threads = |points: u32| if tile == 1 { points } else { threads_of_pairs(points, sizes) };
+            let groups =
+                [threads(grid.width).div_ceil(WORKGROUP[0]), threads(grid.height).div_ceil(WORKGROUP[1]), LAYERS];
+            Ok(Octave { tile, bind_group, groups, responses })
+        });
+        let octaves = octaves.collect::<Result<_>>()?;
+        Ok(Self { kernels, octaves })
+    }
+
+    /// Records one pass for each octave.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for octave in &self.octaves {
+            if let Some(kernel) = &self.kernels[octave.tile as usize - 1] {
+                kernel.record(encoder, &octave.bind_group, octave.groups);
+            }
+        }
+    }
+
+    /// An octave's responses: [`LAYERS`] planes of its [`Grid`], each value
+    /// `determinant << 1 | (trace > 0)`, or 0 where the filter does not fit in the picture.
+    pub fn responses(&self, octave: u32) -> &wgpu::Buffer {
+        &self.octaves[octave as usize].responses
+    }
+}
+
+/// Threads along one side where each takes two points that are a lobe apart: two lobes of points
+/// for every lobe of threads, the last two only begun.
+fn threads_of_pairs(points: u32, sizes: [u32; LAYERS as usize]) -> u32 {
+    let threads = |size: u32| {
+        let lobe = size / 3;
+        points / (2 * lobe) * lobe + (points % (2 * lobe)).min(lobe)
+    };
+    sizes.into_iter().map(threads).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_covers_the_picture_from_pixel_0() {
+        assert_eq!(Grid::new(741, 497, 1, 0), Grid { step: 1, width: 741, height: 497 });
+        assert_eq!(Grid::new(741, 497, 2, 3), Grid { step: 16, width: 47, height: 32 });
+        assert_eq!(Grid::new(1, 1, 2, 4), Grid { step: 32, width: 1, height: 1 });
+    }
+
+    #[test]
+    fn threads_reach_every_point() {
+        for points in 1..100 {
+            let threads = threads_of_pairs(points, FILTER_SIZES[0]);
+            for lobe in FILTER_SIZES[0].map(|size| size / 3) {
+                let mut reached: Vec<_> =
+                    (0..threads).map(|t| t / lobe * 2 * lobe + t % lobe).flat_map(|p| [p, p + lobe]).collect();
+                reached.sort_unstable();
+                reached.dedup();
+                assert!((0..points).all(|p| reached.binary_search(&p).is_ok()), "{points} points, lobe {lobe}");
+            }
+        }
+    }
+}

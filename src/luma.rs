@@ -1,0 +1,85 @@
+//! Luma on the device: one byte a pixel, packed four to a word.
+//!
+//! Pixel `x` of a row is byte `x % 4`, counted from the lowest, of the row's word `x / 4`; a row
+//! has `ceil(width / 4)` words, and what lies beyond the width is 0.
+
+use crate::{
+    error::Result,
+    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+    image::Luma,
+};
+
+const WORKGROUP: [u32; 2] = [16, 8];
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+/// The stage that turns RGBA8 into packed luma.
+pub fn stage() -> Stage {
+    Stage {
+        name: "luma",
+        source: include_str!("../shaders/luma.wgsl"),
+        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
+    }
+}
+
+/// Bytes of a packed picture.
+pub fn packed_bytes(width: u32, height: u32) -> u64 {
+    4 * u64::from(width.div_ceil(4)) * u64::from(height)
+}
+
+/// Packs a picture as the kernels read it.
+pub fn pack(luma: &Luma) -> Vec<u32> {
+    let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u32::from(pixel));
+    (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
+}
+
+/// RGBA8 to packed luma for pictures of one size: `(77 R + 150 G + 29 B + 128) >> 8`.
+pub struct RgbaToLuma {
+    kernel: Kernel,
+    bind_group: wgpu::BindGroup,
+    groups: [u32; 3],
+    luma: wgpu::Buffer,
+}
+
+impl RgbaToLuma {
+    /// Reads `pixels`: a word a pixel, red in its lowest byte.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device cannot bind the picture.
+    pub fn new(device: &wgpu::Device, pixels: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
+        let kernel = Kernel::new(device, &stage());
+        let params = uniform_buffer(device, "luma size", &Params { width, height });
+        let luma = storage_buffer(device, "luma", packed_bytes(width, height))?;
+        let bind_group = kernel.bind(device, &[&params, pixels, &luma]);
+        let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
+        Ok(Self { kernel, bind_group, groups, luma })
+    }
+
+    /// Records the conversion.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.kernel.record(encoder, &self.bind_group, self.groups);
+    }
+
+    /// The packed picture.
+    pub fn luma(&self) -> &wgpu::Buffer {
+        &self.luma
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_fill_words_from_the_lowest_byte_and_rows_start_new_ones() {
+        let luma = Luma::new(5, 2, vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
+        assert_eq!(pack(&luma), [0x0403_0201, 0x05, 0x0908_0706, 0x0a]);
+        assert_eq!(packed_bytes(5, 2), 16);
+    }
+}

@@ -1,0 +1,102 @@
+use std::f32::consts::PI;
+
+use hsad::{
+    Error,
+    features::{Detector, Feature, FeatureConfig, detect},
+    image::Luma,
+};
+
+use crate::common::{SIZES, gpu, picture, run, upload_luma, write};
+
+/// A Gaussian blob around a centre on a ground of 128.
+fn blob(width: u32, height: u32, centre: (f32, f32), sigma: f32, height_of_blob: f32) -> Luma {
+    Luma::from_fn(width, height, |x, y| {
+        let (dx, dy) = (x as f32 - centre.0, y as f32 - centre.1);
+        (128.0 + height_of_blob * (-(dx * dx + dy * dy) / (2.0 * sigma * sigma)).exp()).round() as u8
+    })
+}
+
+fn strongest(features: &[Feature]) -> &Feature {
+    features.iter().max_by(|a, b| a.response.total_cmp(&b.response)).expect("a feature")
+}
+
+#[test]
+fn a_blob_is_found_where_it_is() {
+    for (height, dark) in [(100.0, false), (-100.0, true)] {
+        for (centre, sigma) in [((40.3, 50.8), 2.5), ((64.0, 47.5), 4.0), ((60.6, 60.2), 8.0)] {
+            let picture = blob(128, 120, centre, sigma, height);
+            let found = detect(gpu(), &picture, &FeatureConfig::default()).unwrap();
+            let found = strongest(&found);
+            assert!((found.x - centre.0).abs() < 0.2 && (found.y - centre.1).abs() < 0.2, "{centre:?}: {found:?}");
+            assert!(found.scale / sigma > 0.6 && found.scale / sigma < 1.4, "sigma {sigma}: {}", found.scale);
+            assert_eq!(found.dark, dark);
+            assert_eq!(found.orientation, 0.0);
+        }
+    }
+}
+
+#[test]
+fn pictures_of_any_size_are_accepted() {
+    for (width, height) in SIZES {
+        for upright in [true, false] {
+            let config = FeatureConfig { upright, ..FeatureConfig::default() };
+            let found = detect(gpu(), &picture(width, height, 6), &config).unwrap();
+            assert_eq!(found.is_empty(), width.min(height) < 30, "{width}x{height}: {}", found.len());
+            for feature in found {
+                assert!(feature.x >= 0.0 && feature.x < width as f32 && feature.y >= 0.0 && feature.y < height as f32);
+                assert!((0.0..2.0 * PI).contains(&feature.orientation));
+                let length = feature.descriptor.iter().map(|v| v * v).sum::<f32>().sqrt();
+                assert!((length - 1.0).abs() < 1e-4);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_picture_gives_the_same_list() {
+    let picture = picture(311, 239, 7);
+    let config = FeatureConfig { upright: false, ..FeatureConfig::default() };
+    let first = detect(gpu(), &picture, &config).unwrap();
+    assert!(first.len() > 100, "{}", first.len());
+    for _ in 0..3 {
+        assert_eq!(detect(gpu(), &picture, &config).unwrap(), first);
+    }
+}
+
+#[test]
+fn a_detector_is_used_again_for_the_next_picture() {
+    let (width, height) = (130, 131);
+    let pictures = [picture(width, height, 8), Luma::filled(width, height, 9), picture(width, height, 10)];
+    let config = FeatureConfig::default();
+    let luma = upload_luma(&pictures[0]);
+    let detector = Detector::new(&gpu().device, &luma, width, height, &config).unwrap();
+    for picture in pictures {
+        write(&luma, &hsad::luma::pack(&picture));
+        run(|encoder| detector.record(encoder));
+        let found = detector.read(&gpu().device, &gpu().queue).unwrap();
+        assert_eq!(found, detect(gpu(), &picture, &config).unwrap());
+    }
+}
+
+#[test]
+fn more_than_there_is_room_for_is_an_error_that_says_so() {
+    let picture = picture(311, 239, 7);
+    let all = detect(gpu(), &picture, &FeatureConfig::default()).unwrap().len();
+    let room = all as u32 - 1;
+    let error = detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }).unwrap_err();
+    assert!(matches!(error, Error::Parameter { name: "max_features", .. }), "{error}");
+    let text = error.to_string();
+    assert!(
+        text.contains(&room.to_string()) && text.contains(&all.to_string()) && text.contains("threshold"),
+        "{text}"
+    );
+    let exactly = FeatureConfig { max_features: all as u32, ..FeatureConfig::default() };
+    assert_eq!(detect(gpu(), &picture, &exactly).unwrap().len(), all);
+}
+
+#[test]
+fn parameters_out_of_range_are_refused() {
+    let config = FeatureConfig { octaves: 6, ..FeatureConfig::default() };
+    let error = detect(gpu(), &picture(20, 20, 1), &config).unwrap_err();
+    assert!(matches!(error, Error::Parameter { name: "octaves", .. }), "{error}");
+}

@@ -1,0 +1,117 @@
+use hsad::features::{
+    FeatureConfig,
+    hessian::{Grid, Hessian, LAYERS},
+    keypoints::Keypoint,
+    nonmax::{Nonmax, integer_threshold},
+};
+
+use crate::common::{download, gpu, poison, run, upload, write};
+
+const SIDE: u32 = 64;
+
+/// The keypoints in an octave of a 64x64 picture whose determinants are 0 but for `samples`:
+/// (column, row, layer), determinant. Also how many there would have been with more room.
+fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32), i32)]) -> (usize, Vec<Keypoint>) {
+    let device = &gpu().device;
+    let hessian = Hessian::new(device, &upload(&[0_u32]), SIDE, SIDE, config).unwrap();
+    let stage = Nonmax::new(device, &hessian, SIDE, SIDE, config).unwrap();
+    let grid = Grid::new(SIDE, SIDE, config.step, octave);
+    let mut responses = vec![0_i32; (LAYERS * grid.width * grid.height) as usize];
+    for &((i, j, k), determinant) in samples {
+        responses[((k * grid.height + j) * grid.width + i) as usize] = determinant << 1 | 1;
+    }
+    write(hessian.responses(octave), &responses);
+    poison(stage.list());
+    run(|encoder| stage.record(encoder));
+    let list = download::<u8>(stage.list());
+    let count: u32 = bytemuck::pod_read_unaligned(&list[..4]);
+    let room = (count as usize).min(config.max_features as usize);
+    let mut keypoints: Vec<Keypoint> = bytemuck::pod_collect_to_vec(&list[4..][..room * size_of::<Keypoint>()]);
+    keypoints.sort_by_key(Keypoint::key);
+    (count as usize, keypoints)
+}
+
+/// As above, with a threshold of 100.
+fn maxima(octave: u32, samples: &[((u32, u32, u32), i32)]) -> Vec<Keypoint> {
+    let config = FeatureConfig { octaves: 2, threshold: 100.0 / (65280.0 * 65280.0), ..FeatureConfig::default() };
+    assert_eq!(integer_threshold(config.threshold), 100);
+    maxima_with(&config, octave, samples).1
+}
+
+#[test]
+fn a_lone_peak_stays_where_it_is() {
+    let found = maxima(0, &[((30, 31, 1), 1000)]);
+    let response = 1000 << 1 | 1;
+    assert_eq!(found, [Keypoint { x: 30.0, y: 31.0, scale: 2.0, response, octave: 0, index: 31 * 64 + 30 }]);
+}
+
+#[test]
+fn the_grid_of_octave_1_has_a_step_of_2() {
+    let found = maxima(1, &[((16, 15, 1), 1000)]);
+    assert_eq!((found[0].x, found[0].y), (32.0, 30.0));
+    // Filter side 27 of octave 1: 1.2 * 27 / 9.
+    assert!((found[0].scale - 3.6).abs() < 1e-6);
+    assert_eq!(found[0].key(), (1, 15 * 32 + 16));
+}
+
+#[test]
+fn the_quadratic_moves_the_peak() {
+    // Across: 0 1000 500: gradient 250, curvature -1500, offset 1/6. Between layers: 200 1000 0:
+    // gradient -100, curvature -1800, offset -1/18.
+    let found = maxima(0, &[((30, 30, 2), 1000), ((31, 30, 2), 500), ((30, 30, 1), 200)]);
+    assert_eq!(found.len(), 1);
+    assert!((found[0].x - (30.0 + 1.0 / 6.0)).abs() < 1e-4, "{found:?}");
+    assert_eq!(found[0].y, 30.0);
+    // Side 21, 6 more than the layer below.
+    assert!((found[0].scale - 1.2 * (21.0 - 6.0 / 18.0) / 9.0).abs() < 1e-5, "{found:?}");
+    assert_eq!(found[0].index, (64 + 30) * 64 + 30);
+}
+
+#[test]
+fn a_peak_beyond_half_a_sample_is_dropped() {
+    // Around the peak along the diagonal, nearly as high: the fit lies more than half a sample off.
+    let ridge = [((30, 30, 1), 1000), ((31, 30, 1), 990), ((30, 31, 1), 990), ((31, 31, 1), 999)];
+    assert_eq!(maxima(0, &ridge), []);
+}
+
+#[test]
+fn the_earlier_of_equals_wins() {
+    let index = |found: Vec<Keypoint>| found.iter().map(|k| k.index).collect::<Vec<_>>();
+    let (early, late) = (30 * 64 + 30, 31 * 64 + 31);
+    // In one block of 2x2, and across two blocks.
+    assert_eq!(index(maxima(0, &[((30, 30, 1), 1000), ((31, 31, 1), 1000)])), [early]);
+    assert_eq!(index(maxima(0, &[((31, 31, 1), 1000), ((32, 32, 1), 1000)])), [late]);
+    assert_eq!(index(maxima(0, &[((31, 31, 1), 1000), ((30, 32, 1), 1000)])), [late]);
+    // The layer comes before row and column.
+    assert_eq!(index(maxima(0, &[((31, 31, 1), 1000), ((30, 30, 2), 1000)])), [late]);
+    // Layer 0 has no maxima of its own, but beats those of layer 1.
+    assert_eq!(index(maxima(0, &[((30, 30, 1), 1000), ((31, 31, 0), 1000)])), []);
+    assert_eq!(index(maxima(0, &[((30, 30, 2), 1000), ((31, 31, 3), 1000)])), [64 * 64 + early]);
+    assert_eq!(index(maxima(0, &[((30, 30, 2), 1000), ((31, 31, 3), 1001)])), []);
+}
+
+#[test]
+fn the_threshold_is_reached_by_equality() {
+    assert_eq!(maxima(0, &[((30, 30, 1), 100)]).len(), 1);
+    assert_eq!(maxima(0, &[((30, 30, 1), 99)]).len(), 0);
+}
+
+#[test]
+fn the_layer_above_must_fit_at_all_neighbours() {
+    // Layer 1: the 21x21 filter reaches 10 px, and a neighbour is 1 px further out.
+    for (at, found) in [(10, 0), (11, 1), (52, 1), (53, 0)] {
+        assert_eq!(maxima(0, &[((at, 30, 1), 1000)]).len(), found, "column {at}");
+        assert_eq!(maxima(0, &[((30, at, 1), 1000)]).len(), found, "row {at}");
+    }
+    // Layer 2: the 27x27 filter reaches 13 px.
+    for (at, found) in [(13, 0), (14, 1), (49, 1), (50, 0)] {
+        assert_eq!(maxima(0, &[((at, 30, 2), 1000)]).len(), found, "column {at}");
+    }
+}
+
+#[test]
+fn the_counter_goes_on_when_the_room_is_used_up() {
+    let config = FeatureConfig { octaves: 1, max_features: 2, threshold: 1e-9, ..FeatureConfig::default() };
+    let (count, kept) = maxima_with(&config, 0, &[((20, 30, 1), 900), ((30, 30, 1), 900), ((40, 30, 1), 900)]);
+    assert_eq!((count, kept.len()), (3, 2));
+}
