@@ -3,6 +3,9 @@
 use std::io::{Error, Result};
 use std::path::Path;
 
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
 use super::rig::Side;
 use super::{Pair, Scene};
 
@@ -13,13 +16,16 @@ use super::{Pair, Scene};
 pub fn write(scene: &Scene, pair: &Pair, folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder)?;
     let (width, height) = (pair.width, pair.height);
-    let png = |name: &str, data: &[u8], colour| {
-        image::save_buffer(folder.join(name), data, width, height, colour).map_err(Error::other)
+    let png = |name: &str, data: &[u8], colour: ExtendedColorType| {
+        let file = std::fs::File::create(folder.join(name))?;
+        PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive)
+            .write_image(data, width, height, colour)
+            .map_err(Error::other)
     };
-    png("left.png", &pair.left.rgb, image::ColorType::Rgb8)?;
-    png("right.png", &pair.right.rgb, image::ColorType::Rgb8)?;
-    png("nonocc.png", &pair.left.visible, image::ColorType::L8)?;
-    png("nonocc_right.png", &pair.right.visible, image::ColorType::L8)?;
+    png("left.png", &pair.left.rgb, ExtendedColorType::Rgb8)?;
+    png("right.png", &pair.right.rgb, ExtendedColorType::Rgb8)?;
+    png("nonocc.png", &pair.left.visible, ExtendedColorType::L8)?;
+    png("nonocc_right.png", &pair.right.visible, ExtendedColorType::L8)?;
     std::fs::write(folder.join("disp_left.pfm"), pfm(&pair.left.disparity, width, height))?;
     std::fs::write(folder.join("disp_right.pfm"), pfm(&pair.right.disparity, width, height))?;
     std::fs::write(folder.join("meta.json"), description(scene, pair))

@@ -66,6 +66,12 @@ impl Frame {
         Self { origin: self.origin + self.to_world * DVec3::new(x, y, z), ..self }
     }
 
+    /// How much longer a length can become in the world.
+    pub fn stretch(&self) -> f64 {
+        let DMat3 { x_axis, y_axis, z_axis } = self.to_world;
+        x_axis.length().max(y_axis.length()).max(z_axis.length())
+    }
+
     /// Where its origin lies in the world.
     pub fn position(&self) -> DVec3 {
         self.origin

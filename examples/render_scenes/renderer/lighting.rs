@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::frame::Frame;
 use super::math::{mix, on_sphere, smoothstep};
+use super::shapes::Hit;
 use super::{Object, Ray};
 
 /// Where a ray from a surface starts, so that it does not meet the same surface again.
@@ -27,11 +28,8 @@ pub struct Lighting {
 }
 
 /// What a ray meets first among `objects`, and where.
-pub fn first<'a>(objects: &'a [Object], ray: &Ray) -> Option<(&'a Object, super::shapes::Hit)> {
-    let meetings = objects.iter().filter_map(|object| {
-        let hit = object.shape.meet(&object.frame.ray_to_local(ray))?;
-        Some((object, hit))
-    });
+pub fn first<'a>(objects: &'a [Object], ray: &Ray) -> Option<(&'a Object, Hit)> {
+    let meetings = objects.iter().filter_map(|object| Some((object, object.meet(ray)?)));
     meetings.min_by(|(_, a), (_, b)| a.t.total_cmp(&b.t))
 }
 

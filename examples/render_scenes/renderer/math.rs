@@ -1,23 +1,17 @@
 //! The few functions that the standard library leaves to the platform, as polynomials.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Sine and cosine of an angle in degrees, by Taylor series on +-45 degrees (error below 1e-13).
+/// Sine and cosine of an angle in degrees, by Taylor series on +-45 degrees (error below 1e-12).
 pub fn sin_cos(degrees: f64) -> (f64, f64) {
     let quadrant = (degrees / 90.0).round();
     let a = (degrees - 90.0 * quadrant) * (PI / 180.0);
-    let (mut sine, mut cosine) = (0.0, 0.0);
-    let mut term = 1.0;
-    for n in 0..16 {
-        let sign = if n % 4 < 2 { 1.0 } else { -1.0 };
-        if n % 2 == 0 {
-            cosine += sign * term;
-        } else {
-            sine += sign * term;
-        }
-        term *= a / f64::from(n + 1);
-    }
-    match quadrant.rem_euclid(4.0) as u32 {
+    let s = a * a;
+    // Horner's scheme: each factor is the next term over the one before.
+    let series = |ratios: [f64; 6]| ratios.iter().rev().fold(1.0, |rest, ratio| 1.0 - s * ratio * rest);
+    let sine = a * series([1.0 / 6.0, 1.0 / 20.0, 1.0 / 42.0, 1.0 / 72.0, 1.0 / 110.0, 1.0 / 156.0]);
+    let cosine = series([1.0 / 2.0, 1.0 / 12.0, 1.0 / 30.0, 1.0 / 56.0, 1.0 / 90.0, 1.0 / 132.0]);
+    match quadrant as i64 & 3 {
         0 => (sine, cosine),
         1 => (cosine, -sine),
         2 => (-sine, -cosine),
@@ -25,9 +19,11 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Sine of `x` full turns.
+/// Like the sine of `x` full turns, but made of parabolas (within 0.002 of it, and smooth).
 pub fn wave(x: f64) -> f64 {
-    sin_cos((x - x.floor()) * 360.0).0
+    let f = x - x.floor();
+    let arch = if f < 0.5 { 16.0 * f * (0.5 - f) } else { 16.0 * (f - 0.5) * (f - 1.0) };
+    arch * (0.775 + 0.225 * arch.abs())
 }
 
 /// The angle of (x, y) in radians, -pi to pi (error about 1e-5; Abramowitz and Stegun 4.4.49, shortened by Hastings).
@@ -69,7 +65,7 @@ where
     a * (1.0 - t) + b * t
 }
 
-/// Radians to a distance along a circle.
+/// The distance along a circle of this radius from the direction (0, 1) to (y, x).
 pub fn arc(y: f64, x: f64, radius: f64) -> f64 {
-    angle(y, x).clamp(-TAU, TAU) * radius
+    angle(y, x) * radius
 }

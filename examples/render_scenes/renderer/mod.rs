@@ -26,7 +26,7 @@ use frame::Frame;
 use glam::DVec3;
 use lighting::Lighting;
 use rig::Rig;
-use shapes::Shape;
+use shapes::{Hit, Shape};
 use textures::Texture;
 
 /// One shape, where it stands, and what it looks like.
@@ -34,11 +34,25 @@ pub struct Object {
     frame: Frame,
     shape: Box<dyn Shape>,
     texture: Texture,
+    /// The radius of a sphere about its place that holds all of it, a little too large.
+    reach: f64,
 }
 
 impl Object {
     fn new(frame: Frame, shape: impl Shape + 'static, texture: Texture) -> Self {
-        Self { frame, shape: Box::new(shape), texture }
+        let reach = shape.reach() * frame.stretch() * 1.001;
+        Self { frame, shape: Box::new(shape), texture, reach }
+    }
+
+    /// Where a ray meets it first.
+    fn meet(&self, ray: &Ray) -> Option<Hit> {
+        let from = ray.origin - self.frame.position();
+        let (outside, along) = (from.dot(from) - self.reach * self.reach, from.dot(ray.direction));
+        let passes = along > 0.0 || along * along < outside * ray.direction.dot(ray.direction);
+        if outside > 0.0 && passes {
+            return None;
+        }
+        self.shape.meet(&self.frame.ray_to_local(ray))
     }
 }
 

@@ -19,12 +19,19 @@ pub struct Hit {
 pub trait Shape: Send + Sync {
     /// The first meeting with `t > 0`.
     fn meet(&self, ray: &Ray) -> Option<Hit>;
+
+    /// The radius of a sphere about the origin that holds all of it.
+    fn reach(&self) -> f64;
 }
 
 /// A box, given by half its sides.
 pub struct Cuboid(pub f64, pub f64, pub f64);
 
 impl Shape for Cuboid {
+    fn reach(&self) -> f64 {
+        DVec3::new(self.0, self.1, self.2).length()
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let half = [self.0, self.1, self.2];
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
@@ -80,6 +87,10 @@ fn roots(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
 pub struct Sphere(pub f64);
 
 impl Shape for Sphere {
+    fn reach(&self) -> f64 {
+        self.0
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let (o, d) = (ray.origin, ray.direction);
         let [near, far] = roots(d.dot(d), o.dot(d), o.dot(o) - self.0 * self.0)?;
@@ -109,6 +120,10 @@ impl Cylinder {
 }
 
 impl Shape for Cylinder {
+    fn reach(&self) -> f64 {
+        (self.radius * self.radius + self.half * self.half).sqrt()
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let (o, d) = (ray.origin, ray.direction);
         let (a, b) = (d.x * d.x + d.z * d.z, o.x * d.x + o.z * d.z);
@@ -129,21 +144,43 @@ impl Shape for Cylinder {
     }
 }
 
-/// The first change of sign of `f` on `from..to`, seen in `steps` steps and then bisected to the last bits.
-fn crossing(f: impl Fn(f64) -> f64, from: f64, to: f64, steps: u32) -> Option<f64> {
-    let step = (to - from) / f64::from(steps);
-    let start = f(from) > 0.0;
-    let after = (1..=steps).find(|&i| (f(from + step * f64::from(i)) > 0.0) != start)?;
-    let (mut low, mut high) = (from + step * f64::from(after - 1), from + step * f64::from(after));
-    for _ in 0..40 {
-        let middle = (low + high) * 0.5;
-        if (f(middle) > 0.0) == start {
-            low = middle;
+/// The ray's first change of sign of `field` between two parameters, seen in steps of `step` mm and then narrowed to the
+/// last bits by false position (with the Illinois rule: Dowell and Jarratt, BIT 11, 1971).
+fn crossing(field: impl Fn(DVec3) -> f64, ray: &Ray, from: f64, to: f64, step: f64) -> Option<f64> {
+    let steps = ((to - from) * ray.direction.length() / step).clamp(1.0, 200.0).ceil();
+    let at = |i: f64| from + (to - from) * (i / steps);
+    let start = field(ray.at(from));
+    let (mut low, mut below) = (from, start);
+    let mut i = 1.0;
+    let (mut high, mut above) = loop {
+        let (t, value) = (at(i), field(ray.at(at(i))));
+        if (value > 0.0) != (start > 0.0) {
+            break (t, value);
+        }
+        if i >= steps {
+            return None;
+        }
+        (low, below) = (t, value);
+        i += 1.0;
+    };
+    let (mut t, mut kept) = (low, 0);
+    for _ in 0..60 {
+        t = (low * above - high * below) / (above - below);
+        let value = field(ray.at(t));
+        if value.abs() < 1e-10 {
+            break;
+        }
+        if (value > 0.0) == (start > 0.0) {
+            (low, below) = (t, value);
+            above *= if kept == 1 { 0.5 } else { 1.0 };
+            kept = 1;
         } else {
-            high = middle;
+            (high, above) = (t, value);
+            below *= if kept == 2 { 0.5 } else { 1.0 };
+            kept = 2;
         }
     }
-    Some(low)
+    Some(t)
 }
 
 /// The gradient of `field` by central differences.
@@ -157,45 +194,55 @@ fn slope(field: impl Fn(DVec3) -> f64, p: DVec3) -> DVec3 {
 pub struct Implicit<F> {
     /// The radius of a sphere that holds all of it.
     pub reach: f64,
+    /// Millimetres within which a ray cannot enter and leave it unnoticed.
+    pub step: f64,
     /// Positive outside, negative inside.
     pub field: F,
 }
 
 impl<F: Fn(DVec3) -> f64 + Send + Sync> Shape for Implicit<F> {
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let (o, d) = (ray.origin, ray.direction);
         let [near, far] = roots(d.dot(d), o.dot(d), o.dot(o) - self.reach * self.reach)?;
         if far <= 0.0 {
             return None;
         }
-        let t = crossing(|t| (self.field)(ray.at(t)), near.max(0.0), far, 160)?;
+        let t = crossing(&self.field, ray, near.max(0.0), far, self.step)?;
         let point = ray.at(t);
         let around = angle(point.x, point.z) * self.reach;
         Some(Hit { t, normal: slope(&self.field, point), surface: Surface { point, uv: [around, point.y], face: 0 } })
     }
 }
 
-/// A ground `y = height(x, z)` without end, between -`reach` and `reach`.
+/// A ground `y = height(x, z)` without end, between -`rise` and `rise`.
 pub struct Ground<F> {
     /// The greatest height and depth.
-    pub reach: f64,
+    pub rise: f64,
     /// The height above (x, z).
     pub height: F,
 }
 
 impl<F: Fn(f64, f64) -> f64 + Send + Sync> Shape for Ground<F> {
+    fn reach(&self) -> f64 {
+        f64::INFINITY
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let (o, d) = (ray.origin, ray.direction);
         if d.y == 0.0 {
             return None;
         }
-        let (top, bottom) = ((self.reach - o.y) / d.y, (-self.reach - o.y) / d.y);
+        let (top, bottom) = ((self.rise - o.y) / d.y, (-self.rise - o.y) / d.y);
         let (near, far) = (top.min(bottom).max(0.0), top.max(bottom));
         let field = |p: DVec3| p.y - (self.height)(p.x, p.z);
         if far <= near {
             return None;
         }
-        let t = crossing(|t| field(ray.at(t)), near, far, 32)?;
+        let t = crossing(field, ray, near, far, 12.0)?;
         let point = ray.at(t);
         Some(Hit { t, normal: slope(field, point), surface: Surface { point, uv: [point.x, -point.z], face: 0 } })
     }

@@ -2,14 +2,14 @@
 
 use glam::{DVec3, dvec3};
 
-use super::super::frame::Frame;
-use super::super::lighting::Lighting;
-use super::super::math::{smoothstep, wave};
-use super::super::noise::uniform;
-use super::super::rig::Rig;
-use super::super::shapes::{Cuboid, Cylinder, Ground, Implicit, Sphere};
-use super::super::textures::{self as look, rgb};
-use super::super::{Object, Scene, Sensor};
+use crate::renderer::frame::Frame;
+use crate::renderer::lighting::Lighting;
+use crate::renderer::math::{smoothstep, wave};
+use crate::renderer::noise::uniform;
+use crate::renderer::rig::Rig;
+use crate::renderer::shapes::{Cuboid, Cylinder, Ground, Implicit, Sphere};
+use crate::renderer::textures::{self as look, rgb};
+use crate::renderer::{Object, Scene, Sensor};
 
 /// The scene `curved`.
 pub fn scene() -> Scene {
@@ -17,7 +17,7 @@ pub fn scene() -> Scene {
     let mut objects = vec![
         Object::new(
             Frame::at(0.0, 0.0, 0.0).yaw(24.0),
-            Ground { reach: 21.0, height: folds },
+            Ground { rise: 21.0, height: folds },
             look::tartan(82.0, cloth, 3),
         ),
         Object::new(
@@ -44,7 +44,7 @@ pub fn scene() -> Scene {
         ),
         Object::new(
             Frame::at(30.0, 100.0, -90.0),
-            Implicit { reach: 125.0, field: |p: DVec3| (p.x * p.x + p.z * p.z).sqrt() - vase_radius(p.y) },
+            Implicit { reach: 125.0, step: 2.0, field: |p: DVec3| (p.x * p.x + p.z * p.z).sqrt() - vase_radius(p.y) },
             look::glazed(rgb(0xb8734a), rgb(0x2c6a80), rgb(0xf1e4c4), 12),
         ),
         Object::new(
@@ -60,11 +60,11 @@ pub fn scene() -> Scene {
         name: "curved",
         title: "A still life on rumpled cloth: curved surfaces, occlusions and thin structures",
         rig: Rig {
-            width: 360,
-            height: 270,
-            focal: 410.0,
-            baseline: 82.0,
-            doffs: 0.0,
+            width: 340,
+            height: 255,
+            focal: 388.0,
+            baseline: 95.0,
+            doffs: 11.0,
             eye: dvec3(-35.0, 300.0, 790.0),
             target: dvec3(0.0, 105.0, -60.0),
         },

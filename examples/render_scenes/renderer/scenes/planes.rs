@@ -2,12 +2,12 @@
 
 use glam::dvec3;
 
-use super::super::frame::Frame;
-use super::super::lighting::Lighting;
-use super::super::rig::Rig;
-use super::super::shapes::Cuboid;
-use super::super::textures::{self as look, rgb};
-use super::super::{Object, Scene, Sensor};
+use crate::renderer::frame::Frame;
+use crate::renderer::lighting::Lighting;
+use crate::renderer::rig::Rig;
+use crate::renderer::shapes::Cuboid;
+use crate::renderer::textures::{self as look, rgb};
+use crate::renderer::{Object, Scene, Sensor};
 
 /// The scene `planes`.
 pub fn scene() -> Scene {
@@ -85,10 +85,10 @@ pub fn scene() -> Scene {
         name: "planes",
         title: "A desk with books, a map and boards against a brick wall: planes only",
         rig: Rig {
-            width: 360,
-            height: 270,
-            focal: 400.0,
-            baseline: 96.0,
+            width: 340,
+            height: 255,
+            focal: 378.0,
+            baseline: 100.0,
             doffs: 14.0,
             eye: dvec3(-20.0, 330.0, 790.0),
             target: dvec3(15.0, 92.0, -60.0),

@@ -3,23 +3,27 @@
 
 use glam::{DVec3, dvec3};
 
-use super::super::frame::Frame;
-use super::super::lighting::Lighting;
-use super::super::math::smoothstep;
-use super::super::rig::Rig;
-use super::super::shapes::{Cuboid, Cylinder, Implicit, Sphere};
-use super::super::textures::{self as look, rgb};
-use super::super::{Object, Scene, Sensor};
+use crate::renderer::frame::Frame;
+use crate::renderer::lighting::Lighting;
+use crate::renderer::math::smoothstep;
+use crate::renderer::rig::Rig;
+use crate::renderer::shapes::{Cuboid, Cylinder, Implicit, Sphere};
+use crate::renderer::textures::{self as look, rgb};
+use crate::renderer::{Object, Scene, Sensor};
 
 /// The scene `weak`.
 pub fn scene() -> Scene {
-    let pale = |hex: u32, seed: u32| look::smooth(rgb(hex), 0.022, seed);
+    let pale = |hex: u32, seed: u32| look::smooth(rgb(hex), 0.05, seed);
     let objects = vec![
-        Object::new(Frame::at(0.0, 0.0, -200.0), Implicit { reach: 2400.0, field: backdrop }, pale(0xcfcac0, 1)),
+        Object::new(
+            Frame::at(0.0, 0.0, -200.0),
+            Implicit { reach: 2400.0, step: 25.0, field: backdrop },
+            pale(0xcfcac0, 1),
+        ),
         Object::new(Frame::at(-150.0, 92.0, -60.0), Sphere(92.0), pale(0xd8d4cb, 2)),
         Object::new(
             Frame::at(45.0, 105.0, -110.0),
-            Implicit { reach: 128.0, field: |p: DVec3| (p.x * p.x + p.z * p.z).sqrt() - bottle_radius(p.y) },
+            Implicit { reach: 128.0, step: 2.0, field: |p: DVec3| (p.x * p.x + p.z * p.z).sqrt() - bottle_radius(p.y) },
             pale(0xb9c2c4, 3),
         ),
         Object::new(Frame::at(205.0, 70.0, -40.0).yaw(-33.0), Cuboid(62.0, 70.0, 50.0), pale(0xc9bfae, 4)),
@@ -37,10 +41,10 @@ pub fn scene() -> Scene {
         name: "weak",
         title: "Pale things before a seamless backdrop: weak texture, another exposure and noise in the right view",
         rig: Rig {
-            width: 311,
-            height: 233,
-            focal: 350.0,
-            baseline: 90.0,
+            width: 287,
+            height: 215,
+            focal: 323.0,
+            baseline: 98.0,
             doffs: 8.0,
             eye: dvec3(-30.0, 270.0, 760.0),
             target: dvec3(0.0, 85.0, -40.0),
@@ -54,8 +58,8 @@ pub fn scene() -> Scene {
             reach: 240.0,
         },
         sensors: [
-            Sensor { gain: 1.0, offset: 0.0, bend: 0, noise: 0.9 },
-            Sensor { gain: 0.86, offset: 9.0, bend: 1, noise: 1.3 },
+            Sensor { gain: 1.0, offset: 0.0, bend: 0, noise: 0.7 },
+            Sensor { gain: 0.86, offset: 9.0, bend: 1, noise: 1.0 },
         ],
         objects,
     }
