@@ -186,7 +186,7 @@ fn the_weak_scene_changes_its_brightness_and_nothing_else() {
     assert!(restored < 2.0, "{restored}");
 }
 
-/// The disparity of `other` at a pixel's counterpart lies between those of the two pixels around it. Where these see one
+/// The disparity of `other` at a counterpart lies between those of the two pixels around it. Where these see one
 /// surface, interpolation is exact on a plane, because disparity is linear in the picture there, and good to the
 /// curvature elsewhere; only creases and the rims of thin things are worse. (The nearest pixel alone would be off by up
 /// to half the slope.) A counterpart that is hidden has something nearer in front of it.

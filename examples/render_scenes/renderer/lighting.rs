@@ -40,7 +40,8 @@ impl Lighting {
         let start = point + normal * CLEARANCE;
         let cell = |k: u32| (f64::from(2 * k + 1) / f64::from(n) - 1.0) * self.size;
         let square = Frame::between(DVec3::ZERO, self.lamp);
-        // Neighbouring samples of a pixel must not share a part of the lamp, or the shadow's edge would follow the pixel grid.
+        // Neighbouring samples of a pixel see different parts of the lamp: otherwise the edges of shadows would follow
+        // the pixel grid.
         let spread = (i * 7) % (n * n);
         let lamp = square.shift(cell(spread % n), self.lamp.length() / 2.0, cell(spread / n)).position();
         let towards = lamp - start;

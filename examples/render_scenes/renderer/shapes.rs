@@ -144,8 +144,8 @@ impl Shape for Cylinder {
     }
 }
 
-/// The ray's first change of sign of `field` between two parameters, seen in steps of `step` mm and then narrowed to the
-/// last bits by false position (with the Illinois rule: Dowell and Jarratt, BIT 11, 1971).
+/// The ray's first change of sign of `field` between two parameters, seen in steps of `step` mm and then narrowed to
+/// the last bits by false position (with the Illinois rule: Dowell and Jarratt, BIT 11, 1971).
 fn crossing(field: impl Fn(DVec3) -> f64, ray: &Ray, from: f64, to: f64, step: f64) -> Option<f64> {
     let steps = ((to - from) * ray.direction.length() / step).clamp(1.0, 200.0).ceil();
     let at = |i: f64| from + (to - from) * (i / steps);

@@ -71,11 +71,10 @@ fn exposed(scene: &Scene, side: Side, x: u32, y: u32) -> [u8; 3] {
         })
         .sum();
     let sensor = scene.sensors[usize::from(side == Side::Right)];
-    let mut channel = 0;
-    (light / f64::from(samples)).to_array().map(|value| {
-        channel += 1;
-        let noise = sensor.noise * normal(i64::from(x), i64::from(y), channel, side as u32 + 1);
-        (sensor.expose(value) + noise).round().clamp(0.0, 255.0) as u8
+    let mean = light / f64::from(samples);
+    std::array::from_fn(|channel| {
+        let noise = sensor.noise * normal(i64::from(x), i64::from(y), channel as i64 + 1, side as u32 + 1);
+        (sensor.expose(mean[channel]) + noise).round().clamp(0.0, 255.0) as u8
     })
 }
 

@@ -13,7 +13,6 @@ use crate::renderer::{Object, Scene, Sensor};
 pub fn scene() -> Scene {
     let paint = [rgb(0x24364f), rgb(0x3f7f8c), rgb(0xe8c27a), rgb(0xd9703f), rgb(0x7d2f3a)];
     let cloth = [rgb(0x7a1f28), rgb(0xe6dcc0), rgb(0x1f3a34), rgb(0xd9a93c)];
-    let spine = 4;
     let objects = vec![
         // Walls and desk.
         Object::new(
@@ -46,17 +45,17 @@ pub fn scene() -> Scene {
         Object::new(
             Frame::at(35.0, 21.0, -30.0).yaw(8.0),
             Cuboid(118.0, 21.0, 82.0),
-            look::book(rgb(0x274a6b), rgb(0xe5d5a1), "DISPARITY", 13.0, spine, 31),
+            look::book(rgb(0x274a6b), rgb(0xe5d5a1), "DISPARITY", 13.0, 31),
         ),
         Object::new(
             Frame::at(28.0, 60.0, -35.0).yaw(-7.0),
             Cuboid(108.0, 18.0, 76.0),
-            look::book(rgb(0x8c2f2b), rgb(0xf0dfae), "OCTAVES", 15.0, spine, 32),
+            look::book(rgb(0x8c2f2b), rgb(0xf0dfae), "OCTAVES", 15.0, 32),
         ),
         Object::new(
             Frame::at(40.0, 92.0, -42.0).yaw(15.0),
             Cuboid(96.0, 14.0, 70.0),
-            look::book(rgb(0x3f6b46), rgb(0xf3e9c8), "PLANES", 13.0, spine, 33),
+            look::book(rgb(0x3f6b46), rgb(0xf3e9c8), "PLANES", 13.0, 33),
         ),
         Object::new(
             Frame::at(176.0, 74.0, 90.0).yaw(-14.0).pitch(-34.0),

@@ -34,7 +34,7 @@ pub fn scene() -> Scene {
         Object::new(
             Frame::at(150.0, 14.0, 150.0).yaw(24.0),
             Cuboid(66.0, 14.0, 46.0),
-            look::book(rgb(0x8a97a0), rgb(0xe4ddcb), "QUIET", 14.0, 4, 9),
+            look::book(rgb(0x8a97a0), rgb(0xe4ddcb), "QUIET", 14.0, 9),
         ),
     ];
     Scene {

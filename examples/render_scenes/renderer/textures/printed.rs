@@ -112,19 +112,19 @@ pub fn page(half: [f64; 2], heading: &'static str, seed: u32) -> Texture {
     })
 }
 
-/// A book: cloth with a title on its front and its spine, and pages on the other three edges.
-pub fn book(cloth: DVec3, print: DVec3, title: &'static str, height: f64, spine: usize, seed: u32) -> Texture {
+/// A book: cloth with a title on its spine, the front of its box, and pages on the other three edges.
+pub fn book(cloth: DVec3, print: DVec3, title: &'static str, height: f64, seed: u32) -> Texture {
     Box::new(move |s| {
         let [u, v] = s.uv;
         let weave = 1.0 + 0.10 * gradient(flat(u / 1.4, v / 1.4), seed) + 0.07 * fractal(s.point / 30.0, 3, seed);
-        let titled = s.face == spine;
-        if titled && (ink(title, height, u, v) || (u.abs() > 62.0 && u.abs() < 65.0)) {
+        let spine = s.face == 4;
+        if spine && (ink(title, height, u, v) || (u.abs() > 62.0 && u.abs() < 65.0)) {
             return print;
         }
-        match s.face {
-            2 | 3 => cloth * weave,
-            face if face == spine => cloth * weave,
-            _ => rgb(0xe4d9bd) * (0.86 + 0.22 * gradient(dvec3(u / 60.0, v / 1.3, 0.5), seed)),
+        if spine || s.face == 2 || s.face == 3 {
+            cloth * weave
+        } else {
+            rgb(0xe4d9bd) * (0.86 + 0.22 * gradient(dvec3(u / 60.0, v / 1.3, 0.5), seed))
         }
     })
 }
