@@ -79,6 +79,36 @@ fn unpack(word: u32) -> vec4<i32> {
     return vec4<i32>(((vec4<u32>(word) << UP) >> DOWN) & vec4<u32>(255u << SHIFT));
 }
 
+// For four disparities, four neighbouring pixels' sums of absolute differences along one row of
+// their windows. Four disparities on, the searched words are the same, one place further.
+fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> array<vec4<u32>, 4> {
+    var a: array<vec4<i32>, WORDS>;
+    var b: array<vec4<i32>, WORDS + 1>;
+    b[0] = unpack(searched[0]);
+    for (var j = 0; j < WORDS; j++) { // unroll
+        a[j] = unpack(reference[j]);
+        b[j + 1] = unpack(searched[j + 1]);
+    }
+    var sums: array<vec4<u32>, 4>;
+    for (var k = 0; k < 4; k++) { // unroll
+        var difference: array<u32, SIDE + 3>;
+        for (var i = 0; i < SIDE + 3; i++) { // unroll
+            difference[i] = u32(abs(
+                a[(FIRST + i) / 4][(FIRST + i) % 4] - b[(FIRST + i + 4 - k) / 4][(FIRST + i + 4 - k) % 4]
+            ));
+        }
+        var sum = 0u;
+        for (var i = 0; i < SIDE; i++) { // unroll
+            sum += difference[i];
+        }
+        let sum1 = sum + difference[SIDE] - difference[0];
+        let sum2 = sum1 + difference[SIDE + 1] - difference[1];
+        let sum3 = sum2 + difference[SIDE + 2] - difference[2];
+        sums[k] = vec4<u32>(sum, sum1, sum2, sum3);
+    }
+    return sums;
+}
+
 // The exact quotient, rounded down, where it is below 2^16. By way of floats, since software drivers
 // divide integers lane by lane: the estimate is off by one at most, whatever the rounding.
 fn quotient(numerator: u32, divisor: u32) -> u32 {
@@ -150,29 +180,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
             searched[y][0] = planes[row + params.steps - 1u - step + id.x];
 
-            var a: array<vec4<i32>, WORDS>;
-            var b: array<vec4<i32>, WORDS + 1>;
-            b[0] = unpack(searched[y][0]);
-            for (var j = 0; j < WORDS; j++) { // unroll
-                a[j] = unpack(reference[y][j]);
-                b[j + 1] = unpack(searched[y][j + 1]);
-            }
+            let of_row = row_sums(reference[y], searched[y]);
             for (var k = 0; k < 4; k++) { // unroll
-                var difference: array<u32, SIDE + 3>;
-                for (var i = 0; i < SIDE + 3; i++) { // unroll
-                    const p = FIRST + i;
-                    const q = FIRST + i + 4 - k;
-                    difference[i] = u32(abs(a[p / 4][p % 4] - b[q / 4][q % 4]));
-                }
-                var sum = 0u;
-                for (var i = 0; i < SIDE; i++) { // unroll
-                    sum += difference[i];
-                }
-                let sum1 = sum + difference[SIDE] - difference[0];
-                let sum2 = sum1 + difference[SIDE + 1] - difference[1];
-                let sum3 = sum2 + difference[SIDE + 2] - difference[2];
-                sums[y + SIDE][k] = vec4<u32>(sum, sum1, sum2, sum3);
-                window[k] += sums[y + SIDE][k] - sums[y][k];
+                sums[y + SIDE][k] = of_row[k];
+                window[k] += of_row[k] - sums[y][k];
                 if y >= SIDE - 1 {
                     searches[y] = consider(searches[y], window[k] | tags[k]);
                 }

@@ -11,7 +11,8 @@
 //! }
 //! ```
 //!
-//! Each turn becomes a block of its own, in which the counter is a `const`.
+//! Each turn becomes a block of its own, with the counter's value in place of its name. Keep what is
+//! written out in small functions: naga 30 takes time quadratic in the length of a function.
 
 /// `source` with every marked loop written out; bounds are sums of numbers and of `constants`.
 ///
@@ -19,35 +20,61 @@
 /// If a marked loop does not have exactly the form above: the shaders are ours, and a test goes
 /// through all of them.
 pub(crate) fn unrolled(source: &str, constants: &[(&str, i64)]) -> String {
-    let lines: Vec<&str> = source.lines().collect();
     let mut out = String::with_capacity(source.len());
-    write_out(&lines, constants, &mut out);
-    out
-}
-
-fn write_out(lines: &[&str], constants: &[(&str, i64)], out: &mut String) {
-    let mut rest = lines;
-    while let Some((line, after)) = rest.split_first() {
+    let mut rest = source;
+    while let Some((line, after)) = split_line(rest) {
         let Some(head) = line.trim_end().strip_suffix("{ // unroll") else {
             out.push_str(line);
-            out.push('\n');
             rest = after;
             continue;
         };
         let indent = &line[..line.len() - line.trim_start().len()];
-        let length = after
-            .iter()
-            .position(|l| l.strip_prefix(indent).is_some_and(|l| l.starts_with('}')))
-            .unwrap_or_else(|| panic!("no end of the loop: {line}"));
+        let length = body_length(after, indent).unwrap_or_else(|| panic!("no end of the loop: {line}"));
         let (counter, bound) = parse_head(head.trim());
+        // Inner loops first: their copies are then only copied on.
+        let body = unrolled(&after[..length], constants);
         for turn in 0..evaluate(bound, constants) {
-            out.push_str(&format!("{indent}{{ const {counter} = {turn};\n"));
-            write_out(&after[..length], constants, out);
+            out.push_str(indent);
+            out.push_str("{\n");
+            substitute(&body, counter, &turn.to_string(), &mut out);
             out.push_str(indent);
             out.push_str("}\n");
         }
-        rest = &after[length + 1..];
+        rest = split_line(&after[length..]).map_or("", |(_, rest)| rest);
     }
+    out
+}
+
+/// Where the line begins that closes, with a brace at `indent`, what `text` is the inside of.
+fn body_length(text: &str, indent: &str) -> Option<usize> {
+    let mut length = 0;
+    for line in text.split_inclusive('\n') {
+        if line.strip_prefix(indent).is_some_and(|line| line.starts_with('}')) {
+            return Some(length);
+        }
+        length += line.len();
+    }
+    None
+}
+
+/// The first line with its end, and what follows.
+fn split_line(text: &str) -> Option<(&str, &str)> {
+    let end = text.find('\n').map_or(text.len(), |end| end + 1);
+    (end > 0).then(|| text.split_at(end))
+}
+
+/// Appends `body` with each whole word `counter` replaced.
+fn substitute(body: &str, counter: &str, value: &str, out: &mut String) {
+    let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut rest = body;
+    while let Some(start) = rest.find(counter) {
+        let (before, after) = (&rest[..start], &rest[start + counter.len()..]);
+        let whole = !before.ends_with(part_of_word) && !after.starts_with(part_of_word);
+        out.push_str(before);
+        out.push_str(if whole { value } else { counter });
+        rest = after;
+    }
+    out.push_str(rest);
 }
 
 /// The counter and the bound of `for (var i = 0; i < BOUND; i++)`.
@@ -78,26 +105,16 @@ mod tests {
         let source = "a\n  for (var i = 0; i < N + 1; i++) { // unroll\n    for (var j = 0; j < 2; j++) { // unroll\n      f(i, j);\n    }\n  }\nb\n";
         let calls: Vec<String> = unrolled(source, &[("N", 1)]).lines().map(|l| l.trim().to_owned()).collect();
         let expected = [
-            "a",
-            "{ const i = 0;",
-            "{ const j = 0;",
-            "f(i, j);",
-            "}",
-            "{ const j = 1;",
-            "f(i, j);",
-            "}",
-            "}",
-            "{ const i = 1;",
-            "{ const j = 0;",
-            "f(i, j);",
-            "}",
-            "{ const j = 1;",
-            "f(i, j);",
-            "}",
-            "}",
-            "b",
+            "a", "{", "{", "f(0, 0);", "}", "{", "f(0, 1);", "}", "}", "{", "{", "f(1, 0);", "}", "{", "f(1, 1);", "}",
+            "}", "b",
         ];
         assert_eq!(calls, expected);
+    }
+
+    #[test]
+    fn only_whole_words_are_the_counter() {
+        let source = "for (var i = 0; i < 1; i++) { // unroll\n  i + id.x + x_i + if(i)\n}\n";
+        assert_eq!(unrolled(source, &[]), "{\n  0 + id.x + x_i + if(0)\n}\n");
     }
 
     #[test]
