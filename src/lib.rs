@@ -2,9 +2,11 @@
 
 pub mod disparity;
 pub mod error;
+pub mod eval;
 pub mod features;
 pub mod gpu;
 pub mod image;
+pub mod matching;
 
 pub use error::{Error, Result};
 pub use wgpu;
