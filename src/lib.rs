@@ -5,6 +5,7 @@ pub mod error;
 pub mod features;
 pub mod gpu;
 pub mod image;
+pub mod reference;
 
 pub use error::{Error, Result};
 pub use wgpu;
