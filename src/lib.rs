@@ -7,6 +7,7 @@ pub mod features;
 pub mod gpu;
 pub mod image;
 pub mod matching;
+pub mod reference;
 
 pub use error::{Error, Result};
 pub use wgpu;

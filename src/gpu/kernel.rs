@@ -106,8 +106,8 @@ impl Kernel {
 
     /// Records one dispatch of `groups` workgroups, in a pass of its own.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, groups: [u32; 3]) {
-        let mut pass = encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bind_group, &[]);
         let [x, y, z] = groups;
