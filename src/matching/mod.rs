@@ -8,7 +8,7 @@ mod nearest;
 mod refine;
 
 pub use config::MatchConfig;
-pub use refine::{Seed, refine};
+pub use refine::{Rows, Seed, refine};
 
 use crate::{
     error::Result,

@@ -19,7 +19,7 @@ const LANES: usize = 8;
 const QUERIES: usize = 4;
 
 /// A detection this close to the nearest one, in units of its scale, shows the same structure and is no rival.
-const RIVAL_RADIUS: f32 = 2.0;
+const RIVAL_RADIUS: f32 = 3.0;
 
 /// The nearest descriptor and how far ahead of the others it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
