@@ -8,6 +8,7 @@ pub mod gpu;
 pub mod image;
 pub mod matching;
 pub mod reference;
+pub mod seeding;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -29,7 +29,7 @@ pub struct MatchConfig {
 
 impl Default for MatchConfig {
     fn default() -> Self {
-        Self { ratio: 0.9, mutual: true, same_contrast: true, max_dy: None, disparities: None, strongest: None }
+        Self { ratio: 0.85, mutual: true, same_contrast: true, max_dy: None, disparities: None, strongest: None }
     }
 }
 
