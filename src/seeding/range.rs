@@ -10,11 +10,15 @@ use crate::{
 
 /// Seeds that it takes to believe in a range.
 const NEEDED: usize = 12;
-/// What is added beyond the farthest seed, as a share of the seeds' extent.
-const FAR_MARGIN: f32 = 0.1;
-/// What is added beyond the nearest seed. Much more than at the far end: what is near is large, smooth and often cut
-/// by the border, so it bears few features or none. The nine scenes need up to 0.34 here and 0.08 at the far end.
+/// What is added beyond the farthest of many seeds, as a share of the seeds' extent.
+const FAR_MARGIN: f32 = 0.15;
+/// What is added beyond the nearest of many seeds. Much more than at the far end: what is near is large, smooth and
+/// often cut by the border, so it bears few features or none. The nine scenes need up to 0.34 here and 0.08 at the
+/// far end.
 const NEAR_MARGIN: f32 = 0.4;
+/// The number of seeds at which the margins double: the fewer there are, the more of the scene they miss, as halves
+/// and quarters cut from the nine scenes show.
+const FEW: f32 = 40.0;
 /// The least that is added at either end, in pixels.
 const LEAST_MARGIN: f32 = 3.0;
 
@@ -48,7 +52,7 @@ pub(super) fn disparity_range(supported: &[Seed], seeds: usize) -> std::result::
         return Err(thin);
     }
     let (far, near) = extent(supported.iter().map(|seed| seed.disparity));
-    widened(far, near).map_err(|_| thin)
+    widened(far, near, 1.0 + FEW / supported.len() as f32).map_err(|_| thin)
 }
 
 /// The smallest and the largest.
@@ -56,8 +60,8 @@ pub(super) fn extent(disparities: impl Iterator<Item = f32>) -> (f32, f32) {
     disparities.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)))
 }
 
-fn widened(far: f32, near: f32) -> Result<DisparityRange> {
-    let margin = |share: f32| (share * (near - far)).max(LEAST_MARGIN);
+fn widened(far: f32, near: f32, factor: f32) -> Result<DisparityRange> {
+    let margin = |share: f32| (factor * share * (near - far)).max(LEAST_MARGIN);
     DisparityRange::inclusive((far - margin(FAR_MARGIN)).floor() as i32, (near + margin(NEAR_MARGIN)).ceil() as i32)
 }
 
@@ -72,9 +76,11 @@ mod tests {
 
     #[test]
     fn margins_by_hand() {
-        // 10 to 60: 5 px below, 20 px above.
-        let spread = seeds((0..=50).map(|i| 10.0 + i as f32));
-        assert_eq!(disparity_range(&spread, 60).unwrap(), DisparityRange::inclusive(5, 80).unwrap());
+        // 200 seeds from 10 to 50: 1.2 * 0.15 * 40 = 7.2 px below, 1.2 * 0.4 * 40 = 19.2 px above.
+        let many = seeds((0..200).map(|i| if i % 2 == 0 { 10.0 } else { 50.0 }));
+        assert_eq!(disparity_range(&many, 250).unwrap(), DisparityRange::inclusive(2, 70).unwrap());
+        // 20 of them: three times the margins, 18 px and 48 px.
+        assert_eq!(disparity_range(&many[..20], 25).unwrap(), DisparityRange::inclusive(-8, 98).unwrap());
         // A plane at -7.5: 3 px on both sides, to whole pixels.
         let plane = seeds([-7.5; 20]);
         assert_eq!(disparity_range(&plane, 20).unwrap(), DisparityRange::inclusive(-11, -4).unwrap());

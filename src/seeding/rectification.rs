@@ -104,21 +104,27 @@ impl Rectification {
 
 impl fmt::Display for Rectification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { offset, rotation, scale, largest, agreeing, seeds, .. } = self;
-        let figures = |f: &mut fmt::Formatter<'_>| {
-            write!(f, "the right view is {offset:+.1} px lower, turned by {rotation:+.2} degrees and ")?;
-            write!(f, "{:+.1} % larger (rows differ by up to {largest:.1} px; ", 100.0 * (scale - 1.0))?;
-            write!(f, "{agreeing} of {seeds} points agree)")
-        };
+        let Self { offset, rotation, scale, largest, agreeing, seeds, .. } = *self;
+        let either = |positive, one, other| if positive { one } else { other };
         match self.verdict {
             Verdict::Rectified => {
-                write!(f, "rectified: rows differ by up to {largest:.1} px ({agreeing} of {seeds} points agree)")
+                write!(f, "rows correspond to within {largest:.1} px ({agreeing} of {seeds} points agree)")
             }
-            Verdict::NotRectified => {
-                figures(f)?;
-                write!(f, "; rectify it first, or force the search along rows")
+            Verdict::NotRectified => write!(
+                f,
+                "the right view lies {:.1} px {}, is turned {:.2} degrees {} and {:.1} % {}, so that rows differ by up \
+                 to {largest:.1} px ({agreeing} of {seeds} points agree); rectify the pair first, or force the search \
+                 along rows",
+                offset.abs(),
+                either(offset >= 0.0, "lower", "higher"),
+                rotation.abs(),
+                either(rotation >= 0.0, "clockwise", "anticlockwise"),
+                100.0 * (scale - 1.0).abs(),
+                either(scale >= 1.0, "larger", "smaller"),
+            ),
+            Verdict::Unknown => {
+                write!(f, "unknown: {agreeing} of {seeds} points agree on how rows correspond, too few to tell")
             }
-            Verdict::Unknown => write!(f, "unknown: only {agreeing} of {seeds} points agree on how rows correspond"),
         }
     }
 }
@@ -209,4 +215,84 @@ fn refined(mut fit: Fit, points: &[Point]) -> Option<Fit> {
         }))?;
     }
     Some(fit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: (u32, u32) = (641, 481);
+
+    /// Seeds of a scene of many depths whose right view is turned, scaled and shifted about the picture's centre; every
+    /// third is wrong.
+    fn seeds(degrees: f32, scale: f32, offset: f32) -> Vec<Seed> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (0..120)
+            .map(|i| {
+                let (x, y) = ((i * 197 % 600) as f32 + 20.0, (i * 331 % 440) as f32 + 20.0);
+                let (u, v) = (x - (i * 7 % 13) as f32 - 320.0, y - 240.0);
+                let (right_x, right_y) = (320.0 + scale * (cos * u - sin * v), 240.0 + scale * (sin * u + cos * v));
+                let wrong = if i % 3 == 0 { (i * 53 % 400) as f32 - 200.0 } else { 0.0 };
+                Seed { x, y, disparity: x - right_x, dy: right_y + offset + wrong - y, confidence: 0.5 }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn rows_that_correspond_are_rectified() {
+        let found = Rectification::new(&seeds(0.0, 1.0, 0.0), SIZE);
+        assert!(found.is_rectified() && found.largest < 0.1, "{found:?}");
+        assert!(found.agreeing >= 80 && found.seeds == 120);
+    }
+
+    #[test]
+    fn offset_rotation_and_scale_are_told_with_their_figures() {
+        for (degrees, scale, offset) in
+            [(0.0, 1.0, 2.0), (0.0, 1.0, -25.0), (1.0, 1.0, 0.0), (0.0, 1.02, 0.0), (-2.5, 0.97, 4.0), (30.0, 1.5, 0.0)]
+        {
+            let found = Rectification::new(&seeds(degrees, scale, offset), SIZE);
+            assert_eq!(found.verdict, Verdict::NotRectified);
+            assert!((found.rotation - degrees).abs() < 0.1 + 0.02 * degrees.abs(), "{degrees} degrees: {found:?}");
+            assert!((found.scale / scale - 1.0).abs() < 0.003, "x {scale}: {found:?}");
+            if degrees == 0.0 {
+                assert!((found.offset - offset).abs() < 0.1, "{offset} px: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn exchanging_the_views_inverts_the_figures() {
+        let forward = seeds(3.0, 1.1, 5.0);
+        let exchanged = |s: &Seed| Seed { x: s.right_x(), y: s.right_y(), disparity: -s.disparity, dy: -s.dy, ..*s };
+        let backward: Vec<Seed> = forward.iter().map(exchanged).collect();
+        let (there, back) = (Rectification::new(&forward, SIZE), Rectification::new(&backward, SIZE));
+        assert!((there.offset + back.offset).abs() < 1e-3, "{there:?} {back:?}");
+        assert!((there.rotation + back.rotation).abs() < 1e-3, "{there:?} {back:?}");
+        assert!((there.scale * back.scale - 1.0).abs() < 1e-4, "{there:?} {back:?}");
+    }
+
+    #[test]
+    fn too_few_or_unrelated_seeds_are_unknown_not_unrectified() {
+        let few = seeds(1.0, 1.0, 0.0);
+        for seeds in [&few[..0], &few[..2], &few[..15]] {
+            assert_eq!(Rectification::new(seeds, SIZE).verdict, Verdict::Unknown);
+        }
+        let mut noise = few;
+        for (i, seed) in (0..).zip(&mut noise) {
+            seed.dy = (i * i * 7919 % 4801) as f32 / 10.0 - 240.0;
+        }
+        assert_eq!(Rectification::new(&noise, SIZE).verdict, Verdict::Unknown);
+        let column: Vec<Seed> =
+            (0..60).map(|i| Seed { x: 9.0, y: i as f32, disparity: 0.0, dy: 0.0, confidence: 1.0 }).collect();
+        assert_eq!(Rectification::new(&column, SIZE).verdict, Verdict::Unknown, "one column tells nothing of the rest");
+    }
+
+    #[test]
+    fn diagnosis_is_one_line_with_figures_and_the_way_out() {
+        let text = Rectification::new(&seeds(-1.0, 0.98, 3.0), SIZE).to_string();
+        for part in ["px lower", "1.0", "anticlockwise", "2.0 % smaller", "rectify the pair first", "force"] {
+            assert!(text.contains(part), "'{part}' in: {text}");
+        }
+        assert!(!text.contains('\n'));
+    }
 }
