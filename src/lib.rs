@@ -3,12 +3,15 @@
 pub mod dense;
 pub mod disparity;
 pub mod error;
+pub mod eval;
 pub mod features;
 pub mod gpu;
 pub mod image;
 pub mod io;
 pub mod luma;
+pub mod matching;
 pub mod reference;
+pub mod seeding;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -6,6 +6,14 @@
 mod block_match;
 mod consistency;
 mod dense;
+pub mod descriptor;
+pub mod detector;
+pub mod haar;
+pub mod hessian;
+pub mod integral;
+pub mod luma;
+pub mod nonmax;
+pub mod orientation;
 
 pub use block_match::{block_match, cost};
 pub use consistency::check_consistency;

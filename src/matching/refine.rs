@@ -1,0 +1,189 @@
+//! The position of a match, made as exact as the dense half would make it.
+//!
+//! A feature is located within its own scale, and differently so in the two views; a window of the picture around it is
+//! located to a fraction of a pixel. So the window around the left feature is sought again near the right one (paper,
+//! step 5: blocks of 7x7, 'interpolation is performed between the nearest matching window and its neighbors').
+
+use rayon::prelude::*;
+
+use super::Match;
+use crate::{features::Feature, image::Luma};
+
+/// Half the side of the 7x7 window.
+const HALF: i64 = 3;
+/// Pixels in the window.
+const AREA: usize = ((2 * HALF + 1) * (2 * HALF + 1)) as usize;
+/// How far from the match the window is sought along its row, in pixels.
+const REACH: i64 = 3;
+/// Places where the window is compared.
+const PLACES: usize = 2 * REACH as usize + 1;
+/// A window is clear if its cost is at most this share of the cost anywhere else within reach.
+///
+/// Measured on nine scenes: 78 % of the matches are within 1 px without this demand and 91 % with it, for a sixth of
+/// the matches fewer.
+const CLEAR: f32 = 0.75;
+
+/// Which row of the right view shows a row of the left one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// The same, as in a rectified pair: seeds have a `dy` of 0, whatever the features' rows.
+    Equal,
+    /// The one in which the match lies: seeds keep the `dy` of the features, which is finer than a row.
+    Matched,
+}
+
+/// A point of the left view with its disparity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seed {
+    /// Column in the left view, in pixels.
+    pub x: f32,
+    /// Row in the left view, in pixels.
+    pub y: f32,
+    /// Left column minus right column, in pixels.
+    pub disparity: f32,
+    /// Right row minus left row, in pixels: 0 everywhere in a rectified pair.
+    pub dy: f32,
+    /// Confidence of the match, 0 to 1.
+    pub confidence: f32,
+}
+
+impl Seed {
+    /// The match as the features have it.
+    pub fn from_match(left: &[Feature], right: &[Feature], found: &Match) -> Self {
+        let (l, r) = (&left[found.left], &right[found.right]);
+        Self { x: l.x, y: l.y, disparity: l.x - r.x, dy: r.y - l.y, confidence: found.confidence }
+    }
+
+    /// Column in the right view.
+    pub fn right_x(&self) -> f32 {
+        self.x - self.disparity
+    }
+
+    /// Row in the right view.
+    pub fn right_y(&self) -> f32 {
+        self.y + self.dy
+    }
+}
+
+/// Finds every match's place with the window, the most confident first, equals in the order of `matches`.
+///
+/// A seed lies on whole pixels of the left view; its confidence is that of the match, lowered as its window is less
+/// clear. Matches whose window has no clear place near the match are left out: dropping them measures better than
+/// keeping them as they are (73 % within 1 px).
+pub fn refine(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), matches: &[Match], rows: Rows) -> Vec<Seed> {
+    let mut seeds: Vec<Seed> = matches
+        .par_iter()
+        .filter_map(|found| locate(views, &Seed::from_match(features.0, features.1, found), rows))
+        .collect();
+    seeds.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+    seeds
+}
+
+fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows) -> Option<Seed> {
+    let (x, y) = (seed.x.round() as i64, seed.y.round() as i64);
+    let (row, dy) = match rows {
+        Rows::Equal => (y, 0.0),
+        Rows::Matched => (y + seed.dy.round() as i64, seed.dy),
+    };
+    let window = Window::at(left, x, y);
+    let first = seed.disparity.round() as i64 - REACH;
+    let costs: [f32; PLACES] =
+        std::array::from_fn(|i| window.difference(&Window::at(right, x - first - i as i64, row)));
+    let (place, ratio) = clear_minimum(&costs)?;
+    let confidence = seed.confidence * (1.0 - ratio).sqrt();
+    Some(Seed { x: x as f32, y: y as f32, disparity: first as f32 + place, dy, confidence })
+}
+
+/// Where the costs are least, to a fraction of a step, and the ratio of the least to its rival.
+///
+/// Two lines of opposite slope through the least and its neighbours (Shimizu and Okutomi, ICCV 2001): a sum of absolute
+/// differences has an edge where a parabola has a bow.
+fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
+    let least = (1..PLACES - 1).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
+    let (before, at, after) = (costs[least - 1], costs[least], costs[least + 1]);
+    let rival = (0..PLACES).filter(|i| i.abs_diff(least) > 1).map(|i| costs[i]).min_by(f32::total_cmp)?;
+    let slope = before.max(after) - at;
+    if at > before || at > after || slope <= 0.0 || at > CLEAR * rival {
+        return None;
+    }
+    Some((least as f32 + (before - after) / (2.0 * slope), at / rival))
+}
+
+/// The pixels of a window less their mean, and divided by their mean deviation from it: neither brightness nor
+/// contrast plays a part in a difference of two.
+struct Window([f32; AREA]);
+
+impl Window {
+    fn at(view: &Luma, x: i64, y: i64) -> Self {
+        let side = 2 * HALF + 1;
+        let mut values = [0.0; AREA];
+        for (i, value) in (0..).zip(&mut values) {
+            *value = f32::from(view.get_clamped(x + i % side - HALF, y + i / side - HALF));
+        }
+        let mean = values.iter().sum::<f32>() / AREA as f32;
+        // A flat window has no contrast to divide by.
+        let contrast = values.iter().map(|value| (value - mean).abs()).sum::<f32>().max(1.0);
+        Self(values.map(|value| (value - mean) / contrast))
+    }
+
+    fn difference(&self, other: &Self) -> f32 {
+        self.0.iter().zip(&other.0).map(|(a, b)| (a - b).abs()).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::DESCRIPTOR_LENGTH;
+
+    fn feature(x: f32, y: f32) -> Feature {
+        let descriptor = [0.0; DESCRIPTOR_LENGTH];
+        Feature { x, y, scale: 2.0, response: 1.0, dark: false, orientation: 0.0, descriptor }
+    }
+
+    /// A smooth pattern without repetition within reach.
+    fn pattern(x: f32, y: f32) -> f32 {
+        128.0 + 60.0 * (x * 0.31 + (y * 0.23).sin()).sin() + 40.0 * (y * 0.37 - x * 0.11).cos()
+    }
+
+    fn refined(right: impl Fn(f32, f32) -> f32, rows: Rows, from: (f32, f32)) -> Option<Seed> {
+        let left = Luma::from_fn(60, 40, |x, y| pattern(x as f32, y as f32).round() as u8);
+        let right = Luma::from_fn(60, 40, |x, y| right(x as f32, y as f32).round() as u8);
+        let found = Match { left: 0, right: 0, distance: 0.1, confidence: 0.5 };
+        let features = ([feature(30.3, 19.8)], [feature(from.0, from.1)]);
+        refine((&left, &right), (&features.0, &features.1), &[found], rows).first().copied()
+    }
+
+    #[test]
+    fn finds_a_fraction_of_a_pixel_whatever_the_brightness() {
+        for gain in [1.0, 0.6] {
+            let seed = refined(|x, y| gain * pattern(x + 7.4, y) + 10.0, Rows::Equal, (24.8, 19.4)).unwrap();
+            assert_eq!((seed.x, seed.y), (30.0, 20.0));
+            assert!(seed.confidence > 0.25 && seed.confidence <= 0.5, "{seed:?}");
+            assert!((seed.disparity - 7.4).abs() < 0.15, "{seed:?}");
+            assert_eq!(seed.dy, 0.0);
+        }
+    }
+
+    #[test]
+    fn follows_the_row_of_the_match_where_asked() {
+        let seed = refined(|x, y| pattern(x - 4.0, y - 3.0), Rows::Matched, (33.0, 23.0)).unwrap();
+        assert!((seed.disparity + 4.0).abs() < 0.2, "{seed:?}");
+        assert!((seed.dy - 3.2).abs() < 1e-5, "the features' rows are finer than a whole row: {seed:?}");
+    }
+
+    #[test]
+    fn flat_or_foreign_surroundings_give_no_seed() {
+        assert_eq!(refined(|_, _| 90.0, Rows::Equal, (24.0, 20.0)), None);
+        assert_eq!(refined(|x, y| pattern(x + 7.0, y), Rows::Equal, (30.0, 20.0)), None, "7 px are out of reach");
+    }
+
+    #[test]
+    fn minimum_by_hand() {
+        // A fall of 32 a step through (1, 40) and (2, 8) meets a rise of 32 through (3, 24) at 2.25; the rival is 64.
+        assert_eq!(clear_minimum(&[90.0, 40.0, 8.0, 24.0, 64.0, 80.0, 90.0]), Some((2.25, 0.125)));
+        assert_eq!(clear_minimum(&[90.0, 40.0, 10.0, 20.0, 60.0, 12.0, 90.0]), None, "the rival is as good");
+        assert_eq!(clear_minimum(&[5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), None, "lowest at the end");
+        assert_eq!(clear_minimum(&[7.0; PLACES]), None);
+    }
+}

@@ -1,0 +1,102 @@
+//! The dominant direction of the gradient around a point (Bay et al. 2008, section 4.1).
+
+use std::f32::consts::{FRAC_PI_3, PI, TAU};
+
+use crate::reference::{haar, integral::IntegralImage};
+
+/// Radius of the neighbourhood, in scales.
+const RADIUS: i32 = 6;
+/// Standard deviation of the weights, in scales.
+const SIGMA: f32 = 2.5;
+/// Directions in which the sliding window of pi/3 may start, half a step off the multiples of 45
+/// degrees: gradients of exactly those directions are common and must not sit on a window's end.
+const WINDOWS: u32 = 48;
+
+/// The orientation at `(x, y)`, in radians from 0 to below 2 pi; 0 where there is no gradient at all.
+pub fn orientation(integral: &IntegralImage, x: f32, y: f32, scale: f32) -> f32 {
+    let gradients = gradients(integral, x, y, scale);
+    let windows = (0..WINDOWS).map(|window| {
+        let start = (window as f32 + 0.5) * (TAU / WINDOWS as f32);
+        let inside = gradients.iter().filter(|(angle, ..)| wrap(angle - start) < FRAC_PI_3);
+        inside.fold((0.0, 0.0), |(dx, dy), (_, gx, gy)| (dx + gx, dy + gy))
+    });
+    let longer = |best: (f32, f32), sum: (f32, f32)| if length2(sum) > length2(best) { sum } else { best };
+    let (dx, dy) = windows.fold((0.0, 0.0), longer);
+    wrap(dy.atan2(dx))
+}
+
+/// Weighted Haar responses of the neighbourhood: angle, dx, dy.
+fn gradients(integral: &IntegralImage, x: f32, y: f32, scale: f32) -> Vec<(f32, f32, f32)> {
+    let disc = (-RADIUS..=RADIUS).flat_map(|j| (-RADIUS..=RADIUS).map(move |i| (i, j)));
+    disc.filter(|(i, j)| i * i + j * j < RADIUS * RADIUS)
+        .map(|(i, j)| {
+            let weight = (-((i * i + j * j) as f32) / (2.0 * SIGMA * SIGMA)).exp();
+            let (dx, dy) = haar::responses(integral, x + i as f32 * scale, y + j as f32 * scale, 2.0 * scale);
+            (wrap(dy.atan2(dx)), weight * dx, weight * dy)
+        })
+        .collect()
+}
+
+/// An angle above -2 pi as one from 0 to below 2 pi.
+fn wrap(angle: f32) -> f32 {
+    let wrapped = if angle < 0.0 { angle + TAU } else { angle };
+    // A tiny negative angle rounds up to the whole turn.
+    if wrapped >= TAU { 0.0 } else { wrapped }
+}
+
+fn length2((x, y): (f32, f32)) -> f32 {
+    x * x + y * y
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::image::Luma;
+
+    fn assert_angle(actual: f32, expected: f32) {
+        let difference = (actual - expected + PI).rem_euclid(TAU) - PI;
+        assert!((0.0..TAU).contains(&actual) && difference.abs() < 1e-3, "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn a_ramp_points_uphill() {
+        let ramps: [(fn(u32, u32) -> u8, f32); 4] = [
+            (|x, _| x as u8, 0.0),
+            (|_, y| y as u8, FRAC_PI_2),
+            (|x, _| 200 - x as u8, PI),
+            (|x, y| 200 - (x + y) as u8, PI * 1.25),
+        ];
+        for (ramp, expected) in ramps {
+            let integral = IntegralImage::new(&Luma::from_fn(91, 91, ramp));
+            assert_angle(orientation(&integral, 45.0, 45.0, 2.0), expected);
+        }
+    }
+
+    #[test]
+    fn rotating_the_picture_rotates_the_orientation() {
+        let size = 81;
+        let picture = Luma::from_fn(size, size, |x, y| ((x * 7 + y * 3) ^ (x * y / 5)) as u8);
+        // A quarter turn from the x axis to the y axis takes (x, y) to (size - 1 - y, x).
+        let turned = Luma::from_fn(size, size, |x, y| picture.get(y, size - 1 - x));
+        for (x, y) in [(40, 40), (30, 44), (47, 35)] {
+            let before = orientation(&IntegralImage::new(&picture), x as f32, y as f32, 1.75);
+            let (tx, ty) = ((size - 1 - y) as f32, x as f32);
+            assert_angle(orientation(&IntegralImage::new(&turned), tx, ty, 1.75), before + FRAC_PI_2);
+        }
+    }
+
+    #[test]
+    fn flat_has_orientation_zero() {
+        let integral = IntegralImage::new(&Luma::filled(64, 64, 99));
+        assert_eq!(orientation(&integral, 32.0, 32.0, 2.0), 0.0);
+    }
+
+    #[test]
+    fn angles_stay_below_a_whole_turn() {
+        assert_eq!(wrap(-1e-9), 0.0);
+        assert_eq!(wrap(-FRAC_PI_2), 1.5 * PI);
+        assert_eq!(wrap(0.5), 0.5);
+    }
+}

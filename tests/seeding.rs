@@ -1,0 +1,151 @@
+//! From two pictures to range, rows, brightness and trust: on rendered pairs, and on real ones where they are present.
+
+#![cfg(feature = "cli")]
+
+use std::path::Path;
+
+use hsad::{
+    Error,
+    disparity::DisparityRange,
+    features::{Feature, FeatureConfig},
+    image::{Luma, Plane},
+    reference::detector::detect,
+    seeding::{Seeding, SeedingConfig, Verdict},
+};
+
+/// Smooth noise: the same everywhere for the same arguments.
+fn noise(x: f32, y: f32) -> f32 {
+    let lattice = |i: i32, j: i32| {
+        let mixed = (i as u32).wrapping_mul(0x9E37_79B9) ^ (j as u32).wrapping_mul(0x85EB_CA6B);
+        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D);
+        (mixed >> 16 & 0xFF) as f32
+    };
+    let (i, j) = (x.floor(), y.floor());
+    let ease = |t: f32| t * t * (3.0 - 2.0 * t);
+    let (u, v) = (ease(x - i), ease(y - j));
+    let row = |j| lattice(i as i32, j) * (1.0 - u) + lattice(i as i32 + 1, j) * u;
+    row(j as i32) * (1.0 - v) + row(j as i32 + 1) * v
+}
+
+fn texture(x: f32, y: f32) -> f32 {
+    30.0 + 0.45 * noise(x / 7.0, y / 7.0) + 0.3 * noise(x / 17.0 + 50.0, y / 17.0)
+}
+
+/// A wall at disparity `far` with a square in front of it at `near`, seen by the left eye, and by the right one through
+/// `grey` and `lower` px lower.
+fn pair(far: f32, near: f32, lower: f32, grey: impl Fn(f32) -> f32) -> (Luma, Luma) {
+    let (width, height) = (320, 240);
+    let view = |eye: f32, lower: f32, grey: &dyn Fn(f32) -> f32| {
+        Plane::from_fn(width, height, |x, y| {
+            let (x, y) = (x as f32, y as f32 - lower);
+            let square = x + eye * near;
+            let front = (110.0..210.0).contains(&square) && (70.0..170.0).contains(&y);
+            let value = if front { texture(square + 700.0, y) } else { texture(x + eye * far, y) };
+            grey(value).round() as u8
+        })
+    };
+    (view(0.0, 0.0, &|value| value), view(1.0, lower, &grey))
+}
+
+fn find((left, right): &(Luma, Luma)) -> Seeding {
+    let features = |view: &Luma| -> Vec<Feature> { detect(view, &FeatureConfig::default()).unwrap() };
+    Seeding::find((left, right), (&features(left), &features(right)), &SeedingConfig::default()).unwrap()
+}
+
+#[test]
+fn rendered_pair_is_described_completely() {
+    let views = pair(8.0, 30.0, 0.0, |value| 0.8 * value + 12.0);
+    let found = find(&views);
+    let range = found.range.unwrap();
+    assert!(range.contains(8) && range.contains(30) && range.min >= -2 && range.last() <= 48, "{range:?}");
+    assert!(found.rectification.is_rectified(), "{}", found.rectification);
+    let brightness = found.brightness.unwrap();
+    assert!((brightness.gain - 0.8).abs() < 0.03 && (brightness.offset - 12.0).abs() < 4.0, "{brightness:?}");
+    assert!(found.trust > 0.6, "{}", found.trust);
+    let right =
+        |seed: &&hsad::matching::Seed| (seed.disparity - 8.0).abs() < 0.5 || (seed.disparity - 30.0).abs() < 0.5;
+    assert!(found.seeds.iter().filter(right).count() * 10 >= found.seeds.len() * 9);
+    let tiles = found.tiles.as_ref().unwrap();
+    assert!((0..240).all(|y| (0..320).all(|x| tiles.at(x, y).contains(8))));
+
+    assert_eq!(find(&views), found, "the same pictures give the same figures");
+}
+
+#[test]
+fn negative_disparities_are_found() {
+    let range = find(&pair(-25.0, -5.0, 0.0, |value| value)).range.unwrap();
+    assert!(range.contains(-25) && range.contains(-5) && range.last() < 15, "{range:?}");
+}
+
+#[test]
+fn shifted_rows_are_told_and_not_trusted() {
+    let found = find(&pair(8.0, 30.0, 3.0, |value| value));
+    assert_eq!(found.rectification.verdict, Verdict::NotRectified);
+    assert!((found.rectification.offset - 3.0).abs() < 0.3, "{}", found.rectification);
+    assert!(found.trust < 0.2, "{}", found.trust);
+}
+
+#[test]
+fn pictures_that_show_nothing_give_reasons_not_ranges() {
+    let found = find(&(Luma::filled(100, 80, 128), Luma::filled(100, 80, 128)));
+    assert_eq!(found.rectification.verdict, Verdict::Unknown);
+    assert_eq!((found.brightness, found.tiles, found.trust), (None, None, 0.0));
+    let error = Error::from(found.range.unwrap_err());
+    assert!(matches!(error, Error::NoRange { .. }) && error.to_string().contains("0 points"), "{error}");
+}
+
+#[test]
+fn unrelated_pictures_are_not_trusted() {
+    let (left, _) = pair(8.0, 30.0, 0.0, |value| value);
+    let other = Plane::from_fn(320, 240, |x, y| texture(y as f32 + 5000.0, x as f32 + 3000.0).round() as u8);
+    let found = find(&(left, other));
+    assert!(found.trust < 0.1 && !found.rectification.is_rectified(), "{found:?}");
+}
+
+#[test]
+fn sizes_and_settings_are_checked() {
+    let (small, large) = (Luma::filled(4, 4, 0), Luma::filled(5, 4, 0));
+    let none: (&[Feature], &[Feature]) = (&[], &[]);
+    let config = SeedingConfig::default();
+    assert!(matches!(Seeding::find((&small, &large), none, &config), Err(Error::SizesDiffer { .. })));
+    let tileless = SeedingConfig { tile: 0, ..config };
+    assert!(Seeding::find((&small, &small), none, &tileless).unwrap_err().to_string().contains("tile"));
+    let found = Seeding::find((&small, &small), none, &SeedingConfig::default()).unwrap();
+    assert_eq!(found.rectification.verdict, Verdict::Unknown);
+}
+
+/// On real scenes: the range found without help holds nearly all of the truth, and rows are known to correspond.
+#[test]
+fn real_scenes_lie_in_the_range_found_for_them() {
+    let folder = Path::new("/work/shared/data/stereo");
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is absent", folder.display());
+        return;
+    }
+    for scene in ["Art", "Cones", "Teddy", "Books", "Motorcycle_Q", "Adirondack_Q", "Adirondack_Q_exposure"] {
+        let views = (luma(&folder.join(scene).join("left.png")), luma(&folder.join(scene).join("right.png")));
+        let found = find(&views);
+        let (range, known) = (found.range.unwrap(), truth(&folder.join(scene).join("disp_left.pfm")));
+        let share = known.iter().filter(|&&d| range.contains(d.round() as i32)).count() as f64 / known.len() as f64;
+        assert!(share >= 0.995, "{scene}: {share} in {range:?}");
+        let (low, high) = known.iter().fold((f32::MAX, f32::MIN), |(low, high), &d| (low.min(d), high.max(d)));
+        let width = DisparityRange::inclusive(low.floor() as i32, high.ceil() as i32).unwrap().count;
+        assert!(range.count as f32 <= 1.6 * width as f32, "{scene}: {range:?} for {low} to {high}");
+        assert!(found.rectification.is_rectified(), "{scene}: {}", found.rectification);
+    }
+}
+
+fn luma(path: &Path) -> Luma {
+    let picture = image::open(path).unwrap().to_rgb8();
+    let grey =
+        |p: &image::Rgb<u8>| ((77 * u32::from(p[0]) + 150 * u32::from(p[1]) + 29 * u32::from(p[2]) + 128) >> 8) as u8;
+    Plane::new(picture.width(), picture.height(), picture.pixels().map(grey).collect()).unwrap()
+}
+
+/// The finite values of a little-endian PFM.
+fn truth(path: &Path) -> Vec<f32> {
+    let bytes = std::fs::read(path).unwrap();
+    let header: usize = bytes.split_inclusive(|&byte| byte == b'\n').take(3).map(<[u8]>::len).sum();
+    let values = bytes[header..].chunks_exact(4).map(|value| f32::from_le_bytes(value.try_into().unwrap()));
+    values.filter(|value| value.is_finite()).collect()
+}
