@@ -58,14 +58,24 @@ fn dxx(x: u32, y: u32, l: u32) -> i32 {
     let y0 = y - l + 1u;
     let y1 = y + l;
     let x0 = x - (3u * l - 1u) / 2u;
-    return second_difference(above(x0, y0, y1), above(x0 + l, y0, y1), above(x0 + 2u * l, y0, y1), above(x0 + 3u * l, y0, y1));
+    return second_difference(
+        above(x0, y0, y1),
+        above(x0 + l, y0, y1),
+        above(x0 + 2u * l, y0, y1),
+        above(x0 + 3u * l, y0, y1),
+    );
 }
 
 fn dyy(x: u32, y: u32, l: u32) -> i32 {
     let x0 = x - l + 1u;
     let x1 = x + l;
     let y0 = y - (3u * l - 1u) / 2u;
-    return second_difference(beside(x0, x1, y0), beside(x0, x1, y0 + l), beside(x0, x1, y0 + 2u * l), beside(x0, x1, y0 + 3u * l));
+    return second_difference(
+        beside(x0, x1, y0),
+        beside(x0, x1, y0 + l),
+        beside(x0, x1, y0 + 2u * l),
+        beside(x0, x1, y0 + 3u * l),
+    );
 }
 
 // The lobe right of column `x` minus the lobe left of it, over all rows above `y`.

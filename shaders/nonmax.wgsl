@@ -66,7 +66,9 @@ fn larger(best: Sample, at: vec3u) -> Sample {
 }
 
 fn row(at: vec3u) -> vec3i {
-    return vec3i(response_at(at - vec3u(1u, 0u, 0u)), response_at(at), response_at(at + vec3u(1u, 0u, 0u))) >> vec3u(1u);
+    let left = response_at(at - vec3u(1u, 0u, 0u));
+    let right = response_at(at + vec3u(1u, 0u, 0u));
+    return vec3i(left, response_at(at), right) >> vec3u(1u);
 }
 
 fn patch_around(at: vec3u) -> Patch {
@@ -77,8 +79,8 @@ fn max_of(v: vec3i) -> i32 {
     return max(max(v.x, v.y), v.z);
 }
 
-fn max_of_patch(patch_: Patch) -> i32 {
-    return max_of(max(max(patch_.above, patch_.level), patch_.below));
+fn max_of_patch(samples: Patch) -> i32 {
+    return max_of(max(max(samples.above, samples.level), samples.below));
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)

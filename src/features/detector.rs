@@ -37,6 +37,8 @@ type Values = [f32; DESCRIPTOR_LENGTH];
 impl Detector {
     /// Reads `luma`, a packed picture of `width` x `height` (see [`crate::luma`]).
     ///
+    /// The device's adapter needs [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`].
+    ///
     /// # Errors
     /// [`Error::Parameter`] where `config` is out of range, [`Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`Error::OutOfMemory`], [`Error::Unsupported`].
