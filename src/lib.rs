@@ -1,5 +1,6 @@
 //! Stereo depth from two photographs, on any GPU.
 
+pub mod config;
 pub mod dense;
 pub mod disparity;
 pub mod error;
@@ -10,6 +11,8 @@ pub mod image;
 pub mod io;
 pub mod luma;
 pub mod matching;
+pub mod pair;
+pub mod pipeline;
 pub mod reference;
 pub mod seeding;
 

@@ -39,6 +39,15 @@ pub fn pack(luma: &Luma) -> Vec<u32> {
     (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
 }
 
+/// The picture that `words` hold, as [`pack`] packs it.
+///
+/// # Panics
+/// If a side is 0 or there are too few words.
+pub fn unpack(width: u32, height: u32, words: &[u32]) -> Luma {
+    let stride = width.div_ceil(4) as usize;
+    Luma::from_fn(width, height, |x, y| words[y as usize * stride + x as usize / 4].to_le_bytes()[x as usize % 4])
+}
+
 /// RGBA8 to packed luma for pictures of one size: `(77 R + 150 G + 29 B + 128) >> 8`.
 pub struct RgbaToLuma {
     kernel: Kernel,
@@ -81,5 +90,6 @@ mod tests {
         let luma = Luma::new(5, 2, vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
         assert_eq!(pack(&luma), [0x0403_0201, 0x05, 0x0908_0706, 0x0a]);
         assert_eq!(packed_bytes(5, 2), 16);
+        assert_eq!(unpack(5, 2, &pack(&luma)), luma);
     }
 }

@@ -1,0 +1,151 @@
+//! Two views ready for work: their luma, where the work is done.
+
+use crate::{
+    dense::{self, Dense, DenseConfig},
+    error::{Error, Result},
+    features::{Detector, Feature, FeatureConfig},
+    gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
+    image::Luma,
+    io::Picture,
+    luma::{RgbaToLuma, packed_bytes, unpack},
+    reference,
+};
+
+/// What computes: a device, or the CPU twins.
+#[derive(Debug)]
+pub enum Backend {
+    /// The kernels on a device.
+    Gpu(Box<Gpu>),
+    /// The CPU twins, which take longer and need nothing. Dense results are the same bytes.
+    Cpu,
+}
+
+impl Backend {
+    /// Opens what was asked for.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn open(choice: &DeviceChoice) -> Result<Self> {
+        match choice {
+            DeviceChoice::Cpu => Ok(Self::Cpu),
+            _ => Ok(Self::Gpu(Box::new(Gpu::open(choice)?))),
+        }
+    }
+
+    /// The device's name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Gpu(gpu) => &gpu.info.name,
+            Self::Cpu => "CPU twins",
+        }
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => format!("{} {}", gpu.info.driver, gpu.info.driver_info).trim().into(),
+            Self::Cpu => "none".into(),
+        }
+    }
+}
+
+/// A pair of views of one size on a [`Backend`].
+pub struct Pair<'b> {
+    left: Luma,
+    right: Luma,
+    device: Option<OnDevice<'b>>,
+}
+
+struct OnDevice<'b> {
+    gpu: &'b Gpu,
+    left: wgpu::Buffer,
+    right: wgpu::Buffer,
+}
+
+impl<'b> Pair<'b> {
+    /// Brings two pictures to the backend and turns them into luma there.
+    ///
+    /// # Errors
+    /// [`Error::SizesDiffer`]; [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
+        if left.size() != right.size() {
+            return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+        }
+        match backend {
+            Backend::Cpu => Ok(Self { left: left.luma(), right: right.luma(), device: None }),
+            Backend::Gpu(gpu) => {
+                let (left_buffer, left) = luma_on(gpu, left)?;
+                let (right_buffer, right) = luma_on(gpu, right)?;
+                Ok(Self { left, right, device: Some(OnDevice { gpu, left: left_buffer, right: right_buffer }) })
+            }
+        }
+    }
+
+    /// Left and right luma.
+    pub fn views(&self) -> (&Luma, &Luma) {
+        (&self.left, &self.right)
+    }
+
+    /// Width and height of both views.
+    pub fn size(&self) -> (u32, u32) {
+        self.left.size()
+    }
+
+    /// The interest points of both views.
+    ///
+    /// # Errors
+    /// As [`crate::features::detect`].
+    pub fn features(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
+        let Some(OnDevice { gpu, left, right }) = &self.device else {
+            return Ok([
+                reference::detector::detect(&self.left, config)?,
+                reference::detector::detect(&self.right, config)?,
+            ]);
+        };
+        let device = &gpu.device;
+        let (width, height) = self.size();
+        // One detector sees the views one after the other, in a buffer of its own.
+        let view = guarded(device, "the picture", || storage_buffer(device, "luma", left.size()))?;
+        let detector = Detector::new(device, &view, width, height, config)?;
+        let detect = |luma: &wgpu::Buffer| {
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
+            encoder.copy_buffer_to_buffer(luma, 0, &view, 0, None);
+            detector.record(&mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+            detector.read(device, &gpu.queue)
+        };
+        Ok([detect(left)?, detect(right)?])
+    }
+
+    /// A disparity for each pixel of the reference view.
+    ///
+    /// # Errors
+    /// As [`dense::compute`].
+    pub fn dense(&self, config: &DenseConfig) -> Result<Dense> {
+        match &self.device {
+            Some(OnDevice { gpu, left, right }) => {
+                dense::Matcher::new(&gpu.device, self.size(), config, left, right)?.run(gpu)
+            }
+            None => reference::compute_dense(&self.left, &self.right, config),
+        }
+    }
+}
+
+/// The luma of a picture, on the device and here.
+fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
+    let (device, (width, height)) = (&gpu.device, picture.size());
+    let (luma, readback) = guarded(device, "the picture", || {
+        let rgba = storage_buffer(device, "picture", picture.rgba().len() as u64)?;
+        gpu.queue.write_buffer(&rgba, 0, picture.rgba());
+        let to_luma = RgbaToLuma::new(device, &rgba, width, height)?;
+        let readback = Readback::new(device, "luma", packed_bytes(width, height));
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
+        to_luma.record(&mut encoder);
+        readback.record(&mut encoder, to_luma.luma());
+        gpu.queue.submit([encoder.finish()]);
+        Ok((to_luma.luma().clone(), readback))
+    })?;
+    let words = readback.read(device, (packed_bytes(width, height) / 4) as usize)?;
+    Ok((luma, unpack(width, height, &words)))
+}
