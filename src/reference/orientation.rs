@@ -1,8 +1,11 @@
 //! The dominant direction of the gradient around a point (Bay et al. 2008, section 4.1).
 
-use std::f32::consts::{FRAC_PI_3, PI, TAU};
+use std::f32::consts::{FRAC_PI_3, TAU};
 
-use crate::reference::{haar, integral::IntegralImage};
+use crate::reference::{
+    haar::{self, Place},
+    integral::IntegralImage,
+};
 
 /// Radius of the neighbourhood, in scales.
 const RADIUS: i32 = 6;
@@ -12,9 +15,9 @@ const SIGMA: f32 = 2.5;
 /// degrees: gradients of exactly those directions are common and must not sit on a window's end.
 const WINDOWS: u32 = 48;
 
-/// The orientation at `(x, y)`, in radians from 0 to below 2 pi; 0 where there is no gradient at all.
-pub fn orientation(integral: &IntegralImage, x: f32, y: f32, scale: f32) -> f32 {
-    let gradients = gradients(integral, x, y, scale);
+/// The orientation at a place, in radians from 0 to below 2 pi; 0 where there is no gradient at all.
+pub fn orientation(integral: &IntegralImage, at: Place) -> f32 {
+    let gradients = gradients(integral, at);
     let windows = (0..WINDOWS).map(|window| {
         let start = (window as f32 + 0.5) * (TAU / WINDOWS as f32);
         let inside = gradients.iter().filter(|(angle, ..)| wrap(angle - start) < FRAC_PI_3);
@@ -25,13 +28,14 @@ pub fn orientation(integral: &IntegralImage, x: f32, y: f32, scale: f32) -> f32 
     wrap(dy.atan2(dx))
 }
 
-/// Weighted Haar responses of the neighbourhood: angle, dx, dy.
-fn gradients(integral: &IntegralImage, x: f32, y: f32, scale: f32) -> Vec<(f32, f32, f32)> {
+/// Weighted Haar responses of side 4 scales in the neighbourhood: angle, dx, dy.
+fn gradients(integral: &IntegralImage, at: Place) -> Vec<(f32, f32, f32)> {
     let disc = (-RADIUS..=RADIUS).flat_map(|j| (-RADIUS..=RADIUS).map(move |i| (i, j)));
     disc.filter(|(i, j)| i * i + j * j < RADIUS * RADIUS)
         .map(|(i, j)| {
             let weight = (-((i * i + j * j) as f32) / (2.0 * SIGMA * SIGMA)).exp();
-            let (dx, dy) = haar::responses(integral, x + i as f32 * scale, y + j as f32 * scale, 2.0 * scale);
+            let (dx, dy) = haar::responses(integral, at.x + i * at.scale, at.y + j * at.scale, 2 * at.scale);
+            let (dx, dy) = (dx as f32, dy as f32);
             (wrap(dy.atan2(dx)), weight * dx, weight * dy)
         })
         .collect()
@@ -50,7 +54,7 @@ fn length2((x, y): (f32, f32)) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use std::f32::consts::FRAC_PI_2;
+    use std::f32::consts::{FRAC_PI_2, PI};
 
     use super::*;
     use crate::image::Luma;
@@ -62,15 +66,11 @@ mod tests {
 
     #[test]
     fn a_ramp_points_uphill() {
-        let ramps: [(fn(u32, u32) -> u8, f32); 4] = [
-            (|x, _| x as u8, 0.0),
-            (|_, y| y as u8, FRAC_PI_2),
-            (|x, _| 200 - x as u8, PI),
-            (|x, y| 200 - (x + y) as u8, PI * 1.25),
-        ];
-        for (ramp, expected) in ramps {
+        // Slopes in x and y, and the direction uphill.
+        for (sx, sy, expected) in [(1, 0, 0.0), (0, 1, FRAC_PI_2), (-1, 0, PI), (-1, -1, PI * 1.25)] {
+            let ramp = |x: u32, y: u32| (sx * (x as i32 - 45) + sy * (y as i32 - 45) + 128) as u8;
             let integral = IntegralImage::new(&Luma::from_fn(91, 91, ramp));
-            assert_angle(orientation(&integral, 45.0, 45.0, 2.0), expected);
+            assert_angle(orientation(&integral, Place::new(45.0, 45.0, 2.0)), expected);
         }
     }
 
@@ -81,16 +81,16 @@ mod tests {
         // A quarter turn from the x axis to the y axis takes (x, y) to (size - 1 - y, x).
         let turned = Luma::from_fn(size, size, |x, y| picture.get(y, size - 1 - x));
         for (x, y) in [(40, 40), (30, 44), (47, 35)] {
-            let before = orientation(&IntegralImage::new(&picture), x as f32, y as f32, 1.75);
+            let before = orientation(&IntegralImage::new(&picture), Place::new(x as f32, y as f32, 1.75));
             let (tx, ty) = ((size - 1 - y) as f32, x as f32);
-            assert_angle(orientation(&IntegralImage::new(&turned), tx, ty, 1.75), before + FRAC_PI_2);
+            assert_angle(orientation(&IntegralImage::new(&turned), Place::new(tx, ty, 1.75)), before + FRAC_PI_2);
         }
     }
 
     #[test]
     fn flat_has_orientation_zero() {
         let integral = IntegralImage::new(&Luma::filled(64, 64, 99));
-        assert_eq!(orientation(&integral, 32.0, 32.0, 2.0), 0.0);
+        assert_eq!(orientation(&integral, Place::new(32.0, 32.0, 2.0)), 0.0);
     }
 
     #[test]
