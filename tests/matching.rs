@@ -183,3 +183,18 @@ fn values_that_are_no_numbers_match_nothing() {
     let config = MatchConfig { ratio: 1.0, ..Default::default() };
     assert_eq!(pairs(&match_features(&odd, &[good], &config).unwrap()), [(3, 0)]);
 }
+
+/// More candidates than a block holds, one of them not a number: it must hide none of its neighbours.
+#[test]
+fn one_broken_descriptor_spoils_no_other() {
+    let angle = |i: usize| feature(i as f32, 1.0, false, &[(i as f32 * 0.1).cos(), (i as f32 * 0.1).sin()]);
+    let left: Vec<Feature> = (0..30).map(angle).collect();
+    for broken in 0..30 {
+        let mut right = left.clone();
+        right[broken].descriptor[0] = f32::NAN;
+        let config = MatchConfig { ratio: 1.0, ..Default::default() };
+        let found = pairs(&match_features(&left, &right, &config).unwrap());
+        let expected: Vec<_> = (0..30).filter(|&i| i != broken).map(|i| (i, i)).collect();
+        assert_eq!(found, expected);
+    }
+}

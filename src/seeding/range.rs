@@ -8,8 +8,8 @@ use crate::{
     matching::Seed,
 };
 
-/// Seeds that it takes to believe in a range.
-const NEEDED: usize = 12;
+/// Seeds that it takes to believe in a range. With 14 of them, in a quarter of a scene, 38 % of the pixels were missed.
+const NEEDED: usize = 20;
 /// What is added beyond the farthest of many seeds, as a share of the seeds' extent.
 const FAR_MARGIN: f32 = 0.15;
 /// What is added beyond the nearest of many seeds. Much more than at the far end: what is near is large, smooth and
@@ -88,9 +88,9 @@ mod tests {
 
     #[test]
     fn thin_support_is_an_error_with_figures() {
-        let thin = disparity_range(&seeds([5.0; 11]), 40).unwrap_err();
-        assert_eq!(thin, ThinSupport { seeds: 40, supported: 11 });
+        let thin = disparity_range(&seeds([5.0; 19]), 40).unwrap_err();
+        assert_eq!(thin, ThinSupport { seeds: 40, supported: 19 });
         let message = Error::from(thin).to_string();
-        assert!(message.contains("40 points") && message.contains("11 of them"), "{message}");
+        assert!(message.contains("40 points") && message.contains("19 of them"), "{message}");
     }
 }
