@@ -9,11 +9,11 @@ mod consistency;
 mod matcher;
 mod pad;
 
-pub use block_match::BlockMatch;
+pub use block_match::{BlockMatch, Layout};
 pub use config::{DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
 pub use matcher::{Dense, Matcher, compute};
-pub use pad::Pad;
+pub use pad::{Pad, PadParams};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each window.
 pub fn stages() -> Vec<crate::gpu::Stage> {

@@ -14,7 +14,9 @@ pub mod integral;
 pub mod luma;
 pub mod nonmax;
 pub mod orientation;
+mod pad;
 
 pub use block_match::{block_match, cost};
 pub use consistency::check_consistency;
 pub use dense::compute_dense;
+pub use pad::padded;

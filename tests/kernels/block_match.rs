@@ -1,0 +1,126 @@
+//! Block matching.
+
+use hsad::{
+    dense::{BlockMatch, Dense, DenseConfig, Interpolation, Layout, Pad, View},
+    disparity::{DisparityRange, NONE, SCALE},
+    image::{Luma, Plane},
+    reference,
+};
+
+use crate::common::*;
+
+/// Padding and block matching of one view, nothing else.
+fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig) -> Dense {
+    let device = &gpu().device;
+    let (width, height) = left.size();
+    let layout = Layout::new(left.size(), 0, height, config).expect("a layout");
+    let planes = upload(&vec![0_u32; layout.words() as usize]);
+    let outputs = [0, 1].map(|_| upload(&vec![0_u32; (width * height) as usize]));
+    let [left, right] = [left, right].map(upload_luma);
+    let [reference, searched] = if view == View::Left { [&left, &right] } else { [&right, &left] };
+    let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config));
+    let [reference_padding, searched_padding] = layout.padding(view);
+    let dispatches = [
+        pad.prepare(device, reference_padding, reference, &planes),
+        pad.prepare(device, searched_padding, searched, &planes),
+        kernel.prepare(device, &layout, config.uniqueness, view, &planes, [&outputs[0], &outputs[1]]),
+    ];
+    [&planes, &outputs[0], &outputs[1]].into_iter().for_each(poison);
+    run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
+    let confidence =
+        Plane::new(width, height, download::<u32>(&outputs[1])).unwrap().map(|&c| u8::try_from(c).unwrap());
+    Dense { disparity: Plane::new(width, height, download(&outputs[0])).unwrap(), confidence }
+}
+
+/// A pair with a step in it, its right view noisier than its left.
+fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
+    let right = picture(width, height, seed);
+    let noise = picture(width, height, seed + 1);
+    let left = Luma::from_fn(width, height, |x, y| {
+        let disparity = if y < height / 2 { 3 } else { 9 };
+        let value = right.get_clamped(i64::from(x) - disparity, i64::from(y));
+        value.saturating_add(noise.get(x, y) % 16)
+    });
+    (left, right)
+}
+
+fn config(window: u32, min: i32, count: u32) -> DenseConfig {
+    DenseConfig { window, ..DenseConfig::new(DisparityRange::new(min, count).unwrap()) }
+}
+
+fn compare(what: &str, (left, right): (&Luma, &Luma), view: View, config: &DenseConfig) {
+    let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
+    let expected = reference::block_match(left, right, view, config.uniqueness, &searched);
+    let actual = on_device(left, right, view, config);
+    assert_same(&format!("{what}, disparities"), actual.disparity.data(), expected.disparity.data());
+    assert_same(&format!("{what}, confidences"), actual.confidence.data(), expected.confidence.data());
+}
+
+#[test]
+fn the_twin_matches_the_same_at_any_size() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height, 11);
+        for view in [View::Left, View::Right] {
+            compare(&format!("{width}x{height} {view:?}"), (&left, &right), view, &config(7, 0, 17));
+        }
+    }
+}
+
+#[test]
+fn the_twin_matches_the_same_with_any_window() {
+    let (left, right) = pair(97, 33, 21);
+    // The widest takes its compiler half a minute, so not all of them.
+    for window in [3, 5, 9, 11, 13, 21] {
+        compare(&format!("window {window}"), (&left, &right), View::Left, &config(window, -3, 30));
+    }
+}
+
+#[test]
+fn the_twin_matches_the_same_in_any_range() {
+    let (left, right) = pair(97, 33, 31);
+    for (min, count) in [(0, 1), (0, 2), (5, 3), (-20, 41), (-96, 193), (-500, 1000), (90, 100), (-97 - 40, 45)] {
+        for view in [View::Left, View::Right] {
+            compare(&format!("{count} from {min}, {view:?}"), (&left, &right), view, &config(3, min, count));
+        }
+    }
+}
+
+#[test]
+fn the_twin_decides_the_same_with_any_check() {
+    let (left, right) = pair(130, 131, 41);
+    for interpolation in [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular] {
+        for uniqueness in [0, 1, 15, 100] {
+            let config = DenseConfig { interpolation, uniqueness, ..config(5, -2, 23) };
+            compare(&format!("{interpolation:?}, {uniqueness} %"), (&left, &right), View::Left, &config);
+        }
+    }
+}
+
+#[test]
+fn black_white_and_noise() {
+    let black = Luma::filled(40, 30, 0);
+    let white = Luma::filled(40, 30, 255);
+    let noise = |seed| Luma::from_fn(40, 30, |x, y| picture(1, 1, seed + 40 * y + x).get(0, 0));
+    for (left, right) in [(&black, &black), (&black, &white), (&white, &black), (&noise(1), &noise(5000))] {
+        for window in [3, 15] {
+            let config = DenseConfig { uniqueness: 5, ..config(window, -8, 17) };
+            compare("extremes", (left, right), View::Left, &config);
+        }
+    }
+}
+
+#[test]
+fn by_hand() {
+    // A bright column in the dark, at 5 in the left view and at 3 in the right: disparity 2. A 3x3
+    // window sees it from the columns 4, 5 and 6; no other window of the left view sees anything,
+    // and a window without it costs nothing at any disparity that does not see it either.
+    let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
+    let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
+    let dense = on_device(&view(5), &view(3), View::Left, &config);
+    let d = |whole: i32| whole * SCALE;
+    // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
+    // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
+    let expected = [d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
+    assert_eq!(dense.disparity.data(), expected);
+    assert!(!dense.disparity.data().contains(&NONE));
+}

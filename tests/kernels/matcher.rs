@@ -1,0 +1,124 @@
+//! The dense half as a whole, in step with the twins.
+
+use hsad::{
+    dense::{self, DenseConfig, Matcher, View},
+    disparity::{DisparityRange, coverage},
+    error::Error,
+    gpu::Gpu,
+    image::Luma,
+    reference::compute_dense,
+    wgpu,
+};
+
+use crate::common::*;
+
+fn pair(width: u32, height: u32) -> (Luma, Luma) {
+    let right = picture(width, height, 1);
+    let left =
+        Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
+    (left, right)
+}
+
+fn config(reference: View) -> DenseConfig {
+    let range = DisparityRange::new(-2, 30).unwrap();
+    DenseConfig { uniqueness: 10, consistency: Some(256), reference, ..DenseConfig::new(range) }
+}
+
+#[test]
+fn the_twins_end_with_the_same_bytes() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height);
+        for reference in [View::Left, View::Right] {
+            let config = config(reference);
+            let actual = dense::compute(gpu(), &left, &right, &config);
+            let expected = compute_dense(&left, &right, &config);
+            let (actual, expected) = match (actual, expected) {
+                (Ok(actual), Ok(expected)) => (actual, expected),
+                (actual, expected) => panic!("{width}x{height}: {actual:?} and {expected:?}"),
+            };
+            let what = format!("{width}x{height} {reference:?}");
+            assert_same(&what, actual.disparity.data(), expected.disparity.data());
+            assert_same(&what, actual.confidence.data(), expected.confidence.data());
+        }
+    }
+}
+
+#[test]
+fn bands_leave_no_trace() {
+    let (left, right) = pair(130, 131);
+    let config = config(View::Left);
+    let whole = dense::compute(gpu(), &left, &right, &config).unwrap();
+    assert!(coverage(&whole.disparity) > 0.3);
+    let (left, right) = (upload_luma(&left), upload_luma(&right));
+    for rows in [1, 7, 64, 130] {
+        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), &config, &left, &right, rows).unwrap();
+        assert_eq!(banded.bands(), 131_usize.div_ceil(rows as usize));
+        let banded = banded.run(gpu()).unwrap();
+        assert_same(&format!("bands of {rows}"), banded.disparity.data(), whole.disparity.data());
+        assert_same(&format!("bands of {rows}"), banded.confidence.data(), whole.confidence.data());
+    }
+}
+
+#[test]
+fn twice_in_one_encoder_and_after_garbage() {
+    let (left, right) = pair(97, 33);
+    let expected = dense::compute(gpu(), &left, &right, &config(View::Left)).unwrap();
+    let (left, right) = (upload_luma(&left), upload_luma(&right));
+    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left), &left, &right).unwrap();
+    let outputs = [0; 4].map(|_| upload(&vec![7_u32; 97 * 33]));
+    run(|encoder| {
+        matcher.record(encoder, &outputs[0], &outputs[1]);
+        matcher.record(encoder, &outputs[2], &outputs[3]);
+    });
+    for output in [&outputs[0], &outputs[2]] {
+        assert_same("disparities", &download::<i32>(output), expected.disparity.data());
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_both_alike() {
+    let (left, right) = pair(40, 30);
+    let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
+    let even = DenseConfig { window: 8, ..config(View::Left) };
+    let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
+    for config in [far, even, unsure] {
+        let device = dense::compute(gpu(), &left, &right, &config).unwrap_err();
+        let twin = compute_dense(&left, &right, &config).unwrap_err();
+        assert!(matches!(device, Error::Parameter { .. }), "{device}");
+        assert_eq!(device.to_string(), twin.to_string());
+    }
+    let small = Luma::filled(39, 30, 0);
+    assert!(matches!(dense::compute(gpu(), &left, &small, &config(View::Left)), Err(Error::SizesDiffer { .. })));
+}
+
+/// The same adapter with the smallest limits that WebGPU knows.
+fn strict() -> Gpu {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
+    let descriptor =
+        wgpu::DeviceDescriptor { required_limits: wgpu::Limits::downlevel_defaults(), ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+    Gpu { device, queue, info: adapter.get_info() }
+}
+
+/// 36 megapixels: their disparities are more than one binding of 128 MiB holds.
+#[test]
+fn a_pair_too_large_for_one_buffer() {
+    let (width, height) = (6000, 6000);
+    let tile = picture(300, 200, 17);
+    let right = Luma::from_fn(width, height, |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
+    let left = Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
+    let config = DenseConfig { window: 3, ..DenseConfig::new(DisparityRange::new(0, 5).unwrap()) };
+    let dense = dense::compute(&strict(), &left, &right, &config).unwrap();
+    // The twin on cuts of it, without the rows whose windows see the cut; the second has the border
+    // between two bands in its middle.
+    let rows = 20;
+    for first in [0, height / 2 - rows / 2, height - rows] {
+        let cut = |view: &Luma| Luma::from_fn(width, rows, |x, y| view.get(x, first + y));
+        let twin = compute_dense(&cut(&left), &cut(&right), &config).unwrap();
+        for y in 1..rows - 1 {
+            let (actual, expected) = (dense.disparity.row(first + y), twin.disparity.row(y));
+            assert_same(&format!("row {}", first + y), actual, expected);
+        }
+    }
+}
