@@ -16,7 +16,7 @@ pub mod nonmax;
 pub mod orientation;
 mod pad;
 
-pub use block_match::{block_match, cost};
+pub use block_match::{block_match, cost, winners};
 pub use consistency::check_consistency;
 pub use dense::compute_dense;
 pub use pad::padded;
