@@ -97,7 +97,8 @@ fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> ar
     }
     var sums: array<array<vec4<u32>, QUADS>, 4>;
     for (var k = 0; k < 4; k++) { // unroll
-        var difference: array<u32, SPAN>;
+        // The last is read by a sum that nobody reads.
+        var difference: array<u32, SPAN + 1>;
         for (var i = 0; i < SPAN; i++) { // unroll
             difference[i] = u32(abs(
                 a[(FIRST + i) / 4][(FIRST + i) % 4] - b[(FIRST + i + 4 - k) / 4][(FIRST + i + 4 - k) % 4]

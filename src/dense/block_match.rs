@@ -96,7 +96,7 @@ impl BlockMatch {
                 ("SIDE", constant(config.window)),
                 ("ROWS", constant(tile.height + 2 * radius)),
                 ("QUADS", constant(tile.quads)),
-                ("SPAN", constant(4 * tile.quads + config.window)),
+                ("SPAN", constant(4 * tile.quads + config.window - 1)),
                 ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
                 ("SHIFT", constant(config.index_bits())),

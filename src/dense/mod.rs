@@ -17,11 +17,12 @@ pub use consistency::Consistency;
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 
-/// Every stage of the dense half, for checks that need no GPU; block matching for windows small and
-/// large.
+/// Every stage of the dense half, for checks that need no GPU; block matching once for each
+/// window.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Consistency::stage()];
-    for (window, tile) in [(3, Tile::HARDWARE), (7, Tile::SOFTWARE), (15, Tile::HARDWARE), (31, Tile::HARDWARE)] {
+    for window in (3..=31).step_by(2) {
+        let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
         let config = DenseConfig { window, ..DenseConfig::new(DisparityRange { min: 0, count: 1 }) };
         stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| BlockMatch::stage(&config, wanted, tile)));
     }

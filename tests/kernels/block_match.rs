@@ -69,11 +69,16 @@ fn the_twin_matches_the_same_at_any_size() {
     for (width, height) in SIZES {
         let (left, right) = pair(width, height, 11);
         for view in [View::Left, View::Right] {
-            for tile in [Tile::HARDWARE, Tile::SOFTWARE, Tile { quads: 3, height: 1 }] {
-                let what = format!("{width}x{height} {view:?} {tile:?}");
-                compare_tiled(&what, (&left, &right), view, &config(7, 0, 17), tile);
-            }
+            compare(&format!("{width}x{height} {view:?}"), (&left, &right), view, &config(7, 0, 17));
         }
+    }
+}
+
+#[test]
+fn tiles_leave_no_trace() {
+    let (left, right) = pair(97, 33, 51);
+    for tile in [Tile::SOFTWARE, Tile { quads: 3, height: 1 }] {
+        compare_tiled(&format!("{tile:?}"), (&left, &right), View::Right, &config(7, 0, 17), tile);
     }
 }
 
@@ -81,7 +86,7 @@ fn the_twin_matches_the_same_at_any_size() {
 fn the_twin_matches_the_same_with_any_window() {
     let (left, right) = pair(97, 33, 21);
     // The widest takes its compiler half a minute, so not all of them.
-    for window in [3, 5, 9, 11, 13, 21] {
+    for window in [3, 5, 9, 11, 13, 17] {
         compare(&format!("window {window}"), (&left, &right), View::Left, &config(window, -3, 30));
     }
 }
