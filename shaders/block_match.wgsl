@@ -43,6 +43,9 @@ struct Params {
 const NOTHING = 0xffffffffu;
 const INDEX_MASK = (1u << SHIFT) - 1u;
 
+// A number for each of a step's four disparities and each pixel of a row of the tile.
+alias Costs = array<array<vec4<u32>, QUADS>, 4>;
+
 // What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING.
 struct Search {
     best: vec4<u32>,
@@ -76,6 +79,43 @@ fn consider(s: Search, key: vec4<u32>) -> Search {
     return next;
 }
 
+// What is ored to the costs of a step for pixels from column x on: the disparity's index; or, where
+// it leads out of the picture or the range, all ones.
+fn tags_of(x: i32, step: u32) -> Costs {
+    var tags: Costs;
+    for (var k = 0; k < 4; k++) { // unroll
+        let index = 4u * step + k;
+        let end = select(0u, params.width, index < params.disparities);
+        for (var q = 0; q < QUADS; q++) { // unroll
+            let partner = vec4<i32>(x + 4 * q - params.min_disparity - i32(index)) + vec4<i32>(0, 1, 2, 3);
+            tags[k][q] = select(vec4<u32>(NOTHING), vec4<u32>(index), vec4<u32>(partner) < vec4<u32>(end));
+        }
+    }
+    return tags;
+}
+
+// The window sums one row further down.
+fn slide(window: Costs, entering: Costs, leaving: Costs) -> Costs {
+    var next: Costs;
+    for (var k = 0; k < 4; k++) { // unroll
+        for (var q = 0; q < QUADS; q++) { // unroll
+            next[k][q] = window[k][q] + entering[k][q] - leaving[k][q];
+        }
+    }
+    return next;
+}
+
+// A step's four disparities for a row of the tile.
+fn consider_all(searches: array<Search, QUADS>, window: Costs, tags: Costs) -> array<Search, QUADS> {
+    var next = searches;
+    for (var k = 0; k < 4; k++) { // unroll
+        for (var q = 0; q < QUADS; q++) { // unroll
+            next[q] = consider(next[q], window[k][q] | tags[k][q]);
+        }
+    }
+    return next;
+}
+
 // The four bytes of a word, as costs: each is shifted once, by as much as its place is off, and masked.
 const PLACES = vec4<i32>(SHIFT, SHIFT - 8, SHIFT - 16, SHIFT - 24);
 const UP = vec4<u32>(max(PLACES, vec4<i32>(0)));
@@ -87,7 +127,7 @@ fn unpack(word: u32) -> vec4<i32> {
 
 // For four disparities, the sums of absolute differences of a tile's pixels along one row of their
 // windows. Four disparities on, the searched words are the same, one place further.
-fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> array<array<vec4<u32>, QUADS>, 4> {
+fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> Costs {
     var a: array<vec4<i32>, WORDS>;
     var b: array<vec4<i32>, WORDS + 1>;
     b[0] = unpack(searched[0]);
@@ -95,7 +135,7 @@ fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> ar
         a[j] = unpack(reference[j]);
         b[j + 1] = unpack(searched[j + 1]);
     }
-    var sums: array<array<vec4<u32>, QUADS>, 4>;
+    var sums: Costs;
     for (var k = 0; k < 4; k++) { // unroll
         // The last is read by a sum that nobody reads.
         var difference: array<u32, SPAN + 1>;
@@ -173,21 +213,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 
     for (var step = 0u; step < params.steps; step++) {
-        // What is ored to a cost: the disparity's index; or, where it leads out of the picture or
-        // the range, all ones.
-        var tags: array<array<vec4<u32>, QUADS>, 4>;
-        for (var k = 0; k < 4; k++) { // unroll
-            let index = 4u * step + k;
-            let end = select(0u, params.width, index < params.disparities);
-            for (var q = 0; q < QUADS; q++) { // unroll
-                let partner = vec4<i32>(i32(x) + 4 * q - params.min_disparity - i32(index)) + vec4<i32>(0, 1, 2, 3);
-                tags[k][q] = select(nothing, vec4<u32>(index), vec4<u32>(partner) < vec4<u32>(end));
-            }
-        }
-
+        let tags = tags_of(i32(x), step);
         // Row sums of each row, behind as many rows of zeros as the first windows 'lose'.
-        var sums: array<array<array<vec4<u32>, QUADS>, 4>, ROWS + SIDE>;
-        var window: array<array<vec4<u32>, QUADS>, 4>;
+        var sums: array<Costs, ROWS + SIDE>;
+        var window: Costs;
         for (var y = 0; y < ROWS; y++) { // unroll
             for (var j = 0; j < WORDS; j++) { // unroll
                 searched[y][WORDS - j] = searched[y][WORDS - j - 1];
@@ -195,13 +224,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             let searched_row = params.searched_offset + (y0 + y) * params.searched_stride + params.steps + column;
             searched[y][0] = planes[searched_row - 1u - step];
             sums[y + SIDE] = row_sums(reference[y], searched[y]);
-            for (var k = 0; k < 4; k++) { // unroll
-                for (var q = 0; q < QUADS; q++) { // unroll
-                    window[k][q] += sums[y + SIDE][k][q] - sums[y][k][q];
-                    if y >= SIDE - 1 {
-                        searches[y][q] = consider(searches[y][q], window[k][q] | tags[k][q]);
-                    }
-                }
+            window = slide(window, sums[y + SIDE], sums[y]);
+            if y >= SIDE - 1 {
+                searches[y] = consider_all(searches[y], window, tags);
             }
         }
     }
