@@ -50,9 +50,9 @@ fn extrema(integral: &IntegralImage, config: &FeatureConfig) -> Vec<Extremum> {
 fn feature(integral: &IntegralImage, at: Extremum, upright: bool) -> Feature {
     let Extremum { x, y, scale, response, dark } = at;
     let place = Place::new(x, y, scale);
-    let orientation = if upright { 0.0 } else { orientation(integral, place) };
+    let orientation = (!upright).then(|| orientation(integral, place));
     let descriptor = describe(integral, place, orientation);
-    Feature { x, y, scale, response, dark, orientation, descriptor }
+    Feature { x, y, scale, response, dark, orientation: orientation.unwrap_or(0.0), descriptor }
 }
 
 #[cfg(test)]
