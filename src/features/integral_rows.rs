@@ -1,8 +1,9 @@
-//! The integral image: sums of grey values over boxes in four reads (Viola and Jones, CVPR 2001).
+//! The first half of the integral image, which gives sums of grey values over boxes in four reads
+//! (Viola and Jones, CVPR 2001): sums along rows. `shaders/integral_rows.wgsl`.
 
 use crate::{
     error::Result,
-    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
 };
 
 const WORKGROUP: u32 = 64;
@@ -14,8 +15,8 @@ struct Params {
     height: u32,
 }
 
-/// The stage that sums along rows.
-pub fn rows_stage() -> Stage {
+/// The stage.
+pub fn stage() -> Stage {
     Stage {
         name: "integral_rows",
         source: include_str!("../../shaders/integral_rows.wgsl"),
@@ -24,56 +25,32 @@ pub fn rows_stage() -> Stage {
     }
 }
 
-/// The stage that sums the row sums along columns.
-pub fn columns_stage() -> Stage {
-    Stage {
-        name: "integral_columns",
-        source: include_str!("../../shaders/integral_columns.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Write],
-        constants: vec![("WORKGROUP", WORKGROUP.into())],
-    }
+/// The row sums of pictures of one size.
+pub struct IntegralRows {
+    dispatch: Dispatch,
+    sums: wgpu::Buffer,
 }
 
-/// Bytes of a picture's integral image.
-pub fn integral_bytes(width: u32, height: u32) -> u64 {
-    4 * (u64::from(width) + 1) * (u64::from(height) + 1)
-}
-
-/// The integral image of pictures of one size.
-pub struct Integral {
-    rows: Kernel,
-    rows_bind_group: wgpu::BindGroup,
-    columns: Kernel,
-    columns_bind_group: wgpu::BindGroup,
-    width: u32,
-    height: u32,
-    integral: wgpu::Buffer,
-}
-
-impl Integral {
+impl IntegralRows {
     /// Reads packed `luma`.
     ///
     /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind the integral image.
+    /// [`crate::Error::TooLarge`] where the device cannot bind the sums.
     pub fn new(device: &wgpu::Device, luma: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
-        let rows = Kernel::new(device, &rows_stage());
-        let columns = Kernel::new(device, &columns_stage());
-        let params = uniform_buffer(device, "integral image size", &Params { width, height });
-        let integral = storage_buffer(device, "integral image", integral_bytes(width, height))?;
-        let rows_bind_group = rows.bind(device, &[&params, luma, &integral]);
-        let columns_bind_group = columns.bind(device, &[&params, &integral]);
-        Ok(Self { rows, rows_bind_group, columns, columns_bind_group, width, height, integral })
+        let params = uniform_buffer(device, "integral_rows", &Params { width, height });
+        let sums = storage_buffer(device, "integral image", 4 * (u64::from(width) + 1) * (u64::from(height) + 1))?;
+        let groups = [(height + 1).div_ceil(WORKGROUP), 1, 1];
+        let dispatch = Kernel::new(device, &stage()).dispatch(device, &[&params, luma, &sums], groups);
+        Ok(Self { dispatch, sums })
     }
 
-    /// Records both passes.
+    /// Records the pass.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        let groups = |threads: u32| [threads.div_ceil(WORKGROUP), 1, 1];
-        self.rows.record(encoder, &self.rows_bind_group, groups(self.height + 1));
-        self.columns.record(encoder, &self.columns_bind_group, groups(self.width + 1));
+        self.dispatch.record(encoder);
     }
 
-    /// `height + 1` rows of `width + 1` sums, modulo 2^32: that of all rows and columns before.
-    pub fn integral(&self) -> &wgpu::Buffer {
-        &self.integral
+    /// `height + 1` rows of `width + 1` sums, row 0 and column 0 being 0.
+    pub fn sums(&self) -> &wgpu::Buffer {
+        &self.sums
     }
 }

@@ -1,13 +1,16 @@
-//! Every kernel on a device: hand-computed cases, and sizes that divide by nothing.
+//! Every kernel on a device: hand-computed cases, and against its CPU twin at sizes that divide by nothing and on real
+//! pictures.
 //!
 //! A device is part of these tests: without any they fail. Mesa's lavapipe needs no GPU.
+#![cfg(feature = "cli")]
 
 mod common;
 mod descriptor;
 mod detector;
-mod dispatch;
 mod hessian;
-mod integral;
+mod integral_columns;
+mod integral_rows;
 mod luma;
 mod nonmax;
 mod orientation;
+mod workgroups;
