@@ -112,7 +112,7 @@ fn twin(integral: &IntegralImage, keypoint: &Keypoint, upright: bool) -> Values 
 
 /// Upright, all samples are the same integers in both, and only their cube roots and sums are floats (on lavapipe
 /// 4e-7 apart). Turned, the place of each sample is a float that is rounded to 1/16 px, sometimes the other way:
-/// allowed at one descriptor in 200, seen at two of 32,000 on lavapipe.
+/// allowed at one descriptor in 200, on lavapipe at fewer than one in 10,000.
 const TOLERANCES: [(bool, f32); 2] = [(true, 1e-5), (false, 1e-3)];
 
 fn assert_equals_the_twin(name: &str, picture: &Luma, keypoints: &[Keypoint]) {

@@ -82,7 +82,7 @@ fn twin(integral: &IntegralImage, keypoint: &Keypoint) -> f32 {
 }
 
 /// Where a gradient is at the very end of a window, or two windows' sums are equally long, the last digit decides which
-/// window wins. Allowed at one in 200; seen at none of the 32,000 on lavapipe.
+/// window wins. Allowed at one in 200; seen at none of 35,000 on lavapipe.
 #[test]
 fn equals_the_twin() {
     let (mut found, mut expected) = (Vec::new(), Vec::new());
