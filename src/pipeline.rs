@@ -7,7 +7,7 @@ use crate::{
     dense::Dense,
     disparity::DisparityRange,
     error::{Error, Result},
-    features::Feature,
+    features::{Feature, FeatureConfig},
     io::Picture,
     pair::{Backend, Pair},
     seeding::{Seeding, ThinSupport, Verdict},
@@ -55,7 +55,8 @@ pub enum RangeSource {
 /// All that is known of a pair in the end.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Interest points of the left and of the right view.
+    /// Interest points of the left and of the right view; with orientations, whatever was asked,
+    /// where those without told nothing of the pair.
     pub features: [Vec<Feature>; 2],
     /// What their matches tell.
     pub seeding: Seeding,
@@ -95,9 +96,19 @@ pub fn run(
     enter(Some(Step::Luma));
     let pair = Pair::new(backend, left, right)?;
     enter(Some(Step::Features));
-    let features = pair.features(&config.features)?;
+    let mut features = pair.features(&config.features)?;
     enter(Some(Step::Seeding));
-    let seeding = Seeding::find(pair.views(), (&features[0], &features[1]), &config.seeding)?;
+    let find =
+        |features: &[Vec<Feature>; 2]| Seeding::find(pair.views(), (&features[0], &features[1]), &config.seeding);
+    let mut seeding = find(&features)?;
+    if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
+        // Views that are turned against each other are recognised only with orientations.
+        let turned = pair.features(&FeatureConfig { upright: false, ..config.features.clone() })?;
+        let found = find(&turned)?;
+        if found.rectification.verdict != Verdict::Unknown {
+            (features, seeding) = (turned, found);
+        }
+    }
     if seeding.rectification.verdict == Verdict::NotRectified && !config.force {
         return Err(Error::NotRectified { diagnosis: seeding.rectification.to_string() });
     }
