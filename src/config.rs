@@ -1,8 +1,9 @@
 //! Everything that can be chosen for a pair, and presets of it.
 
 use crate::{
-    dense::{Interpolation, View},
+    dense::{DenseConfig, Interpolation, View},
     disparity::DisparityRange,
+    error::Result,
     features::FeatureConfig,
     seeding::SeedingConfig,
 };
@@ -16,6 +17,12 @@ pub struct Config {
     pub seeding: SeedingConfig,
     /// The disparities to search; `None`: found from the seeds.
     pub range: Option<DisparityRange>,
+    /// A limit to a range that is found: no disparity below this is searched. 0 searches to one
+    /// side only.
+    pub least: Option<i32>,
+    /// How many interest points and matches a figure shows, the strongest ones; `None`: all. All
+    /// conclusions are drawn from all of them.
+    pub strongest: Option<usize>,
     /// The view whose pixels get a disparity.
     pub reference: View,
     /// Side of the matching window in pixels, odd, 3 to 31.
@@ -30,6 +37,32 @@ pub struct Config {
     pub force: bool,
 }
 
+impl Config {
+    /// Refuses what no step could work with, before any of them begins.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] with the accepted range.
+    pub fn validate(&self) -> Result<()> {
+        self.features.validate()?;
+        self.seeding.matching.validate()?;
+        let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
+        DisparityRange::new(range.min, range.count)?;
+        self.dense(range).validate()
+    }
+
+    /// What the dense half is asked to do in `range`.
+    pub fn dense(&self, range: DisparityRange) -> DenseConfig {
+        DenseConfig {
+            window: self.window,
+            range,
+            reference: self.reference,
+            interpolation: self.interpolation,
+            uniqueness: self.uniqueness,
+            consistency: self.consistency,
+        }
+    }
+}
+
 /// A set of parameters that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
@@ -39,7 +72,9 @@ pub enum Preset {
     Standard,
     /// The paper to the letter: the right view is the reference and is searched for in the left to
     /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
-    /// neighbours and no check; orientations are computed, and the ten strongest matches are kept.
+    /// neighbours and no check; orientations are computed, and the ten strongest points and matches
+    /// are shown. The disparity range, of which the paper does not say where it comes from, is found
+    /// from all matches: ten cannot confirm one another.
     Paper,
 }
 
@@ -50,6 +85,8 @@ impl Preset {
             features: FeatureConfig::default(),
             seeding: SeedingConfig::default(),
             range: None,
+            least: None,
+            strongest: None,
             reference: View::Left,
             window: 11,
             interpolation: Interpolation::Equiangular,
@@ -61,6 +98,8 @@ impl Preset {
             Self::Standard => standard,
             Self::Paper => Config {
                 features: FeatureConfig { upright: false, ..standard.features },
+                least: Some(0),
+                strongest: Some(10),
                 reference: View::Right,
                 window: 7,
                 interpolation: Interpolation::Parabola,
@@ -68,6 +107,33 @@ impl Preset {
                 consistency: None,
                 ..standard
             },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_valid_and_nonsense_is_named() {
+        for preset in [Preset::Standard, Preset::Paper] {
+            preset.config().validate().unwrap();
+        }
+        let standard = || Preset::Standard.config();
+        let bad = [
+            (Config { window: 8, ..standard() }, "window is 8"),
+            (Config { uniqueness: 101, ..standard() }, "uniqueness is 101"),
+            (Config { least: Some(i32::MIN), ..standard() }, "the disparity range"),
+            (
+                Config { range: Some(DisparityRange { min: 0, count: 0 }), ..standard() },
+                "the number of disparities is 0",
+            ),
+            (Config { features: FeatureConfig { octaves: 6, ..Default::default() }, ..standard() }, "octaves is 6"),
+        ];
+        for (config, expected) in bad {
+            let error = config.validate().unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
         }
     }
 }

@@ -1,3 +1,30 @@
 //! The command line of `hsad`.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    without_desktop();
+    // What the library and wgpu log is for those who ask with RUST_LOG; everyone else gets one error.
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
+    match cli::Cli::parse().run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            cli::terminal::error(&error);
+            cli::exit_code(&error)
+        }
+    }
+}
+
+/// Keeps Mesa's device-select layer out where there is no desktop: it looks for a compositor, and
+/// libwayland then prints 'error: XDG_RUNTIME_DIR is invalid or not set' for each look. All the
+/// layer does is sort devices, and `--device` chooses among them here.
+fn without_desktop() {
+    if cfg!(target_os = "linux") && std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: this is the first thing that happens, so no other thread reads the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}

@@ -3,7 +3,7 @@
 use crate::{
     dense::{self, Dense, DenseConfig},
     error::{Error, Result},
-    features::{Detector, Feature, FeatureConfig},
+    features::{self, Detector, Feature, FeatureConfig},
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
     image::Luma,
     io::Picture,
@@ -40,11 +40,30 @@ impl Backend {
         }
     }
 
+    /// The graphics interface it is reached by.
+    pub fn api(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => gpu.info.backend.to_string(),
+            Self::Cpu => "none".into(),
+        }
+    }
+
     /// The driver and its version.
     pub fn driver(&self) -> String {
         match self {
             Self::Gpu(gpu) => format!("{} {}", gpu.info.driver, gpu.info.driver_info).trim().into(),
             Self::Cpu => "none".into(),
+        }
+    }
+
+    /// The interest points of one picture alone; for those of a pair there is [`Pair::features`].
+    ///
+    /// # Errors
+    /// As [`crate::features::detect`].
+    pub fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+        match self {
+            Self::Gpu(gpu) => features::detect(gpu, luma, config),
+            Self::Cpu => reference::detector::detect(luma, config),
         }
     }
 }

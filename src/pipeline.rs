@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use crate::{
     config::Config,
-    dense::{Dense, DenseConfig},
+    dense::Dense,
     disparity::DisparityRange,
     error::{Error, Result},
-    features::Feature,
+    features::{Feature, FeatureConfig},
     io::Picture,
     pair::{Backend, Pair},
     seeding::{Seeding, ThinSupport, Verdict},
@@ -48,18 +48,19 @@ pub enum RangeSource {
     Asked,
     /// It was found from the seeds.
     Seeds,
-    /// There were too few seeds: a quarter of the picture's width, from 0 on.
+    /// There were too few seeds: a quarter of the picture's width, from [`Config::least`] or 0 on.
     Fallback(ThinSupport),
 }
 
 /// All that is known of a pair in the end.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Interest points of the left and of the right view.
+    /// Interest points of the left and of the right view; with orientations, whatever was asked,
+    /// where those without told nothing of the pair.
     pub features: [Vec<Feature>; 2],
     /// What their matches tell.
     pub seeding: Seeding,
-    /// The disparities that were searched.
+    /// The disparities that were searched: none that the picture's width rules out.
     pub range: DisparityRange,
     /// Who named them.
     pub range_source: RangeSource,
@@ -72,8 +73,9 @@ pub struct Outcome {
 /// Computes everything, calling `begin` at the beginning of each step.
 ///
 /// # Errors
-/// [`Error::SizesDiffer`]; [`Error::TooSmall`] for pictures that hold no window;
-/// [`Error::NotRectified`] unless `config.force`; and what the steps report.
+/// [`Error::SizesDiffer`]; [`Error::Parameter`]; [`Error::TooSmall`] for pictures that hold no window;
+/// [`Error::NotRectified`] unless `config.force`; [`Error::NoRange`] where all that is found lies below
+/// `config.least`; and what the steps report.
 pub fn run(
     backend: &Backend,
     (left, right): (&Picture, &Picture),
@@ -89,36 +91,53 @@ pub fn run(
         step.into_iter().for_each(&mut begin);
     };
 
+    config.validate()?;
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
     let pair = Pair::new(backend, left, right)?;
     enter(Some(Step::Features));
-    let features = pair.features(&config.features)?;
+    let mut features = pair.features(&config.features)?;
     enter(Some(Step::Seeding));
-    let seeding = Seeding::find(pair.views(), (&features[0], &features[1]), &config.seeding)?;
+    let find =
+        |features: &[Vec<Feature>; 2]| Seeding::find(pair.views(), (&features[0], &features[1]), &config.seeding);
+    let mut seeding = find(&features)?;
+    if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
+        // Views that are turned against each other are recognised only with orientations.
+        let turned = pair.features(&FeatureConfig { upright: false, ..config.features.clone() })?;
+        let found = find(&turned)?;
+        if found.rectification.verdict != Verdict::Unknown {
+            (features, seeding) = (turned, found);
+        }
+    }
     if seeding.rectification.verdict == Verdict::NotRectified && !config.force {
         return Err(Error::NotRectified { diagnosis: seeding.rectification.to_string() });
     }
     let (range, range_source) = match (config.range, seeding.range) {
         (Some(range), _) => (range, RangeSource::Asked),
-        (None, Ok(range)) => (range, RangeSource::Seeds),
-        (None, Err(thin)) => (DisparityRange::new(0, left.width().div_ceil(4))?, RangeSource::Fallback(thin)),
+        (None, Ok(range)) => (not_below(range, config.least)?, RangeSource::Seeds),
+        (None, Err(thin)) => {
+            let range = DisparityRange::new(config.least.unwrap_or(0), left.width().div_ceil(4))?;
+            (range, RangeSource::Fallback(thin))
+        }
     };
+    let range = config.dense(range).searched(left.width())?;
     enter(Some(Step::Dense));
-    let dense = pair.dense(&dense_config(config, range))?;
+    let dense = pair.dense(&config.dense(range))?;
     enter(None);
     Ok(Outcome { features, seeding, range, range_source, dense, times })
 }
 
-fn dense_config(config: &Config, range: DisparityRange) -> DenseConfig {
-    DenseConfig {
-        window: config.window,
-        range,
-        reference: config.reference,
-        interpolation: config.interpolation,
-        uniqueness: config.uniqueness,
-        consistency: config.consistency,
-    }
+/// The part of a range that was found that lies above the limit.
+fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange> {
+    let Some(least) = least.filter(|&least| least > range.min) else { return Ok(range) };
+    DisparityRange::inclusive(least, range.last()).map_err(|_| Error::NoRange {
+        reason: format!(
+            "the matches show {} to {} px and nothing below {least} is to be searched; if left and right are mixed \
+             up, exchange them",
+            range.min,
+            range.last()
+        ),
+    })
 }
 
 fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
@@ -131,4 +150,20 @@ fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
         what: format!("a window of {0}x{0}", config.window),
         way_out: "use a larger picture or a smaller --window".into(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_found_range_is_cut_at_the_limit() {
+        let found = DisparityRange::inclusive(-9, 40).unwrap();
+        assert_eq!(not_below(found, None).unwrap(), found);
+        assert_eq!(not_below(found, Some(-20)).unwrap(), found);
+        assert_eq!(not_below(found, Some(0)).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
+        assert_eq!(not_below(found, Some(40)).unwrap(), DisparityRange::new(40, 1).unwrap());
+        let error = not_below(found, Some(41)).unwrap_err().to_string();
+        assert!(error.contains("-9 to 40 px") && error.contains("exchange"), "{error}");
+    }
 }

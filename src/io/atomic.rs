@@ -17,38 +17,86 @@ use crate::error::{Error, Result};
 /// # Errors
 /// [`Error::Io`] with `path`, whatever went wrong.
 pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<T> {
-    replace(path, write).map_err(|source| Error::Io { path: path.into(), source })
+    let (staged, written) = Staged::write(path, write)?;
+    staged.put()?;
+    Ok(written)
 }
 
-fn replace<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
+/// A file that is written but not yet in its place, so that several can appear together or not at
+/// all. It vanishes if it is dropped.
+#[derive(Debug)]
+pub struct Staged {
+    path: PathBuf,
+    file: Temporary,
+}
+
+impl Staged {
+    /// Writes what shall stand at `path`, next to it; the rules are those of [`write_whole`].
+    ///
+    /// # Errors
+    /// As [`write_whole`].
+    pub fn write<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<(Self, T)> {
+        let failed = |source| Error::Io { path: path.into(), source };
+        let (file, written) = stage(path, write).map_err(failed)?;
+        Ok((Self { path: path.into(), file }, written))
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// As [`write_whole`].
+    pub fn put(self) -> Result<()> {
+        let Self { path, file } = self;
+        match file {
+            None => Ok(()),
+            Some((temporary, target)) => match temporary.persist(target) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(Error::Io { path, source: error.error }),
+            },
+        }
+    }
+}
+
+/// The file and where it goes; none where it was written to directly.
+type Temporary = Option<(tempfile::NamedTempFile, PathBuf)>;
+
+fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<(Temporary, T)> {
     let old = fs::metadata(path).ok();
     match &old {
         Some(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Some(old) if !old.is_file() => return fill(&OpenOptions::new().write(true).open(path)?, write),
+        Some(old) if !old.is_file() => {
+            return Ok((None, fill(&OpenOptions::new().write(true).open(path)?, write)?));
+        }
         Some(old) if old.permissions().readonly() => {
             return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
         }
         _ => {}
     }
     let target = if old.is_some() { fs::canonicalize(path)? } else { path.into() };
-    let folder = folder(&target);
+    let temporary = temporary_in(&folder(&target))?;
+    let written = fill(temporary.as_file(), write)?;
+    if let Some(old) = old {
+        temporary.as_file().set_permissions(old.permissions())?;
+    }
+    Ok((Some((temporary, target)), written))
+}
+
+/// A file in `folder` that is gone once dropped: also how to find out, before any work, whether
+/// files can be written there.
+///
+/// # Errors
+/// Those of the system.
+pub fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     if !folder.is_dir() {
         let reason = format!("there is no folder '{}': create it first", folder.display());
         return Err(io::Error::new(io::ErrorKind::NotFound, reason));
     }
-
     let mut builder = tempfile::Builder::new();
     // A temporary file is its owner's alone unless told otherwise; the umask still applies.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     // The temporary file's name in these errors would say nothing to anyone.
-    let temporary = builder.prefix(".hsad-").tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
-    let written = fill(temporary.as_file(), write)?;
-    if let Some(old) = old {
-        temporary.as_file().set_permissions(old.permissions())?;
-    }
-    temporary.persist(target).map_err(|error| error.error)?;
-    Ok(written)
+    builder.prefix(".hsad-").tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))
 }
 
 fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
@@ -95,6 +143,21 @@ mod tests {
         });
         assert_eq!(error.unwrap_err().to_string(), format!("{}: no more", path.display()));
         assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["map"]);
+    }
+
+    #[test]
+    fn staged_files_appear_when_they_are_put() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map");
+        fs::write(&path, "old").unwrap();
+        let staged = |text: &'static str| Staged::write(&path, |out| out.write_all(text.as_bytes())).unwrap().0;
+        drop(staged("dropped"));
+        assert_eq!(names(folder.path()), ["map"]);
+        let new = staged("new");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        new.put().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["map"]);
     }
 

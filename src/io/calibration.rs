@@ -34,7 +34,8 @@ pub struct Calibration {
     /// Column of the right camera's principal point less that of the left one's, in pixels: what
     /// has to be added to a disparity before it is 0 at infinity.
     pub doffs: f64,
-    /// Column of the left camera's principal point, in pixels.
+    /// Column of the principal point, in pixels: the left camera's, as files have it, or the right
+    /// one's after [`Self::seen_from_right`].
     pub cx: f64,
     /// Row of the principal points, in pixels.
     pub cy: f64,
@@ -125,6 +126,12 @@ impl Calibration {
         }
     }
 
+    /// The same pair in the right camera's coordinates, whose principal point lies `doffs` further
+    /// to the right.
+    pub fn seen_from_right(self) -> Self {
+        Self { cx: self.cx + self.doffs, ..self }
+    }
+
     /// The distance along the optical axis, in metres, of what has this disparity in pixels; `None`
     /// at infinity and beyond.
     pub fn depth(&self, disparity: f64) -> Option<f64> {
@@ -133,7 +140,7 @@ impl Calibration {
     }
 }
 
-/// The depth of each pixel of the left view in metres; +inf where there is none.
+/// The depth of each pixel of the map's view in metres; +inf where there is none.
 pub fn depth_map(map: &DisparityMap, calibration: &Calibration) -> Plane<f32> {
     let depth = |&d: &i32| calibration.depth(f64::from(disparity::pixels(d)?));
     map.map(|d| depth(d).map_or(f32::INFINITY, |z| z as f32))
@@ -252,6 +259,8 @@ mod tests {
         assert!((calibration.baseline - 0.193001).abs() < 1e-12);
         let rest = (calibration.focal, calibration.doffs, calibration.cx, calibration.cy, calibration.size);
         assert_eq!(rest, (999.421, 32.778, 294.182, 252.932, Some((741, 497))));
+        // cam1 has its principal point in column 326.96.
+        assert!((calibration.seen_from_right().cx - 326.96).abs() < 1e-9);
         assert_eq!(parse(&MOTORCYCLE.replace('\n', "\r\n")).unwrap(), calibration);
     }
 

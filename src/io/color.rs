@@ -1,8 +1,8 @@
-//! Disparities in false colours, and confidences in grey, for people to look at.
+//! Disparities in false colours, for people to look at.
 
 use crate::{
     disparity::{DisparityMap, NONE},
-    image::{Luma, Plane},
+    image::Plane,
 };
 
 /// Where the colours of disparities begin on Turbo, which is nearly black at 0.
@@ -28,11 +28,6 @@ pub fn disparity_colors(map: &DisparityMap, range: (i32, i32)) -> Plane<[u8; 3]>
     map.map(|&d| if d == NONE { [0; 3] } else { turbo(FAR + (1.0 - FAR) * share(d).clamp(0.0, 1.0)) })
 }
 
-/// Confidences of 0 to 1 as grey of 0 to 255; what is beyond is clamped, and NaN is 0.
-pub fn confidence_grey(confidence: &Plane<f32>) -> Luma {
-    confidence.map(|&value| to_byte(value))
-}
-
 /// Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour
 /// map: 'Turbo, An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
 /// <https://gist.github.com/mikhailov-work/0d177465a8151eb6ede1768d51d476c7>.
@@ -48,7 +43,7 @@ pub fn turbo(t: f32) -> [u8; 3] {
 }
 
 fn to_byte(value: f32) -> u8 {
-    // A cast saturates, and takes NaN to 0.
+    // A cast saturates.
     (value * 255.0).round() as u8
 }
 
@@ -93,11 +88,5 @@ mod tests {
         assert_eq!(disparity_range(&map), Some((2, 198)));
         assert_eq!(disparity_range(&DisparityMap::new(3, 1, vec![5, -7, 6]).unwrap()), Some((-7, 6)));
         assert_eq!(disparity_range(&DisparityMap::filled(3, 1, NONE)), None);
-    }
-
-    #[test]
-    fn confidence_by_hand() {
-        let confidence = Plane::new(5, 1, vec![0.0, 0.5, 1.0, 2.0, f32::NAN]).unwrap();
-        assert_eq!(confidence_grey(&confidence).data(), [0, 128, 255, 255, 0]);
     }
 }

@@ -6,7 +6,10 @@
 //! exactly 0 becomes 1/256 px; negative ones and those from 256 px on become 'none' and are counted.
 //! A PFM ([`super::pfm`]) holds them all.
 
-use std::path::Path;
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 use ::image::DynamicImage;
 
@@ -38,10 +41,10 @@ impl Lost {
 /// Writes `map` and tells what was lost.
 ///
 /// # Errors
-/// As [`super::atomic::write_whole`].
-pub fn write(path: &Path, map: &DisparityMap) -> Result<Lost> {
+/// Those of `out`.
+pub fn write(out: &mut impl Write, map: &DisparityMap) -> io::Result<Lost> {
     let (values, lost) = to_values(map);
-    png::write_grey16(path, &values)?;
+    png::write_grey16(out, &values)?;
     Ok(lost)
 }
 
@@ -109,7 +112,9 @@ mod tests {
     fn other_pictures_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("grey.png");
-        png::write_grey8(&path, &Plane::filled(3, 2, 9)).unwrap();
+        let mut grey = Vec::new();
+        png::write_grey8(&mut grey, &Plane::filled(3, 2, 9)).unwrap();
+        std::fs::write(&path, grey).unwrap();
         let error = read(&path).unwrap_err().to_string();
         assert!(error.contains("a PNG of 8-bit grey: disparities are 16-bit grey"), "{error}");
         std::fs::write(&path, "Pf\n1 1\n-1\n0000").unwrap();

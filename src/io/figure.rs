@@ -28,7 +28,7 @@ const LIGHT_BLOB: [u8; 3] = [48, 176, 255];
 /// blue for light ones. A line from the centre shows the orientation, except where it is exactly 0,
 /// as in upright mode.
 pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
-    let mut canvas = Canvas(picture.luma().map(|&grey| [grey; 3]));
+    let mut canvas = Canvas(grey(picture));
     for feature in features {
         let color = if feature.dark { DARK_BLOB } else { LIGHT_BLOB };
         let (centre, radius) = ([feature.x, feature.y], RADIUS_PER_SCALE * feature.scale);
@@ -45,16 +45,33 @@ pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
 /// around them, neighbours of the list in colours that differ.
 pub fn matches(left: &Picture, right: &Picture, pairs: &[PointPair]) -> Plane<[u8; 3]> {
     let start = left.width() + GAP;
-    let (width, height) = (start + right.width(), left.height().max(right.height()));
-    let mut canvas = Canvas(Plane::filled(width, height, [0; 3]));
-    canvas.paste(&left.luma(), 0);
-    canvas.paste(&right.luma(), start);
+    let mut canvas = Canvas(side_by_side(&[&grey(left), &grey(right)]));
     for (index, &(from, to)) in (0..).zip(pairs) {
         let to = [to[0] + start as f32, to[1]];
         let color = distinct(index);
         canvas.line(from, to, color);
         canvas.circle(from, MATCH_RADIUS, color);
         canvas.circle(to, MATCH_RADIUS, color);
+    }
+    canvas.0
+}
+
+fn grey(picture: &Picture) -> Plane<[u8; 3]> {
+    picture.luma().map(|&grey| [grey; 3])
+}
+
+/// Pictures in a row, their tops level, black around them.
+///
+/// # Panics
+/// If there are none.
+pub fn side_by_side(pictures: &[&Plane<[u8; 3]>]) -> Plane<[u8; 3]> {
+    let width = pictures.iter().map(|picture| picture.width() + GAP).sum::<u32>() - GAP;
+    let height = pictures.iter().map(|picture| picture.height()).max().unwrap_or(0);
+    let mut canvas = Canvas(Plane::filled(width, height, [0; 3]));
+    let mut start = 0;
+    for picture in pictures {
+        canvas.paste(picture, start);
+        start += picture.width() + GAP;
     }
     canvas.0
 }
@@ -75,10 +92,10 @@ fn distinct(index: u32) -> [u8; 3] {
 struct Canvas(Plane<[u8; 3]>);
 
 impl Canvas {
-    fn paste(&mut self, picture: &Plane<u8>, start: u32) {
+    fn paste(&mut self, picture: &Plane<[u8; 3]>, start: u32) {
         for y in 0..picture.height() {
-            for (x, &grey) in (start..).zip(picture.row(y)) {
-                self.0.set(x, y, [grey; 3]);
+            for (x, &color) in (start..).zip(picture.row(y)) {
+                self.0.set(x, y, color);
             }
         }
     }
@@ -230,6 +247,16 @@ mod tests {
         assert_eq!((figure.get(0, 0), figure.get(0, 13), figure.get(39, 13)), ([50; 3], [0; 3], [90; 3]));
         assert!((5..=34).all(|x| figure.get(x, 5) == distinct(0)));
         assert_ne!(figure.get(37, 5), [90; 3], "on the circle around the right point");
+    }
+
+    #[test]
+    fn pictures_stand_side_by_side() {
+        let (a, b) = (Plane::filled(2, 1, [1; 3]), Plane::filled(1, 2, [2; 3]));
+        let row = side_by_side(&[&a, &b, &a]);
+        assert_eq!(row.size(), (2 + GAP + 1 + GAP + 2, 2));
+        let level = |y: u32| [0, 1, 2, 2 + GAP, 2 + GAP + 1, 2 + GAP + 1 + GAP].map(|x| row.get(x, y)[0]);
+        assert_eq!((level(0), level(1)), ([1, 1, 0, 2, 0, 1], [0, 0, 0, 2, 0, 0]));
+        assert_eq!(side_by_side(&[&b]), b);
     }
 
     #[test]

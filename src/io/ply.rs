@@ -1,6 +1,6 @@
 //! Coloured point clouds as PLY, the Stanford polygon format.
 //!
-//! Points are in camera coordinates of the left view, in metres: x right, y down, z forward.
+//! Points are in the camera coordinates of the view that the depth belongs to, in metres: x right, y down, z forward.
 //! Viewers that take y as up show them upside down; turn them by 180 degrees around x.
 
 use std::io::{self, Write};

@@ -113,8 +113,8 @@ impl fmt::Display for Rectification {
             Verdict::NotRectified => write!(
                 f,
                 "the right view lies {:.1} px {}, is turned {:.2} degrees {} and {:.1} % {}, so that rows differ by up \
-                 to {largest:.1} px ({agreeing} of {seeds} points agree); rectify the pair first, or force the search \
-                 along rows",
+                 to {largest:.1} px ({agreeing} of {seeds} points agree); rectify the pair first, or search along rows \
+                 all the same with --force",
                 offset.abs(),
                 either(offset >= 0.0, "lower", "higher"),
                 rotation.abs(),

@@ -1,0 +1,199 @@
+//! `hsad demo`: the main job on a scene that is part of the program, held against its truth.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context;
+use clap::Args;
+use hsad::{
+    Result,
+    config::Preset,
+    disparity::{DisparityMap, SCALE},
+    eval::{Score, score},
+    image::Plane,
+    io::{Calibration, Picture, color, figure, load, pfm, png},
+};
+use serde_json::{Value, json};
+
+use super::{
+    job::Job,
+    options::RunOptions,
+    output::Output,
+    products, summary,
+    terminal::{self, Progress},
+};
+
+const LEFT: &[u8] = include_bytes!("../../data/curved/left.png");
+const RIGHT: &[u8] = include_bytes!("../../data/curved/right.png");
+const TRUTH: &[u8] = include_bytes!("../../data/curved/disp_left.pfm");
+const NON_OCCLUDED: &[u8] = include_bytes!("../../data/curved/nonocc.png");
+const META: &str = include_str!("../../data/curved/meta.json");
+
+/// Errors above these count as wrong, in pixels.
+const THRESHOLDS: [f32; 2] = [1.0, 2.0];
+
+/// Match a pair that is part of this program, and tell how exact the result is
+///
+/// Writes what hsad match writes, with depth and figures, the two pictures, and demo.png: the left
+/// picture, the disparities found and the true ones side by side.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hsad demo
+  hsad demo -o /tmp/demo --device cpu")]
+pub struct Demo {
+    /// Folder for the results, created if need be
+    #[arg(short, long, value_name = "DIR", default_value = "hsad-demo")]
+    output: PathBuf,
+    #[command(flatten)]
+    run: RunOptions,
+}
+
+impl Demo {
+    /// Does what `hsad match` does, and scores it.
+    pub fn run(self) -> anyhow::Result<()> {
+        let mut output = Output::open(&self.output)?;
+        let scene = Scene::new()?;
+        let names = ["left.png", "right.png"].map(String::from);
+        let job = Job {
+            names,
+            left: scene.left.clone(),
+            right: scene.right.clone(),
+            config: Preset::Standard.config(),
+            calibration: Some(scene.calibration),
+        };
+        let mut done = job.run(&self.run)?;
+        let accuracy = Accuracy::new(&done.outcome.dense.disparity, &scene)?;
+
+        let progress = Progress::new(self.run.quiet);
+        progress.begin("writing");
+        let panels = scene.panels(&done.outcome.dense.disparity);
+        output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
+        output.add("left.png", |out| out.write_all(LEFT))?;
+        output.add("right.png", |out| out.write_all(RIGHT))?;
+        done.add_maps(&mut output)?;
+        done.add_figures(&mut output)?;
+        let mut report = done.report();
+        report["accuracy"] = accuracy.report();
+        products::add_report(&mut output, report)?;
+        output.finish()?;
+        drop(progress);
+
+        if !self.run.quiet {
+            done.warnings.iter().for_each(terminal::warning);
+            terminal::print(&(done.summary() + &summary::files(&output) + &accuracy.summary()))?;
+            let look = output.folder().join("demo.png");
+            terminal::print(&format!(
+                "\nLook at {}: left picture, disparities found, true disparities.\n",
+                look.display()
+            ))?;
+        }
+        Ok(())
+    }
+}
+
+/// The scene, as it comes with the program.
+struct Scene {
+    left: Picture,
+    right: Picture,
+    truth: Plane<f32>,
+    /// 255 where both cameras see the same point.
+    non_occluded: Plane<u8>,
+    calibration: Calibration,
+}
+
+impl Scene {
+    fn new() -> anyhow::Result<Self> {
+        let shipped = |name| Path::new("the shipped scene").join(name);
+        let meta: Value = serde_json::from_str(META).context("the shipped meta.json")?;
+        let calib = meta["calib_txt"].as_str().context("the shipped meta.json has no calib_txt")?;
+        Ok(Self {
+            left: load::decode(LEFT, &shipped("left.png"))?,
+            right: load::decode(RIGHT, &shipped("right.png"))?,
+            truth: pfm::decode(TRUTH, &shipped("disp_left.pfm"))?,
+            non_occluded: load::decode(NON_OCCLUDED, &shipped("nonocc.png"))?.luma(),
+            calibration: Calibration::parse(calib, &shipped("calib.txt"))?,
+        })
+    }
+
+    /// The left picture, `found` and the truth, both in the truth's colours.
+    fn panels(&self, found: &DisparityMap) -> Plane<[u8; 3]> {
+        let truth = self.truth.map(|&disparity| (disparity * SCALE as f32).round() as i32);
+        let range = color::disparity_range(&truth).unwrap_or((0, 0));
+        let colors = |map| color::disparity_colors(map, range);
+        let left = self.left.map(|&[red, green, blue, _]| [red, green, blue]);
+        figure::side_by_side(&[&left, &colors(found), &colors(&truth)])
+    }
+}
+
+/// The map's errors where both cameras see, and everywhere.
+struct Accuracy {
+    non_occluded: Score,
+    all: Score,
+}
+
+impl Accuracy {
+    fn new(map: &DisparityMap, scene: &Scene) -> Result<Self> {
+        Ok(Self {
+            non_occluded: score(map, &scene.truth, Some(&scene.non_occluded), &THRESHOLDS)?,
+            all: score(map, &scene.truth, None, &THRESHOLDS)?,
+        })
+    }
+
+    fn rows(&self) -> [(&'static str, &Score); 2] {
+        [("non-occluded", &self.non_occluded), ("all", &self.all)]
+    }
+
+    fn summary(&self) -> String {
+        let mut text = String::from(
+            "\nWrong pixels in per cent, by more than\n                1 px    2 px   of those estimated:  1 px    2 px   estimated\n",
+        );
+        for (name, score) in self.rows() {
+            let percent = |share: f64| format!("{:.1}", 100.0 * share);
+            let [one, two] = [0, 1].map(|i| percent(score.bad[i].of_known));
+            let [one_estimated, two_estimated] = [0, 1].map(|i| percent(score.bad[i].of_estimated));
+            text += &format!(
+                "  {name:<13}{one:>5}{two:>8}{one_estimated:>27}{two_estimated:>8}{:>12}\n",
+                percent(score.coverage())
+            );
+        }
+        text
+    }
+
+    fn report(&self) -> Value {
+        let rows = self.rows().map(|(name, score)| {
+            let bad: Vec<Value> = score
+                .bad
+                .iter()
+                .map(|bad| json!({ "above_px": bad.threshold, "of_all": bad.of_known, "of_estimated": bad.of_estimated }))
+                .collect();
+            let Score { known, estimated, average, rms, .. } = score;
+            let value = json!({
+                "pixels": known, "estimated": estimated, "coverage": score.coverage(), "bad": bad,
+                "average_error_px": average, "rms_error_px": rms,
+            });
+            (name.replace('-', "_"), value)
+        });
+        rows.into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scene_is_whole_and_its_truth_scores_perfectly() {
+        let scene = Scene::new().unwrap();
+        let size = scene.left.size();
+        assert!(scene.right.size() == size && scene.truth.size() == size && scene.calibration.size == Some(size));
+        let truth = scene.truth.map(|&disparity| (disparity * SCALE as f32).round() as i32);
+        let accuracy = Accuracy::new(&truth, &scene).unwrap();
+        for (_, score) in accuracy.rows() {
+            assert!(score.bad.iter().all(|bad| bad.of_known == 0.0) && score.coverage() == 1.0);
+        }
+        let share = accuracy.non_occluded.known as f64 / accuracy.all.known as f64;
+        assert!((share - 0.8363).abs() < 1e-4, "nonocc_fraction of meta.json");
+    }
+}

@@ -1,0 +1,63 @@
+//! `hsad devices`: what can compute.
+
+use clap::Args;
+use hsad::{
+    Error,
+    gpu::list_adapters,
+    wgpu::{AdapterInfo, DeviceType},
+};
+
+use super::terminal;
+
+/// List the devices that --device can name
+///
+/// The first one is the best. 'cpu' is always there: it needs no driver, takes longer, and finds
+/// the same disparities to the bit.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hsad devices
+  hsad match left.png right.png -o out --device 0
+  hsad match left.png right.png -o out --device nvidia")]
+pub struct Devices {}
+
+impl Devices {
+    /// Prints the table.
+    pub fn run(self) -> anyhow::Result<()> {
+        let adapters = list_adapters();
+        terminal::print(&table(&adapters))?;
+        if adapters.is_empty() {
+            terminal::warning(Error::NoAdapter);
+        }
+        Ok(())
+    }
+}
+
+fn table(adapters: &[AdapterInfo]) -> String {
+    let mut rows = vec![["index", "name", "type", "backend", "driver"].map(String::from)];
+    for (index, info) in adapters.iter().enumerate() {
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        rows.push([index.to_string(), info.name.clone(), kind(info).into(), info.backend.to_string(), driver]);
+    }
+    rows.push(["cpu", "this machine's processor", "fallback", "none", "none"].map(String::from));
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..4).map(width).collect();
+    let mut text = String::new();
+    for row in &rows {
+        for (cell, &width) in row.iter().zip(&widths) {
+            text += &format!("{cell:width$}  ");
+        }
+        text += row[4].trim();
+        text.push('\n');
+    }
+    text
+}
+
+fn kind(info: &AdapterInfo) -> &'static str {
+    match info.device_type {
+        DeviceType::DiscreteGpu => "discrete",
+        DeviceType::IntegratedGpu => "integrated",
+        DeviceType::VirtualGpu => "virtual",
+        DeviceType::Cpu => "software",
+        DeviceType::Other => "other",
+    }
+}

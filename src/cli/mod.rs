@@ -1,0 +1,61 @@
+//! The subcommands of `hsad`, one file each, and what they share.
+
+mod demo;
+mod devices;
+mod features;
+mod job;
+mod match_views;
+mod options;
+mod output;
+mod products;
+mod report;
+mod summary;
+pub mod terminal;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  all is done
+  1  the work failed: a file, a picture or a device is not as it has to be
+  2  usage: an option that does not exist, or whose value lies outside its range
+  3  the pair is not rectified (hsad match --force goes on all the same)";
+
+/// Stereo depth from two photographs, on any GPU
+#[derive(Parser)]
+#[command(version, after_help = EXIT_CODES, subcommand_required = true, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Match(Box<match_views::Match>),
+    Features(features::Features),
+    Devices(devices::Devices),
+    Demo(demo::Demo),
+}
+
+impl Cli {
+    /// Does what was asked.
+    pub fn run(self) -> anyhow::Result<()> {
+        match self.command {
+            Command::Match(command) => command.run(),
+            Command::Features(command) => command.run(),
+            Command::Devices(command) => command.run(),
+            Command::Demo(command) => command.run(),
+        }
+    }
+}
+
+/// The exit code that [`EXIT_CODES`] promises for an error.
+pub fn exit_code(error: &anyhow::Error) -> ExitCode {
+    match error.downcast_ref() {
+        Some(hsad::Error::Parameter { .. }) => ExitCode::from(2),
+        Some(hsad::Error::NotRectified { .. }) => ExitCode::from(3),
+        _ => ExitCode::FAILURE,
+    }
+}

@@ -1,0 +1,254 @@
+//! Options that several subcommands share, and how they become a configuration.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use hsad::{
+    Error, Result,
+    config::{Config, Preset},
+    dense::{Interpolation, View},
+    disparity::{DisparityRange, SCALE},
+    features::FeatureConfig,
+    gpu::DeviceChoice,
+    io::Calibration,
+    pair::Backend,
+};
+
+use super::terminal;
+
+/// How a subcommand runs.
+#[derive(Args)]
+pub struct RunOptions {
+    /// What computes: best, cpu, or index or part of the name of a device (see hsad devices)
+    #[arg(long, default_value = "best")]
+    device: DeviceChoice,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl RunOptions {
+    /// Opens the device. The best there is can be none at all, and then the CPU works.
+    pub fn open(&self) -> Result<Backend> {
+        match Backend::open(&self.device) {
+            Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if self.device == DeviceChoice::Best => {
+                if !self.quiet {
+                    terminal::warning(format!("the CPU does the work, since {error}"));
+                }
+                Backend::open(&DeviceChoice::Cpu)
+            }
+            opened => opened,
+        }
+    }
+}
+
+/// How interest points are found.
+#[derive(Args)]
+#[command(next_help_heading = "Interest points")]
+pub struct FeatureOptions {
+    /// Octaves of filter sizes, 1 to 5 [default: 5]
+    #[arg(long, value_name = "N")]
+    octaves: Option<u32>,
+    /// Sampling step of the first octave in pixels, 1 or 2 [default: 1]
+    #[arg(long, value_name = "PX")]
+    step: Option<u32>,
+    /// Least determinant of the Hessian, with grey values of 0 to 1
+    #[arg(long, value_name = "T")]
+    threshold: Option<f32>,
+    /// Compute orientations, for views that are turned against each other
+    #[arg(long, conflicts_with = "upright")]
+    oriented: bool,
+    /// Compute no orientations, the better choice where nothing is turned
+    #[arg(long)]
+    upright: bool,
+    /// Room for this many points; more are an error
+    #[arg(long, value_name = "N")]
+    max_features: Option<u32>,
+}
+
+impl FeatureOptions {
+    /// `config` with the options that were given.
+    pub fn over(&self, config: FeatureConfig) -> FeatureConfig {
+        FeatureConfig {
+            octaves: self.octaves.unwrap_or(config.octaves),
+            step: self.step.unwrap_or(config.step),
+            threshold: self.threshold.unwrap_or(config.threshold),
+            upright: (config.upright || self.upright) && !self.oriented,
+            max_features: self.max_features.unwrap_or(config.max_features),
+        }
+    }
+}
+
+/// How pixels are matched.
+#[derive(Args)]
+#[command(next_help_heading = "Matching")]
+pub struct MatchOptions {
+    /// Where parameters come from that no option names
+    #[arg(long, value_enum, default_value = "standard")]
+    preset: PresetName,
+    /// Side of the square window in pixels, odd, 3 to 31 [standard: 11, paper: 7]
+    #[arg(long, value_name = "PX")]
+    window: Option<u32>,
+    /// Smallest disparity: with --disparities where the range begins [default: 0], without it a
+    /// limit to the range that is found [paper: 0]
+    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    min_disparity: Option<i32>,
+    /// How many disparities are searched [default: found from matching interest points]
+    #[arg(long, value_name = "N")]
+    disparities: Option<u32>,
+    /// The view whose pixels get a disparity [standard: left, paper: right]
+    #[arg(long, value_enum)]
+    reference: Option<ViewName>,
+    /// Per cent by which the best rival must cost more than the winner, 0 to 100 [standard: 10,
+    /// paper: 0]
+    #[arg(long, value_name = "PERCENT")]
+    uniqueness: Option<u32>,
+    /// Largest difference of the disparities that the two views find [standard: 1, paper: no check]
+    #[arg(long, value_name = "PX", conflicts_with = "no_lr_check", allow_negative_numbers = true)]
+    max_lr_difference: Option<f32>,
+    /// Do not ask the other view
+    #[arg(long)]
+    no_lr_check: bool,
+    /// How disparities between whole pixels are found [standard: equiangular, paper: parabola]
+    #[arg(long, value_enum)]
+    interpolation: Option<InterpolationName>,
+    /// Largest ratio of the distances of the best and the second descriptor, up to 1 [default: 0.85]
+    #[arg(long, value_name = "R")]
+    ratio: Option<f32>,
+    /// Show only the N strongest interest points and matches in the figures [standard: all, paper:
+    /// 10]
+    #[arg(long, value_name = "N")]
+    strongest: Option<usize>,
+    /// Go on with a pair that is not rectified
+    #[arg(long)]
+    force: bool,
+}
+
+impl MatchOptions {
+    /// The preset with the options that were given.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a value out of its range.
+    pub fn config(&self, features: &FeatureOptions) -> Result<Config> {
+        let mut config = Preset::from(self.preset).config();
+        config.features = features.over(config.features);
+        config.seeding.matching.ratio = self.ratio.unwrap_or(config.seeding.matching.ratio);
+        config.least = self.min_disparity.or(config.least);
+        if let Some(count) = self.disparities {
+            config.range = Some(DisparityRange::new(self.min_disparity.unwrap_or(0), count)?);
+        }
+        config.strongest = self.strongest.or(config.strongest);
+        config.reference = self.reference.map_or(config.reference, View::from);
+        config.window = self.window.unwrap_or(config.window);
+        config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);
+        config.uniqueness = self.uniqueness.unwrap_or(config.uniqueness);
+        if let Some(pixels) = self.max_lr_difference {
+            config.consistency = Some(fixed_point(pixels)?);
+        } else if self.no_lr_check {
+            config.consistency = None;
+        }
+        config.force = self.force;
+        config.validate()?;
+        Ok(config)
+    }
+}
+
+fn fixed_point(pixels: f32) -> Result<u32> {
+    if (0.0..=256.0).contains(&pixels) {
+        return Ok((pixels * SCALE as f32).round() as u32);
+    }
+    Err(Error::Parameter {
+        name: "max-lr-difference",
+        value: pixels.to_string(),
+        expected: "it must be 0 to 256 px".into(),
+    })
+}
+
+/// What turns disparities into metres.
+#[derive(Args)]
+#[command(next_help_heading = "Depth")]
+pub struct DepthOptions {
+    /// Calibration of the pair, in the form of Middlebury's calib.txt
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["focal", "baseline", "doffs"])]
+    calib: Option<PathBuf>,
+    /// Focal length in pixels
+    #[arg(long, value_name = "PX", requires = "baseline", allow_negative_numbers = true)]
+    focal: Option<f64>,
+    /// Distance between the cameras in metres
+    #[arg(long, value_name = "METRES", requires = "focal", allow_negative_numbers = true)]
+    baseline: Option<f64>,
+    /// What a disparity lacks to be 0 at infinity [default: 0]
+    #[arg(long, value_name = "PX", requires = "focal", allow_negative_numbers = true)]
+    doffs: Option<f64>,
+}
+
+impl DepthOptions {
+    /// The calibration for pictures of `size`, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Format`] and [`Error::Parameter`] for one that cannot be, or that
+    /// belongs to other pictures.
+    pub fn calibration(&self, size: (u32, u32)) -> Result<Option<Calibration>> {
+        let calibration = match (&self.calib, self.focal, self.baseline) {
+            (Some(path), ..) => Calibration::read(path)?,
+            (None, Some(focal), Some(baseline)) => {
+                Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), size)?
+            }
+            _ => return Ok(None),
+        };
+        calibration.check_size(size)?;
+        Ok(Some(calibration))
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PresetName {
+    /// What measures best on real pairs
+    Standard,
+    /// The paper to the letter
+    Paper,
+}
+
+impl From<PresetName> for Preset {
+    fn from(name: PresetName) -> Self {
+        match name {
+            PresetName::Standard => Self::Standard,
+            PresetName::Paper => Self::Paper,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ViewName {
+    Left,
+    Right,
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Left => Self::Left,
+            ViewName::Right => Self::Right,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum InterpolationName {
+    /// Whole pixels
+    None,
+    /// The vertex of a parabola
+    Parabola,
+    /// The tip of two lines of equal slope
+    Equiangular,
+}
+
+impl From<InterpolationName> for Interpolation {
+    fn from(name: InterpolationName) -> Self {
+        match name {
+            InterpolationName::None => Self::None,
+            InterpolationName::Parabola => Self::Parabola,
+            InterpolationName::Equiangular => Self::Equiangular,
+        }
+    }
+}

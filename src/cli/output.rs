@@ -1,0 +1,132 @@
+//! The folder that a run's files appear in, all of them or none.
+
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter},
+    path::{Path, PathBuf},
+};
+
+use hsad::{
+    Error, Result,
+    io::atomic::{Staged, temporary_in},
+};
+
+/// Collects files. Unless [`Self::finish`] is reached, none of them appears, and folders that were
+/// created for them go again.
+pub struct Output {
+    folder: PathBuf,
+    /// The deepest first.
+    created: Vec<PathBuf>,
+    staged: Vec<Staged>,
+    names: Vec<&'static str>,
+}
+
+impl Output {
+    /// Creates `folder` where it does not exist, and makes sure that files can be written there.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with `folder`.
+    pub fn open(folder: &Path) -> Result<Self> {
+        let failed = |source: io::Error| Error::Io { path: folder.into(), source };
+        if folder.exists() && !folder.is_dir() {
+            let reason = "this is a file, and the results need a folder: name another one with -o";
+            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, reason)));
+        }
+        let missing = |path: &&Path| *path != Path::new("") && !path.exists();
+        let created = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        // From here on what was created is removed again, whatever fails.
+        let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
+        fs::create_dir_all(folder).map_err(failed)?;
+        temporary_in(folder).map_err(|error| {
+            let reason = format!("no file can be written in this folder ({error}): name another one with -o");
+            failed(io::Error::new(error.kind(), reason))
+        })?;
+        Ok(output)
+    }
+
+    /// Writes a file, which does not appear yet.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with its path.
+    pub fn add<T>(
+        &mut self,
+        name: &'static str,
+        write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>,
+    ) -> Result<T> {
+        let (staged, written) = Staged::write(&self.folder.join(name), write)?;
+        self.staged.push(staged);
+        self.names.push(name);
+        Ok(written)
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The files so far.
+    pub fn names(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// Lets all files appear.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with the path of the first that cannot.
+    pub fn finish(&mut self) -> Result<()> {
+        self.staged.drain(..).try_for_each(Staged::put)
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        self.staged.clear();
+        for folder in &self.created {
+            // Only an empty folder can be removed, so results are safe.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn folders_go_again_unless_files_appear() {
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("a/b");
+        let mut output = Output::open(&folder).unwrap();
+        output.add("one", |out| out.write_all(b"1")).unwrap();
+        assert!(!folder.join("one").exists());
+        drop(output);
+        assert!(!parent.path().join("a").exists());
+
+        let mut output = Output::open(&folder).unwrap();
+        output.add("one", |out| out.write_all(b"1")).unwrap();
+        output.add("two", |_| Ok(())).unwrap();
+        output.finish().unwrap();
+        assert_eq!(output.names(), ["one", "two"]);
+        drop(output);
+        assert_eq!(fs::read(folder.join("one")).unwrap(), b"1");
+    }
+
+    #[test]
+    fn a_folder_that_was_there_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        drop(Output::open(folder.path()).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_is_no_folder_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        fs::write(&file, "mine").unwrap();
+        assert!(Output::open(&file).err().unwrap().to_string().contains("name another one with -o"));
+        assert!(Output::open(&file.join("below")).is_err());
+        assert_eq!(fs::read(&file).unwrap(), b"mine");
+    }
+}

@@ -1,0 +1,77 @@
+//! The files that a pair ends in.
+
+use hsad::{
+    Result,
+    dense::View,
+    features::Feature,
+    image::Plane,
+    io::{Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
+};
+use serde_json::Value;
+
+use super::{
+    job::{Done, Job},
+    output::Output,
+};
+
+impl Done {
+    /// The maps, and depth where there is a calibration.
+    pub fn add_maps(&mut self, output: &mut Output) -> Result<()> {
+        let dense = &self.outcome.dense;
+        output.add("disparity.pfm", |out| pfm::write_disparities(out, &dense.disparity))?;
+        let lost = output.add("disparity.png", |out| disparity_png::write(out, &dense.disparity))?.total();
+        if lost > 0 {
+            self.warnings.push(format!(
+                "{lost} disparities lie outside the 0 to 255.996 px of a 16-bit PNG and are 0 (none) in disparity.png; \
+                 disparity.pfm has them all"
+            ));
+        }
+        let range = color::disparity_range(&dense.disparity).unwrap_or((0, 0));
+        let colors = color::disparity_colors(&dense.disparity, range);
+        output.add("disparity-color.png", |out| png::write_rgb8(out, &colors))?;
+        output.add("confidence.png", |out| png::write_grey8(out, &dense.confidence))?;
+
+        if let Some(calibration) = self.job.calibration {
+            let (picture, calibration) = match self.job.config.reference {
+                View::Left => (&self.job.left, calibration),
+                View::Right => (&self.job.right, calibration.seen_from_right()),
+            };
+            let depth = depth_map(&dense.disparity, &calibration);
+            let points = ply::points(&depth, picture, &calibration)?;
+            output.add("depth.pfm", |out| pfm::write(out, &depth))?;
+            output.add("cloud.ply", |out| ply::write(out, &points))?;
+        }
+        Ok(())
+    }
+
+    /// The paper's figures 4 and 5: interest points in both views, and matches between them.
+    pub fn add_figures(&self, output: &mut Output) -> Result<()> {
+        let Job { left, right, config, .. } = &self.job;
+        let count = config.strongest.unwrap_or(usize::MAX);
+        let keypoints = |picture: &Picture, features: &[Feature]| -> Plane<[u8; 3]> {
+            let mut features = features.to_vec();
+            features.sort_by(|a, b| b.response.total_cmp(&a.response));
+            features.truncate(count);
+            figure::keypoints(picture, &features)
+        };
+        let [left_features, right_features] = &self.outcome.features;
+        let both = figure::side_by_side(&[&keypoints(left, left_features), &keypoints(right, right_features)]);
+        output.add("keypoints.png", |out| png::write_rgb8(out, &both))?;
+
+        // Seeds come sorted, the most confident first.
+        let seeds = self.outcome.seeding.seeds.iter().take(count);
+        let pairs: Vec<_> = seeds.map(|seed| ([seed.x, seed.y], [seed.right_x(), seed.right_y()])).collect();
+        let matches = figure::matches(left, right, &pairs);
+        output.add("matches.png", |out| png::write_rgb8(out, &matches))
+    }
+}
+
+/// `report.json`, with all files named so far.
+pub fn add_report(output: &mut Output, mut report: Value) -> Result<()> {
+    const NAME: &str = "report.json";
+    report["files"] = output.names().iter().copied().chain([NAME]).collect();
+    output.add(NAME, |out| {
+        serde_json::to_writer_pretty(&mut *out, &report)?;
+        std::io::Write::write_all(out, b"\n")
+    })
+}

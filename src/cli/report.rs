@@ -1,0 +1,150 @@
+//! `report.json`: everything about a run, for programs.
+
+use hsad::{
+    config::Config,
+    dense::{Interpolation, View},
+    disparity::{DisparityRange, SCALE, coverage},
+    io::Calibration,
+    pipeline::RangeSource,
+    seeding::{Brightness, Rectification, Verdict},
+};
+use serde_json::{Map, Value, json};
+
+use super::job::Done;
+
+impl Done {
+    /// The report, without the files.
+    pub fn report(&self) -> Value {
+        let Self { job, backend, outcome, total, warnings } = self;
+        let mut seconds: Map<String, Value> =
+            outcome.times.iter().map(|(step, time)| (step.name().into(), json!(time.as_secs_f64()))).collect();
+        seconds.insert("total".into(), json!(total.as_secs_f64()));
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "left": job.names[0],
+            "right": job.names[1],
+            "width": job.left.width(),
+            "height": job.left.height(),
+            "device": { "name": backend.name(), "backend": backend.api(), "driver": backend.driver() },
+            "parameters": parameters(&job.config),
+            "calibration": job.calibration.as_ref().map(calibration),
+            "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
+            "seeds": outcome.seeding.seeds.len(),
+            "range": searched(outcome.range, &outcome.range_source),
+            "rectification": rectification(&outcome.seeding.rectification),
+            "brightness": outcome.seeding.brightness.as_ref().map(brightness),
+            "trust": number(outcome.seeding.trust),
+            "coverage": coverage(&outcome.dense.disparity),
+            "seconds": seconds,
+            "warnings": warnings,
+        })
+    }
+}
+
+/// The shortest decimal that is this `f32`: 0.85, not 0.8500000238418579.
+fn number(value: f32) -> Value {
+    value.to_string().parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+fn parameters(config: &Config) -> Value {
+    let Config {
+        features,
+        seeding,
+        range,
+        least,
+        strongest,
+        reference,
+        window,
+        interpolation,
+        uniqueness,
+        consistency,
+        force,
+    } = config;
+    let matching = &seeding.matching;
+    json!({
+        "reference": match reference { View::Left => "left", View::Right => "right" },
+        "window": window,
+        "range": range.map(ends),
+        "min_disparity": least,
+        "interpolation": match interpolation {
+            Interpolation::None => "none",
+            Interpolation::Parabola => "parabola",
+            Interpolation::Equiangular => "equiangular",
+        },
+        "uniqueness_percent": uniqueness,
+        "max_lr_difference_px": consistency.map(|difference| f64::from(difference) / f64::from(SCALE)),
+        "force": force,
+        "features": {
+            "octaves": features.octaves,
+            "step": features.step,
+            "threshold": number(features.threshold),
+            "upright": features.upright,
+            "max_features": features.max_features,
+        },
+        "matching": {
+            "ratio": number(matching.ratio),
+            "mutual": matching.mutual,
+            "same_contrast": matching.same_contrast,
+            "max_dy_px": number(seeding.max_dy),
+            "tile_px": seeding.tile,
+        },
+        "strongest": strongest,
+    })
+}
+
+fn ends(range: DisparityRange) -> Value {
+    json!({ "min": range.min, "max": range.last(), "count": range.count })
+}
+
+fn searched(range: DisparityRange, source: &RangeSource) -> Value {
+    let mut value = ends(range);
+    value["source"] = match source {
+        RangeSource::Asked => "asked",
+        RangeSource::Seeds => "seeds",
+        RangeSource::Fallback(_) => "fallback",
+    }
+    .into();
+    if let RangeSource::Fallback(thin) = source {
+        value["reason"] = thin.to_string().into();
+    }
+    value
+}
+
+fn rectification(found: &Rectification) -> Value {
+    let Rectification { verdict, offset, rotation, scale, residual, largest, agreeing, seeds } = *found;
+    let verdict = match verdict {
+        Verdict::Rectified => "rectified",
+        Verdict::NotRectified => "not rectified",
+        Verdict::Unknown => return json!({ "verdict": "unknown", "agreeing": agreeing, "matches": seeds }),
+    };
+    json!({
+        "verdict": verdict,
+        "offset_px": number(offset),
+        "rotation_degrees": number(rotation),
+        "scale": number(scale),
+        "residual_px": number(residual),
+        "largest_px": number(largest),
+        "agreeing": agreeing,
+        "matches": seeds,
+    })
+}
+
+fn brightness(&Brightness { gain, offset, residual }: &Brightness) -> Value {
+    json!({ "gain": number(gain), "offset": number(offset), "residual": number(residual) })
+}
+
+fn calibration(&Calibration { focal, baseline, doffs, cx, cy, .. }: &Calibration) -> Value {
+    json!({ "focal_px": focal, "baseline_m": baseline, "doffs_px": doffs, "cx_px": cx, "cy_px": cy })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_short_as_they_are() {
+        assert_eq!(number(0.85).to_string(), "0.85");
+        assert_eq!(number(f32::NAN), Value::Null);
+        assert_eq!(number(f32::INFINITY), Value::Null);
+    }
+}

@@ -1,0 +1,58 @@
+//! The few lines about a run that people read.
+
+use hsad::{disparity::coverage, pipeline::RangeSource, seeding::Verdict};
+
+use super::{
+    job::{Done, span},
+    output::Output,
+};
+
+impl Done {
+    /// A line for each fact.
+    pub fn summary(&self) -> String {
+        let Self { job, backend, outcome, total, .. } = self;
+        let seeding = &outcome.seeding;
+        let source = match outcome.range_source {
+            RangeSource::Asked => "as asked".into(),
+            RangeSource::Seeds => format!("found from {} matches", seeding.seeds.len()),
+            RangeSource::Fallback(_) => "too few matches to find it".into(),
+        };
+        let rectified = match seeding.rectification.verdict {
+            Verdict::Rectified => format!("yes: {}", seeding.rectification),
+            Verdict::NotRectified => format!("no: {}", seeding.rectification),
+            Verdict::Unknown => seeding.rectification.to_string(),
+        };
+        let steps: Vec<String> =
+            outcome.times.iter().map(|(step, time)| format!("{} {:.2}", step.name(), time.as_secs_f64())).collect();
+        let [left, right] = outcome.features.each_ref().map(Vec::len);
+        let (width, height) = job.left.size();
+        let mut text = String::new();
+        line(
+            &mut text,
+            "device",
+            match backend.api().as_str() {
+                "none" => backend.name().into(),
+                api => format!("{} ({api})", backend.name()),
+            },
+        );
+        line(&mut text, "range", format!("{} ({source})", span(outcome.range)));
+        line(&mut text, "points", format!("{left} left, {right} right, {} matched", seeding.seeds.len()));
+        line(&mut text, "rectified", rectified);
+        line(&mut text, "trust", format!("{:.2} of 1", seeding.trust));
+        let share = 100.0 * coverage(&outcome.dense.disparity);
+        line(&mut text, "coverage", format!("{share:.1} % of {width}x{height} pixels"));
+        line(&mut text, "time", format!("{:.2} s ({})", total.as_secs_f64(), steps.join(", ")));
+        text
+    }
+}
+
+/// Where the files are.
+pub fn files(output: &Output) -> String {
+    let mut text = String::new();
+    line(&mut text, "files", format!("{}: {}", output.folder().display(), output.names().join(", ")));
+    text
+}
+
+fn line(text: &mut String, name: &str, value: String) {
+    *text += &format!("{name:<11}{value}\n");
+}

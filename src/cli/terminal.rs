@@ -1,0 +1,81 @@
+//! What people see: results on stdout; errors, warnings and progress on stderr.
+
+use std::{
+    fmt::Display,
+    io::{self, Write},
+    time::Duration,
+};
+
+use hsad::pipeline::Step;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// One line that says why the work failed.
+pub fn error(error: &anyhow::Error) {
+    eprintln!("error: {}", one_line(&format!("{error:#}")));
+}
+
+/// One line about something that the result does not show by itself.
+pub fn warning(text: impl Display) {
+    eprintln!("warning: {}", one_line(&text.to_string()));
+}
+
+/// Messages of drivers come in paragraphs, and a file's name can hold anything.
+fn one_line(text: &str) -> String {
+    text.split(|c: char| c.is_control()).map(str::trim).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Prints results. A reader who has seen enough (`| head`) is no failure.
+pub fn print(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+/// What is being done, on a terminal; nothing where stderr is no terminal.
+pub struct Progress(ProgressBar);
+
+impl Progress {
+    /// Nothing is shown where `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+
+    /// Says what begins now.
+    pub fn begin(&self, what: &'static str) {
+        self.0.set_message(what);
+    }
+
+    /// Says which step of the pipeline begins now.
+    pub fn step(&self, step: Step) {
+        self.begin(match step {
+            Step::Luma => "bringing the pictures to the device",
+            Step::Features => "finding interest points",
+            Step::Seeding => "matching interest points",
+            Step::Dense => "matching every pixel",
+        });
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_text_becomes_one_line() {
+        assert_eq!(one_line("the device:\n  no memory\r\n\n\tat all\n"), "the device: no memory at all");
+        assert_eq!(one_line("a\x1b[2Jb"), "a [2Jb");
+    }
+}
