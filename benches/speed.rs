@@ -2,6 +2,7 @@
 //!
 //! One line a measurement: its name, the first run (which compiles) and the minimum and the median of
 //! the others, in milliseconds. `scripts/compare-opencv.py` runs it beside OpenCV.
+#![expect(clippy::print_stdout, reason = "a benchmark prints")]
 
 use std::{hint::black_box, path::Path, time::Instant};
 
