@@ -10,12 +10,15 @@ struct Params {
     direction: i32,
     // In 1/256 px.
     max_difference: u32,
+    // Where the confidences begin.
+    confidence_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
+// A fixed-point disparity a pixel of the other view.
 @group(0) @binding(1) var<storage, read> others: array<i32>;
-@group(0) @binding(2) var<storage, read_write> disparities: array<i32>;
-@group(0) @binding(3) var<storage, read_write> confidences: array<u32>;
+// A fixed-point disparity a pixel of the reference view, then a confidence a pixel.
+@group(0) @binding(2) var<storage, read_write> matches: array<i32>;
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -23,18 +26,15 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let row = id.y * params.width;
-    let disparity = disparities[row + id.x];
-    if disparity == NONE {
+    let pixel = row + id.x;
+    let disparity = matches[pixel];
+    let partner = i32(id.x) + params.direction * ((disparity + SCALE / 2) >> SCALE_BITS);
+    let other = others[row + u32(clamp(partner, 0, i32(params.width) - 1))];
+    let exists = disparity != NONE && partner >= 0 && partner < i32(params.width) && other != NONE;
+    // Only now is their difference sure to be one.
+    if exists && u32(abs(disparity - other)) <= params.max_difference {
         return;
     }
-    let whole = (disparity + SCALE / 2) >> SCALE_BITS;
-    let partner = u32(i32(id.x) + params.direction * whole);
-    if partner < params.width {
-        let other = others[row + partner];
-        if other != NONE && u32(abs(disparity - other)) <= params.max_difference {
-            return;
-        }
-    }
-    disparities[row + id.x] = NONE;
-    confidences[row + id.x] = 0u;
+    matches[pixel] = NONE;
+    matches[params.confidence_offset + pixel] = 0;
 }

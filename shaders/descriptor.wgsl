@@ -1,75 +1,73 @@
-// The 64 values that describe each keypoint's surroundings, one workgroup a keypoint: M-SURF
-// (Agrawal, Konolige, Blas, 'CenSurE', ECCV 2008, section 3.3), made symmetric. What the kernel for
-// any orientation and the one for none share.
-//
-// 24x24 samples; 4x4 subregions of 9x9 samples that overlap. Both Gaussians are products of a
-// column's and a row's factor. So a thread walks down one column of samples and gathers the four
-// bands of subregions it crosses; then a thread gathers the nine columns of one subregion.
-//
-// Samples are `radius` apart, the keypoint's scale in whole 1/16 px, so that without rotation they
-// share their corners exactly.
+// The 64 values that describe each keypoint's surroundings (Bay et al. 2008, section 4.2, with
+// 2x2 samples a subregion and compressed gradients): one workgroup a keypoint, a thread for each
+// of its 4x4 subregions.
 
-const SAMPLES = 24u;
-const CELLS = 16u;
+const SUBREGIONS = 16u;
 
-var<workgroup> columns: array<array<vec4f, 4>, SAMPLES>;
-var<workgroup> squares: array<f32, CELLS>;
+@group(0) @binding(2) var<storage, read> found: u32;
+@group(0) @binding(3) var<storage, read> keypoints: array<Keypoint>;
+// 16 subregions a keypoint, row by row: sum dx, sum dy, sum |dx|, sum |dy|.
+@group(0) @binding(4) var<storage, read_write> descriptors: array<vec4f>;
 
-// The parts of one column of samples in the four rows of subregions.
-struct Bands {
-    first: vec4f,
-    second: vec4f,
-    third: vec4f,
-    fourth: vec4f,
+var<workgroup> squares: array<f32, SUBREGIONS>;
+
+// How a keypoint's surroundings are sampled.
+struct Sampling {
+    place: Place,
+    // The direction of the keypoint's first axis.
+    axis: vec2f,
+    // Half the side of the wavelets.
+    radius: i32,
 }
 
-// Of the Gaussian around a subregion's centre, sigma 2.5, for samples up to 4 away.
-fn sample_weight(distance: vec4f) -> vec4f {
-    return select(vec4f(0.0), exp(-distance * distance / (2.0 * 2.5 * 2.5)), abs(distance) <= vec4f(4.0));
-}
-
-fn add(bands: Bands, row: u32, response: vec2f) -> Bands {
-    let values = vec4f(response, abs(response));
-    let weights = sample_weight(f32(row) - vec4f(4.0, 9.0, 14.0, 19.0));
-    return Bands(
-        bands.first + weights.x * values,
-        bands.second + weights.y * values,
-        bands.third + weights.z * values,
-        bands.fourth + weights.w * values,
-    );
-}
-
-// Gathers the columns, and writes the descriptor of keypoint `n`. Only the first SAMPLES threads
-// bring a column, but all of the workgroup must come.
-fn finish(n: u32, local: u32, bands: Bands) {
-    if local < SAMPLES {
-        columns[local][0] = bands.first;
-        columns[local][1] = bands.second;
-        columns[local][2] = bands.third;
-        columns[local][3] = bands.fourth;
+fn sampling_of(keypoint: Keypoint) -> Sampling {
+    let place = place_of(keypoint);
+    if UPRIGHT == 1 {
+        // Written out, as cos(0) need not be exactly 1 and upright samples lie at exact places.
+        return Sampling(place, vec2f(1.0, 0.0), (3 * place.scale + 2) / 4);
     }
+    return Sampling(place, vec2f(cos(keypoint.orientation), sin(keypoint.orientation)), 2 * place.scale);
+}
+
+// The vector of the same direction whose length is the cube root, so that one strong edge does not
+// drown the rest.
+fn compress(gradient: vec2f) -> vec2f {
+    // Of integers, the smallest length but 0 is 1.
+    return gradient * pow(max(dot(gradient, gradient), 1.0), -1.0 / 3.0);
+}
+
+// A sample's part of its subregion's values; (u, v) is its place in scales and the keypoint's axes.
+fn sample(sampling: Sampling, u: f32, v: f32) -> vec4f {
+    let place = sampling.place;
+    let along = sampling.axis;
+    let across = vec2f(-along.y, along.x);
+    let offset = f32(place.scale) * (u * along + v * across);
+    let gradient = compress(vec2f(haar(place.x + whole(offset.x), place.y + whole(offset.y), sampling.radius)));
+    let turned = vec2f(dot(gradient, along), dot(gradient, across));
+    return vec4f(turned, abs(turned));
+}
+
+@compute @workgroup_size(SUBREGIONS)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let n = group.y * DISPATCH_WIDTH + group.x;
+    if n >= min(found, arrayLength(&keypoints)) {
+        return;
+    }
+    let sampling = sampling_of(keypoints[n]);
+    // In subregions, which are 4 scales wide; their samples are 1 scale off their centre.
+    let from_centre = vec2f(f32(local % 4u), f32(local / 4u)) - 1.5;
+    let u = 4.0 * from_centre.x;
+    let v = 4.0 * from_centre.y;
+    var sums = sample(sampling, u - 1.0, v - 1.0) + sample(sampling, u + 1.0, v - 1.0)
+        + sample(sampling, u - 1.0, v + 1.0) + sample(sampling, u + 1.0, v + 1.0);
+    sums *= exp(-dot(from_centre, from_centre) / (2.0 * 1.5 * 1.5));
+
+    squares[local] = dot(sums, sums);
     workgroupBarrier();
-
-    var cell = vec4f(0.0);
-    if local < CELLS {
-        let column = local % 4u;
-        let band = local / 4u;
-        for (var k = 0u; k < 9u; k++) {
-            let distance = f32(k) - 4.0;
-            cell += exp(-distance * distance / (2.0 * 2.5 * 2.5)) * columns[5u * column + k][band];
-        }
-        let from_centre = vec2f(f32(column), f32(band)) - 1.5;
-        cell *= exp(-dot(from_centre, from_centre) / (2.0 * 1.5 * 1.5));
-        squares[local] = dot(cell, cell);
+    var square = 0.0;
+    for (var k = 0u; k < SUBREGIONS; k++) {
+        square += squares[k];
     }
-    workgroupBarrier();
-
-    if local < CELLS {
-        var square = 0.0;
-        for (var k = 0u; k < CELLS; k++) {
-            square += squares[k];
-        }
-        let length = sqrt(square);
-        descriptors[CELLS * n + local] = select(cell / length, vec4f(0.0), length < 1e-6);
-    }
+    // Flat surroundings have no direction, and stay 0.
+    descriptors[SUBREGIONS * n + local] = sums / max(sqrt(square), 1e-6);
 }

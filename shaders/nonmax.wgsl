@@ -1,5 +1,5 @@
 // Non-maximum suppression over 3x3x3 samples of one octave, and the maximum's position between
-// the samples.
+// the samples, an axis at a time.
 //
 // Of the two middle layers, 2x2x2 samples at a time are each other's neighbours, so at most one
 // of them survives: a thread finds the largest of its block first and then holds only that one
@@ -18,24 +18,11 @@ struct Params {
     sizes: vec4u,
 }
 
-struct Keypoint {
-    x: f32,
-    y: f32,
-    scale: f32,
-    response: i32,
-    octave: u32,
-    index: u32,
-}
-
-struct KeypointList {
-    // All that were found, even where the room did not suffice.
-    count: atomic<u32>,
-    keypoints: array<Keypoint>,
-}
-
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> responses: array<i32>;
-@group(0) @binding(2) var<storage, read_write> list: KeypointList;
+// All that were found, even where the room did not suffice.
+@group(0) @binding(2) var<storage, read_write> found: atomic<u32>;
+@group(0) @binding(3) var<storage, read_write> keypoints: array<Keypoint>;
 
 struct Sample {
     determinant: i32,
@@ -83,6 +70,16 @@ fn max_of_patch(samples: Patch) -> i32 {
     return max_of(max(max(samples.above, samples.level), samples.below));
 }
 
+// Where the parabola through three samples along one axis has its vertex, from the middle one,
+// which is the largest: -0.5 to 0.5. The numerator fits in i32; twice the curvature needs u32.
+fn vertex(before: i32, value: i32, after: i32) -> f32 {
+    let curvature = bitcast<u32>(2 * value - before - after);
+    if curvature == 0u {
+        return 0.0;
+    }
+    return 0.5 * f32(after - before) / f32(curvature);
+}
+
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let block = vec3u(2u * id.x, 2u * id.y, 1u);
@@ -120,49 +117,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
 
-    // A quadratic through central differences (Brown and Lowe, BMVC 2002). The power of two keeps
-    // the products of three well inside the range of f32 and changes no digit.
-    let unit = 1.0 / 65536.0;
-    let centre = f32(value) * unit;
-    let l0 = vec3f(lower.above) * unit;
-    let l1 = vec3f(lower.level) * unit;
-    let l2 = vec3f(lower.below) * unit;
-    let h0 = vec3f(here.above) * unit;
-    let h1 = vec3f(here.level) * unit;
-    let h2 = vec3f(here.below) * unit;
-    let u0 = vec3f(upper.above) * unit;
-    let u1 = vec3f(upper.level) * unit;
-    let u2 = vec3f(upper.below) * unit;
-    let gradient = 0.5 * vec3f(h1.z - h1.x, h2.y - h0.y, u1.y - l1.y);
-    let xx = h1.z + h1.x - 2.0 * centre;
-    let yy = h2.y + h0.y - 2.0 * centre;
-    let ss = u1.y + l1.y - 2.0 * centre;
-    let xy = 0.25 * (h2.z - h2.x - h0.z + h0.x);
-    let xs = 0.25 * (u1.z - u1.x - l1.z + l1.x);
-    let ys = 0.25 * (u2.y - u0.y - l2.y + l0.y);
-    let row_x = vec3f(xx, xy, xs);
-    let row_y = vec3f(xy, yy, ys);
-    let row_s = vec3f(xs, ys, ss);
-    let cofactors_x = cross(row_y, row_s);
-    let cofactors_y = cross(row_s, row_x);
-    let cofactors_s = cross(row_x, row_y);
-    let determinant = dot(row_x, cofactors_x);
-    if determinant == 0.0 {
-        return;
-    }
-    let offset = -(gradient.x * cofactors_x + gradient.y * cofactors_y + gradient.z * cofactors_s) / determinant;
-    if !all(abs(offset) <= vec3f(0.5)) {
-        return;
-    }
-
-    let slot = atomicAdd(&list.count, 1u);
-    if slot < arrayLength(&list.keypoints) {
+    let slot = atomicAdd(&found, 1u);
+    if slot < arrayLength(&keypoints) {
         let size = f32(params.sizes[at.z]);
         let interval = size - f32(params.sizes[at.z - 1u]);
-        list.keypoints[slot] = Keypoint(
-            (f32(at.x) + offset.x) * f32(params.step),
-            (f32(at.y) + offset.y) * f32(params.step),
-            1.2 * (size + interval * offset.z) / 9.0,
+        keypoints[slot] = Keypoint(
+            (f32(at.x) + vertex(here.level.x, value, here.level.z)) * f32(params.step),
+            (f32(at.y) + vertex(here.above.y, value, here.below.y)) * f32(params.step),
+            1.2 * (size + interval * vertex(lower.level.y, value, upper.level.y)) / 9.0,
+            0.0,
             response_at(at),
             params.octave,
             ((at.z - 1u) * params.grid_height + at.y) * params.grid_width + at.x,

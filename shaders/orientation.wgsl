@@ -1,33 +1,34 @@
 // The dominant direction of the gradient around each keypoint (Bay et al. 2008, section 4.1): one
 // workgroup a keypoint.
 //
-// The paper slides a window of pi/3 over the angles of the responses. Here the angles fall into
-// BINS bins of 2 pi / BINS, and a window is WINDOW = BINS / 6 of them, so that a start is tried
-// every 0.15 rad. Bins are sums of fixed-point numbers: the order of the additions is not known,
-// and must not matter.
+// The paper slides a window of pi/3 over the angles of the responses. Here it starts at BINS
+// directions, so that the responses can be gathered in bins first, and a window is WINDOW of them.
+// Bins are sums of fixed-point numbers: the order of the additions is not known, and must not
+// matter.
 
-const PI = 3.14159265358979;
+const TAU = 6.28318530717958;
 // Units in a grey level. 109 samples of at most 510 grey levels stay below 2^31.
 const FIXED_POINT = 32768.0;
-// Bins start a quarter of their width before angle 0, so that no multiple of 45 degrees, frequent
-// in pictures, lies on a border, where the last digit of atan2 would decide.
-const PHASE = 0.25;
+// Bins start half of their width after angle 0, so that no multiple of 45 degrees, frequent in
+// pictures, lies on a border, where the last digit of atan2 would decide.
+const PHASE = 0.5;
 
-@group(0) @binding(3) var<storage, read_write> orientations: array<f32>;
+@group(0) @binding(2) var<storage, read> found: u32;
+@group(0) @binding(3) var<storage, read_write> keypoints: array<Keypoint>;
 
 var<workgroup> bins_x: array<atomic<i32>, BINS>;
 var<workgroup> bins_y: array<atomic<i32>, BINS>;
 var<workgroup> sums: array<vec2f, BINS>;
 
 fn bin_of(direction: vec2f) -> u32 {
-    let bin = floor(atan2(direction.y, direction.x) * (BINS / (2.0 * PI)) + PHASE);
+    let bin = floor(atan2(direction.y, direction.x) * (BINS / TAU) - PHASE);
     return u32(i32(bin) + BINS) % BINS;
 }
 
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let n = group.y * DISPATCH_WIDTH + group.x;
-    if n >= min(list.count, arrayLength(&list.keypoints)) {
+    if n >= min(found, arrayLength(&keypoints)) {
         return;
     }
     if local < BINS {
@@ -36,22 +37,23 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
     }
     workgroupBarrier();
 
-    let keypoint = list.keypoints[n];
-    let s = keypoint.scale;
-    let radius = whole(16.0 * 2.0 * s);
+    let place = place_of(keypoints[n]);
+    let radius = 2 * place.scale;
+    let unit = FIXED_POINT / f32(radius * radius);
     // The disc of radius 6 in the square of side 11.
     for (var sample = local; sample < 121u; sample += WORKGROUP) {
-        let i = f32(sample % 11u) - 5.0;
-        let j = f32(sample / 11u) - 5.0;
+        let i = i32(sample % 11u) - 5;
+        let j = i32(sample / 11u) - 5;
         let distance = i * i + j * j;
-        if distance < 36.0 {
-            let weight = exp(-distance / (2.0 * 2.5 * 2.5));
-            let response = weight * haar(from_corner(keypoint.x + i * s), from_corner(keypoint.y + j * s), radius);
+        if distance < 36 {
+            let response = vec2f(haar(place.x + i * place.scale, place.y + j * place.scale, radius));
+            // atan2(0, 0) may be anything, and adds nothing.
             if any(response != vec2f(0.0)) {
+                let weight = exp(-f32(distance) / (2.0 * 2.5 * 2.5));
+                let weighted = vec2i(round(weight * unit * response));
                 let bin = bin_of(response);
-                let fixed = vec2i(round(response * FIXED_POINT));
-                atomicAdd(&bins_x[bin], fixed.x);
-                atomicAdd(&bins_y[bin], fixed.y);
+                atomicAdd(&bins_x[bin], weighted.x);
+                atomicAdd(&bins_y[bin], weighted.y);
             }
         }
     }
@@ -80,9 +82,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
             angle = atan2(longest.y, longest.x);
         }
         if angle < 0.0 {
-            angle += 2.0 * PI;
+            angle += TAU;
         }
         // A tiny negative angle rounds to the whole turn.
-        orientations[n] = select(angle, 0.0, angle >= 2.0 * PI);
+        keypoints[n].orientation = select(angle, 0.0, angle >= TAU);
     }
 }

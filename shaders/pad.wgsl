@@ -22,23 +22,29 @@ struct Params {
 @group(0) @binding(1) var<storage, read> luma: array<u32>;
 @group(0) @binding(2) var<storage, read_write> padded: array<u32>;
 
-fn pixel(row: u32, x: i32) -> u32 {
-    let column = u32(clamp(x, 0, i32(params.width) - 1));
-    return extractBits(luma[row + column / 4u], 8u * (column % 4u), 8u);
+// Four neighbouring pixels of a row, the first at column x in the lowest byte.
+//
+// Without a branch: software drivers run both sides of one for every word. Pixels outside are cut
+// out of whatever the clamped loads brought, and replaced.
+fn pixels(row: u32, x: i32) -> u32 {
+    let width = i32(params.width);
+    let last_word = (width - 1) / 4;
+    let low = luma[row + u32(clamp(x >> 2u, 0, last_word))];
+    let high = luma[row + u32(clamp((x >> 2u) + 1, 0, last_word))];
+    let shift = 8u * u32(x & 3);
+    // Twice by half: a shift by 32 would be one by 0.
+    let inside = (low >> shift) | ((high << (16u - shift / 2u)) << (16u - shift / 2u));
+    let left = mask(-x);
+    let right = ~mask(width - x);
+    let first_pixel = (low & 255u) * 0x01010101u;
+    let last_pixel = ((high >> (8u * u32((width - 1) & 3))) & 255u) * 0x01010101u;
+    return (first_pixel & left) | (last_pixel & right & ~left) | (inside & ~left & ~right);
 }
 
-// Four neighbouring pixels of a row, the first at column x in the lowest byte.
-fn pixels(row: u32, x: i32) -> u32 {
-    if x < 0 || x + 3 >= i32(params.width) {
-        return pixel(row, x) | (pixel(row, x + 1) << 8u) | (pixel(row, x + 2) << 16u) | (pixel(row, x + 3) << 24u);
-    }
-    let word = row + u32(x) / 4u;
-    let shift = 8u * (u32(x) % 4u);
-    let low = luma[word] >> shift;
-    if shift == 0u {
-        return low;
-    }
-    return low | (luma[word + 1u] << (32u - shift));
+// The lowest n bytes, 0 to 4 of them.
+fn mask(n: i32) -> u32 {
+    let bits = 4u * u32(clamp(n, 0, 4));
+    return ~((0xffffffffu << bits) << bits);
 }
 
 fn reversed(word: u32) -> u32 {
@@ -54,11 +60,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let y = u32(clamp(params.first_row + i32(id.y), 0, i32(params.height) - 1));
     let row = y * ((params.width + 3u) / 4u);
     let x = params.first_column + 4 * i32(id.x);
-    var word: u32;
-    if params.mirrored == 0u {
-        word = pixels(row, x);
-    } else {
-        word = reversed(pixels(row, i32(params.width) - 1 - (x + 3)));
-    }
-    padded[params.offset + id.y * params.stride + id.x] = word;
+    let mirrored = params.mirrored != 0u;
+    let word = pixels(row, select(x, i32(params.width) - 1 - (x + 3), mirrored));
+    padded[params.offset + id.y * params.stride + id.x] = select(word, reversed(word), mirrored);
 }

@@ -5,7 +5,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
     image::Luma,
 };
 
@@ -50,9 +50,7 @@ pub fn unpack(width: u32, height: u32, words: &[u32]) -> Luma {
 
 /// RGBA8 to packed luma for pictures of one size: `(77 R + 150 G + 29 B + 128) >> 8`.
 pub struct RgbaToLuma {
-    kernel: Kernel,
-    bind_group: wgpu::BindGroup,
-    groups: [u32; 3],
+    dispatch: Dispatch,
     luma: wgpu::Buffer,
 }
 
@@ -62,17 +60,16 @@ impl RgbaToLuma {
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind the picture.
     pub fn new(device: &wgpu::Device, pixels: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
-        let kernel = Kernel::new(device, &stage());
         let params = uniform_buffer(device, "luma size", &Params { width, height });
         let luma = storage_buffer(device, "luma", packed_bytes(width, height))?;
-        let bind_group = kernel.bind(device, &[&params, pixels, &luma]);
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        Ok(Self { kernel, bind_group, groups, luma })
+        let dispatch = Kernel::new(device, &stage()).dispatch(device, &[&params, pixels, &luma], groups);
+        Ok(Self { dispatch, luma })
     }
 
     /// Records the conversion.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.record(encoder, &self.bind_group, self.groups);
+        self.dispatch.record(encoder);
     }
 
     /// The packed picture.

@@ -14,8 +14,34 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-/// Rows of a thread's tile. More of them share more of the row sums; fewer need fewer registers.
-const TILE_HEIGHT: u32 = 8;
+/// The pixels that one thread matches.
+///
+/// A larger tile shares more of its row sums and loads; a smaller one needs fewer registers and less
+/// time to compile, and leaves more threads. The result is the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Columns, in fours.
+    pub quads: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Tile {
+    /// For drivers that compute on the CPU: measured on lavapipe, where loads are the bottleneck and
+    /// registers spill into the first cache.
+    pub const SOFTWARE: Self = Self { quads: 2, height: 8 };
+
+    /// For GPUs, which would rather run many threads of few registers.
+    pub const HARDWARE: Self = Self { quads: 1, height: 4 };
+
+    /// The tile for `device`.
+    pub fn of(device: &wgpu::Device) -> Self {
+        match device.adapter_info().device_type {
+            wgpu::DeviceType::Cpu => Self::SOFTWARE,
+            _ => Self::HARDWARE,
+        }
+    }
+}
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -30,12 +56,23 @@ struct Params {
     steps: u32,
     uniqueness: u32,
     mirrored: u32,
+    confidence_offset: u32,
+}
+
+/// What is wanted of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Sub-pixel disparities that pass the uniqueness check, and confidences.
+    Matches,
+    /// Whole disparities of all winners: enough for the other view's consistency check.
+    Winners,
 }
 
 /// The block-matching kernel for one window and one interpolation.
 pub struct BlockMatch {
     kernel: Kernel,
-    radius: u32,
+    uniqueness: u32,
+    tile: Tile,
 }
 
 /// How far a padded row goes beyond the picture: the radius in whole words.
@@ -45,24 +82,27 @@ fn margin(radius: u32) -> u32 {
 
 impl BlockMatch {
     /// What the kernel is made of.
-    pub fn stage(config: &DenseConfig) -> Stage {
+    pub fn stage(config: &DenseConfig, wanted: Wanted, tile: Tile) -> Stage {
         let radius = config.radius();
         let constant = |value: u32| i64::from(value);
         Stage {
             name: "block_match",
             source: include_str!("../../shaders/block_match.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write, Binding::Write],
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
-                ("TILE_HEIGHT", constant(TILE_HEIGHT)),
+                ("TILE_HEIGHT", constant(tile.height)),
                 ("SIDE", constant(config.window)),
-                ("ROWS", constant(TILE_HEIGHT + 2 * radius)),
-                ("WORDS", constant(2 * margin(radius) / 4 + 1)),
+                ("ROWS", constant(tile.height + 2 * radius)),
+                ("QUADS", constant(tile.quads)),
+                ("SPAN", constant(4 * tile.quads + config.window - 1)),
+                ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
                 ("SHIFT", constant(config.index_bits())),
                 ("SCALE", SCALE.into()),
                 ("NONE", NONE.into()),
+                ("FULL", (wanted == Wanted::Matches).into()),
                 ("PARABOLA", 1),
                 ("EQUIANGULAR", 2),
                 (
@@ -77,21 +117,23 @@ impl BlockMatch {
         }
     }
 
-    /// Compiles it for `config`'s window and interpolation.
-    pub fn new(device: &wgpu::Device, config: &DenseConfig) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(config)), radius: config.radius() }
+    /// Compiles it for `config`'s window, interpolation and uniqueness.
+    pub fn new(device: &wgpu::Device, config: &DenseConfig, wanted: Wanted, tile: Tile) -> Self {
+        let kernel = Kernel::new(device, &Self::stage(config, wanted, tile));
+        Self { kernel, uniqueness: config.uniqueness, tile }
     }
 
-    /// Matches the padded `planes` of `layout`, writing a fixed-point disparity and a confidence
-    /// (0 to 255) for each pixel of the band.
+    /// Matches the padded `planes` of `layout`, writing a fixed-point disparity for each pixel of
+    /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
+    /// `confidence_offset` on.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         layout: &Layout,
-        uniqueness: u32,
         view: View,
         planes: &wgpu::Buffer,
-        [disparities, confidences]: [&wgpu::Buffer; 2],
+        matches: &wgpu::Buffer,
+        confidence_offset: u32,
     ) -> Dispatch {
         let params = Params {
             width: layout.width,
@@ -102,13 +144,15 @@ impl BlockMatch {
             min_disparity: layout.range.min,
             disparities: layout.range.count,
             steps: layout.steps(),
-            uniqueness,
+            uniqueness: self.uniqueness,
             mirrored: (view == View::Right).into(),
+            confidence_offset,
         };
-        debug_assert_eq!(self.radius, layout.radius);
-        let groups = [layout.width.div_ceil(4 * WORKGROUP[0]), layout.rows.div_ceil(TILE_HEIGHT * WORKGROUP[1]), 1];
+        let Tile { quads, height } = self.tile;
+        debug_assert_eq!(self.tile, layout.tile);
+        let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "block_match", &params);
-        self.kernel.dispatch(device, &[&params, planes, disparities, confidences], groups)
+        self.kernel.dispatch(device, &[&params, planes, matches], groups)
     }
 }
 
@@ -122,6 +166,7 @@ pub struct Layout {
     rows: u32,
     radius: u32,
     range: DisparityRange,
+    tile: Tile,
 }
 
 impl Layout {
@@ -129,9 +174,15 @@ impl Layout {
     ///
     /// # Errors
     /// As [`DenseConfig::searched`].
-    pub fn new((width, height): (u32, u32), first_row: u32, rows: u32, config: &DenseConfig) -> Result<Self> {
+    pub fn new(
+        (width, height): (u32, u32),
+        first_row: u32,
+        rows: u32,
+        config: &DenseConfig,
+        tile: Tile,
+    ) -> Result<Self> {
         let range = config.searched(width)?;
-        Ok(Self { width, height, first_row, rows, radius: config.radius(), range })
+        Ok(Self { width, height, first_row, rows, radius: config.radius(), range, tile })
     }
 
     /// Words of the buffer that holds both planes.
@@ -160,7 +211,7 @@ impl Layout {
     }
 
     fn padded_rows(&self) -> u32 {
-        self.rows.next_multiple_of(TILE_HEIGHT) + 2 * self.radius
+        self.rows.next_multiple_of(self.tile.height) + 2 * self.radius
     }
 
     fn steps(&self) -> u32 {
@@ -168,7 +219,7 @@ impl Layout {
     }
 
     fn reference_stride(&self) -> u32 {
-        self.width.div_ceil(4) + 2 * margin(self.radius) / 4
+        self.width.div_ceil(4).next_multiple_of(self.tile.quads) + 2 * margin(self.radius) / 4
     }
 
     fn searched_stride(&self) -> u32 {

@@ -17,6 +17,7 @@ struct Params {
     rows: u32,
     direction: i32,
     max_difference: u32,
+    confidence_offset: u32,
 }
 
 /// The left-right consistency kernel.
@@ -28,7 +29,7 @@ impl Consistency {
         Stage {
             name: "consistency",
             source: include_str!("../../shaders/consistency.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write, Binding::Write],
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
@@ -44,23 +45,27 @@ impl Consistency {
         Self(Kernel::new(device, &Self::stage()))
     }
 
-    /// Takes away from `disparities` (and `confidences`) of `view`, `width` x `rows` of them, what
-    /// the other view's `others` contradict by more than `max_difference` / 256 px.
+    /// Takes away from `matches` of `view` (`width` x `rows` disparities, and from word
+    /// `confidence_offset` on as many confidences) what the other view's disparities contradict by
+    /// more than `max_difference` / 256 px.
+    #[expect(clippy::too_many_arguments, reason = "four sizes and two buffers, each of one kind")]
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         (width, rows): (u32, u32),
+        confidence_offset: u32,
         view: View,
         max_difference: u32,
         others: &wgpu::Buffer,
-        [disparities, confidences]: [&wgpu::Buffer; 2],
+        matches: &wgpu::Buffer,
     ) -> Dispatch {
         let direction = match view {
             View::Left => -1,
             View::Right => 1,
         };
-        let params = uniform_buffer(device, "consistency", &Params { width, rows, direction, max_difference });
+        let params = Params { width, rows, direction, max_difference, confidence_offset };
+        let params = uniform_buffer(device, "consistency", &params);
         let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, others, disparities, confidences], groups)
+        self.0.dispatch(device, &[&params, others, matches], groups)
     }
 }

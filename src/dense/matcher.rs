@@ -1,7 +1,7 @@
 //! The dense half of one pair size: all kernels, all memory, and the order of things.
 
 use super::{
-    block_match::{BlockMatch, Layout},
+    block_match::{BlockMatch, Layout, Tile, Wanted},
     config::{DenseConfig, View},
     consistency::Consistency,
     pad::Pad,
@@ -35,8 +35,9 @@ pub struct Dense {
 pub struct Matcher {
     size: (u32, u32),
     bands: Vec<Band>,
-    disparities: wgpu::Buffer,
-    confidences: wgpu::Buffer,
+    /// The disparities of a band, then its confidences.
+    matches: wgpu::Buffer,
+    confidence_offset: u32,
     bytes: u64,
 }
 
@@ -77,7 +78,7 @@ impl Matcher {
     ) -> Result<Self> {
         config.validate()?;
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
-        let band_rows = band_rows_within(limit, size, config, band_rows)?;
+        let band_rows = band_rows_within(limit, size, config, Tile::of(device), band_rows)?;
         guarded(device, "dense matching", || Self::build(device, size, config, [left, right], band_rows))
     }
 
@@ -89,53 +90,50 @@ impl Matcher {
         band_rows: u32,
     ) -> Result<Self> {
         let (width, height) = size;
+        let tile = Tile::of(device);
         let pad = Pad::new(device);
-        let block_match = BlockMatch::new(device, config);
-        let consistency = config.consistency.map(|limit| (Consistency::new(device), limit));
+        let block_match = BlockMatch::new(device, config, Wanted::Matches, tile);
+        let check = config.consistency.map(|max_difference| {
+            (BlockMatch::new(device, config, Wanted::Winners, tile), Consistency::new(device), max_difference)
+        });
 
         let mut bytes = 0;
         let mut buffer = |label, words: u64| {
             bytes += 4 * words;
             storage_buffer(device, label, 4 * words)
         };
-        let pixels = u64::from(width) * u64::from(band_rows);
-        let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config)?.words())?;
-        let disparities = buffer("disparities", pixels)?;
-        let confidences = buffer("confidences", pixels)?;
-        let others = match consistency {
-            Some(_) => Some([buffer("other disparities", pixels)?, buffer("other confidences", pixels)?]),
-            None => None,
-        };
+        // Fits: twice the pixels of a band are a buffer of less than 2^32 bytes.
+        let confidence_offset = width * band_rows;
+        let pixels = u64::from(confidence_offset);
+        let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
+        let matches = buffer("matches", 2 * pixels)?;
+        let winners = if check.is_some() { Some(buffer("winners of the other view", pixels)?) } else { None };
 
-        let match_view = |layout: &Layout, view: View, uniqueness, outputs: [&wgpu::Buffer; 2]| {
+        let padding = |layout: &Layout, view: View| {
             let [reference, searched] = match view {
                 View::Left => [left, right],
                 View::Right => [right, left],
             };
-            let [reference_padding, searched_padding] = layout.padding(view);
-            [
-                pad.prepare(device, reference_padding, reference, &planes),
-                pad.prepare(device, searched_padding, searched, &planes),
-                block_match.prepare(device, layout, uniqueness, view, &planes, outputs),
-            ]
+            let [of_reference, of_searched] = layout.padding(view);
+            [pad.prepare(device, of_reference, reference, &planes), pad.prepare(device, of_searched, searched, &planes)]
         };
         let mut bands = Vec::new();
         for first_row in (0..height).step_by(band_rows as usize) {
             let rows = band_rows.min(height - first_row);
-            let layout = Layout::new(size, first_row, rows, config)?;
-            let mut dispatches = Vec::new();
-            dispatches.extend(match_view(&layout, config.reference, config.uniqueness, [&disparities, &confidences]));
-            if let (Some((consistency, limit)), Some([disparities2, confidences2])) = (&consistency, &others) {
-                let other_view = config.reference.other();
-                // A partner is asked where it points, not whether it is unique.
-                dispatches.extend(match_view(&layout, other_view, 0, [disparities2, confidences2]));
-                let outputs = [&disparities, &confidences];
-                let band = (width, rows);
-                dispatches.push(consistency.prepare(device, band, config.reference, *limit, disparities2, outputs));
+            let layout = Layout::new(size, first_row, rows, config, tile)?;
+            let view = config.reference;
+            let mut dispatches = Vec::from(padding(&layout, view));
+            dispatches.push(block_match.prepare(device, &layout, view, &planes, &matches, confidence_offset));
+            if let (Some((find_winners, consistency, max_difference)), Some(winners)) = (&check, &winners) {
+                dispatches.extend(padding(&layout, view.other()));
+                dispatches.push(find_winners.prepare(device, &layout, view.other(), &planes, winners, 0));
+                let size = (width, rows);
+                let limit = *max_difference;
+                dispatches.push(consistency.prepare(device, size, confidence_offset, view, limit, winners, &matches));
             }
             bands.push(Band { first_row, rows, dispatches });
         }
-        Ok(Self { size, bands, disparities, confidences, bytes })
+        Ok(Self { size, bands, matches, confidence_offset, bytes })
     }
 
     /// Bytes of device memory that this matcher holds.
@@ -158,19 +156,20 @@ impl Matcher {
             }
             let row_bytes = 4 * u64::from(self.size.0);
             let (offset, length) = (row_bytes * u64::from(band.first_row), row_bytes * u64::from(band.rows));
-            encoder.copy_buffer_to_buffer(&self.disparities, 0, disparities, offset, Some(length));
-            encoder.copy_buffer_to_buffer(&self.confidences, 0, confidences, offset, Some(length));
+            let confidence_bytes = 4 * u64::from(self.confidence_offset);
+            encoder.copy_buffer_to_buffer(&self.matches, 0, disparities, offset, Some(length));
+            encoder.copy_buffer_to_buffer(&self.matches, confidence_bytes, confidences, offset, Some(length));
         }
     }
 }
 
 /// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes.
-fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, wanted: u32) -> Result<u32> {
+fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tile: Tile, wanted: u32) -> Result<u32> {
     let (width, height) = size;
     let mut rows = wanted.clamp(1, height.min(MAX_BAND_ROWS));
     loop {
-        let planes = 4 * Layout::new(size, 0, rows, config)?.words();
-        let needed = planes.max(4 * u64::from(width) * u64::from(rows));
+        let planes = 4 * Layout::new(size, 0, rows, config, tile)?.words();
+        let needed = planes.max(8 * u64::from(width) * u64::from(rows));
         if needed <= limit {
             return Ok(rows);
         }

@@ -9,19 +9,22 @@ mod consistency;
 mod matcher;
 mod pad;
 
-pub use block_match::{BlockMatch, Layout};
+use crate::{disparity::DisparityRange, gpu::Stage};
+
+pub use block_match::{BlockMatch, Layout, Tile, Wanted};
 pub use config::{DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 
-/// Every stage of the dense half, for checks that need no GPU; block matching once for each window.
-pub fn stages() -> Vec<crate::gpu::Stage> {
+/// Every stage of the dense half, for checks that need no GPU; block matching once for each
+/// window.
+pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Consistency::stage()];
     for window in (3..=31).step_by(2) {
-        stages.push(BlockMatch::stage(&DenseConfig { window, ..DenseConfig::new(SOME_RANGE) }));
+        let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
+        let config = DenseConfig { window, ..DenseConfig::new(DisparityRange { min: 0, count: 1 }) };
+        stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| BlockMatch::stage(&config, wanted, tile)));
     }
     stages
 }
-
-const SOME_RANGE: crate::disparity::DisparityRange = crate::disparity::DisparityRange { min: 0, count: 1 };

@@ -3,12 +3,13 @@
 use super::{
     DESCRIPTOR_LENGTH, Feature, FeatureConfig,
     descriptor::Descriptor,
-    dispatch::Dispatch,
     hessian::{DETERMINANT_SCALE, Hessian},
-    integral::Integral,
-    keypoints::{HEADER_BYTES, Keypoint, list_bytes},
+    integral_columns::IntegralColumns,
+    integral_rows::IntegralRows,
+    keypoints::Keypoint,
     nonmax::Nonmax,
     orientation::Orientation,
+    workgroups::Workgroups,
 };
 use crate::{
     error::{Error, Result},
@@ -19,16 +20,15 @@ use crate::{
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
 pub struct Detector {
-    integral: Integral,
+    rows: IntegralRows,
+    columns: IntegralColumns,
     hessian: Hessian,
     nonmax: Nonmax,
-    dispatch: Dispatch,
+    workgroups: Workgroups,
     /// None in upright mode.
     orientation: Option<Orientation>,
     descriptor: Descriptor,
-    /// How many keypoints there are.
-    count: Readback,
-    max_features: u32,
+    found: Readback,
 }
 
 /// The values of one descriptor.
@@ -51,48 +51,33 @@ impl Detector {
     ) -> Result<Self> {
         config.validate()?;
         guarded(device, "finding interest points", || {
-            let integral = Integral::new(device, luma, width, height)?;
-            let hessian = Hessian::new(device, integral.integral(), width, height, config)?;
+            let rows = IntegralRows::new(device, luma, width, height)?;
+            let integral = rows.sums();
+            let columns = IntegralColumns::new(device, integral, width, height);
+            let hessian = Hessian::new(device, integral, width, height, config)?;
             let nonmax = Nonmax::new(device, &hessian, width, height, config)?;
-            let dispatch = Dispatch::new(device, nonmax.list());
-            let capacity = config.max_features;
-            let orientation = if config.upright {
-                None
-            } else {
-                Some(Orientation::new(device, integral.integral(), nonmax.list(), (width, height), capacity)?)
-            };
-            let descriptor = Descriptor::new(
-                device,
-                integral.integral(),
-                nonmax.list(),
-                orientation.as_ref().map(Orientation::orientations),
-                (width, height),
-                capacity,
-            )?;
-            Ok(Self {
-                integral,
-                hessian,
-                nonmax,
-                dispatch,
-                orientation,
-                descriptor,
-                count: Readback::new(device, "number of keypoints", HEADER_BYTES),
-                max_features: capacity,
-            })
+            let list = nonmax.list();
+            let workgroups = Workgroups::new(device, list);
+            let (groups, size) = (workgroups.groups(), (width, height));
+            let orientation = (!config.upright).then(|| Orientation::new(device, integral, list, groups, size));
+            let descriptor = Descriptor::new(device, integral, list, groups, size, config.upright)?;
+            let found = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
+            Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor, found })
         })
     }
 
     /// Records everything from the integral image to the descriptors.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.integral.record(encoder);
+        self.rows.record(encoder);
+        self.columns.record(encoder);
         self.hessian.record(encoder);
         self.nonmax.record(encoder);
-        self.dispatch.record(encoder);
+        self.workgroups.record(encoder);
         if let Some(orientation) = &self.orientation {
-            orientation.record(encoder, self.dispatch.groups());
+            orientation.record(encoder);
         }
-        self.descriptor.record(encoder, self.dispatch.groups());
-        self.count.record(encoder, self.nonmax.list());
+        self.descriptor.record(encoder);
+        self.found.record(encoder, self.nonmax.list().found());
     }
 
     /// Waits for the recorded work, once submitted, and returns what it found, sorted by octave,
@@ -103,37 +88,27 @@ impl Detector {
     /// # Errors
     /// [`Error::Parameter`] where more was found than there is room for; [`Error::DeviceLost`].
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
-        let found = self.count.read::<u32>(device, 1)?[0];
-        if found > self.max_features {
-            return Err(too_many(found, self.max_features));
+        let list = self.nonmax.list();
+        let found = self.found.read::<u32>(device, 1)?[0];
+        if found > list.capacity() {
+            return Err(too_many(found, list.capacity()));
         }
         if found == 0 {
             return Ok(Vec::new());
         }
         let found = found as usize;
-        let bytes = |each: usize| (found * each) as u64;
-        let list = Readback::new(device, "keypoints", list_bytes(found as u32));
-        let descriptors = Readback::new(device, "descriptors", bytes(size_of::<Values>()));
+        let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
+        let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
-        list.record(&mut encoder, self.nonmax.list());
+        keypoints.record(&mut encoder, list.keypoints());
         descriptors.record(&mut encoder, self.descriptor.descriptors());
-        let orientations = self.orientation.as_ref().map(|orientation| {
-            let readback = Readback::new(device, "orientations", bytes(size_of::<f32>()));
-            readback.record(&mut encoder, orientation.orientations());
-            readback
-        });
         queue.submit([encoder.finish()]);
-        let list = list.read::<u8>(device, list_bytes(found as u32) as usize)?;
-        let keypoints = bytemuck::pod_collect_to_vec::<u8, Keypoint>(&list[HEADER_BYTES as usize..]);
+        let keypoints = keypoints.read::<Keypoint>(device, found)?;
         let descriptors = descriptors.read::<Values>(device, found)?;
-        let orientations = match orientations {
-            Some(readback) => readback.read::<f32>(device, found)?,
-            None => vec![0.0; found],
-        };
 
-        let mut order: Vec<_> = (0..found).collect();
-        order.sort_unstable_by_key(|&i| keypoints[i].key());
-        Ok(order.into_iter().map(|i| feature(&keypoints[i], orientations[i], descriptors[i])).collect())
+        let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
+        features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
+        Ok(features.into_iter().map(|(keypoint, descriptor)| feature(keypoint, descriptor)).collect())
     }
 }
 
@@ -155,14 +130,14 @@ pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<F
     detector.read(&gpu.device, &gpu.queue)
 }
 
-fn feature(keypoint: &Keypoint, orientation: f32, descriptor: Values) -> Feature {
+fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {
     Feature {
         x: keypoint.x,
         y: keypoint.y,
         scale: keypoint.scale,
         response: (f64::from(keypoint.response >> 1) / DETERMINANT_SCALE) as f32,
         dark: keypoint.response & 1 == 1,
-        orientation,
+        orientation: keypoint.orientation,
         descriptor,
     }
 }

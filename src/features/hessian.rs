@@ -1,10 +1,10 @@
 //! The determinant of the Hessian, by box filters of growing size over the integral image (Bay et
-//! al. 2008, section 3.2).
+//! al. 2008, section 3.2). `shaders/hessian.wgsl`.
 
 use super::FeatureConfig;
 use crate::{
     error::Result,
-    gpu::{Binding, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
 };
 
 /// Layers of an octave.
@@ -86,16 +86,12 @@ pub fn stage(tile: u32) -> Stage {
 }
 
 struct Octave {
-    tile: u32,
-    bind_group: wgpu::BindGroup,
-    groups: [u32; 3],
+    dispatch: Dispatch,
     responses: wgpu::Buffer,
 }
 
 /// The responses of all octaves for pictures of one size.
 pub struct Hessian {
-    /// For tiles of 1 and of 2, where an octave uses them.
-    kernels: [Option<Kernel>; 2],
     octaves: Vec<Octave>,
 }
 
@@ -111,6 +107,7 @@ impl Hessian {
         height: u32,
         config: &FeatureConfig,
     ) -> Result<Self> {
+        // For tiles of 1 and of 2, where an octave uses them.
         let mut kernels = [None, None];
         let octaves = (0..config.octaves).map(|octave| {
             let sizes = FILTER_SIZES[octave as usize];
@@ -129,22 +126,19 @@ impl Hessian {
             let params = uniform_buffer(device, "octave", &params);
             let bytes = 4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height);
             let responses = storage_buffer(device, "responses of an octave", bytes)?;
-            let bind_group = kernel.bind(device, &[&params, integral, &responses]);
             let threads = |points: u32| if tile == 1 { points } else { threads_of_pairs(points, sizes) };
             let groups =
                 [threads(grid.width).div_ceil(WORKGROUP[0]), threads(grid.height).div_ceil(WORKGROUP[1]), LAYERS];
-            Ok(Octave { tile, bind_group, groups, responses })
+            Ok(Octave { dispatch: kernel.dispatch(device, &[&params, integral, &responses], groups), responses })
         });
         let octaves = octaves.collect::<Result<_>>()?;
-        Ok(Self { kernels, octaves })
+        Ok(Self { octaves })
     }
 
     /// Records one pass for each octave.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         for octave in &self.octaves {
-            if let Some(kernel) = &self.kernels[octave.tile as usize - 1] {
-                kernel.record(encoder, &octave.bind_group, octave.groups);
-            }
+            octave.dispatch.record(encoder);
         }
     }
 

@@ -5,7 +5,7 @@ use crate::{
     gpu::{Binding, storage_buffer},
 };
 
-/// A maximum of the determinant, as found on the device.
+/// A maximum of the determinant, as found on the device; `shaders/shared/keypoint.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Keypoint {
@@ -15,6 +15,8 @@ pub struct Keypoint {
     pub y: f32,
     /// Scale in pixels; 1.2 for the 9x9 filter.
     pub scale: f32,
+    /// Radians, 0 to 2 pi; 0 until it is known, and in upright mode.
+    pub orientation: f32,
     /// The response word of the sample: `determinant << 1 | (trace > 0)`.
     pub response: i32,
     /// The octave.
@@ -30,9 +32,6 @@ impl Keypoint {
     }
 }
 
-/// Bytes in front of the keypoints: their number.
-pub const HEADER_BYTES: u64 = 4;
-
 /// Keypoints in a row of workgroups, where each has a workgroup of its own.
 pub(crate) const DISPATCH_WIDTH: u32 = 256;
 
@@ -47,16 +46,39 @@ pub(crate) struct Params {
 /// The uniform that `haar.wgsl` declares.
 pub(crate) const PARAMS: Binding = Binding::Uniform(size_of::<Params>() as u64);
 
-/// Bytes of a list with room for `capacity` keypoints.
-pub fn list_bytes(capacity: u32) -> u64 {
-    HEADER_BYTES + u64::from(capacity) * size_of::<Keypoint>() as u64
+/// Room for the keypoints of a picture, on the device.
+pub struct KeypointList {
+    found: wgpu::Buffer,
+    keypoints: wgpu::Buffer,
+    capacity: u32,
 }
 
-/// A list with room for `capacity` keypoints: their number in one word (which counts on when the
-/// room is used up), then the [`Keypoint`]s in no particular order.
-///
-/// # Errors
-/// [`crate::Error::TooLarge`] where the device could not bind it.
-pub fn list_buffer(device: &wgpu::Device, capacity: u32) -> Result<wgpu::Buffer> {
-    storage_buffer(device, "keypoints", list_bytes(capacity))
+impl KeypointList {
+    /// Room for `capacity` of them.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device could not bind it.
+    pub fn new(device: &wgpu::Device, capacity: u32) -> Result<Self> {
+        let bytes = u64::from(capacity) * size_of::<Keypoint>() as u64;
+        Ok(Self {
+            found: storage_buffer(device, "number of keypoints", size_of::<u32>() as u64)?,
+            keypoints: storage_buffer(device, "keypoints", bytes)?,
+            capacity,
+        })
+    }
+
+    /// One word: how many were found, also where that is more than the capacity.
+    pub fn found(&self) -> &wgpu::Buffer {
+        &self.found
+    }
+
+    /// The [`Keypoint`]s, in no particular order.
+    pub fn keypoints(&self) -> &wgpu::Buffer {
+        &self.keypoints
+    }
+
+    /// How many there is room for.
+    pub fn capacity(&self) -> u32 {
+        self.capacity
+    }
 }

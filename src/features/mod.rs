@@ -5,12 +5,13 @@
 //! 2008; Evans: 'Notes on the OpenSURF Library', 2009.
 
 pub mod descriptor;
-pub mod dispatch;
 pub mod hessian;
-pub mod integral;
+pub mod integral_columns;
+pub mod integral_rows;
 pub mod keypoints;
 pub mod nonmax;
 pub mod orientation;
+pub mod workgroups;
 
 mod config;
 mod detector;
@@ -23,14 +24,14 @@ use crate::gpu::Stage;
 /// Every stage of the sparse half.
 pub fn stages() -> Vec<Stage> {
     vec![
-        integral::rows_stage(),
-        integral::columns_stage(),
+        integral_rows::stage(),
+        integral_columns::stage(),
         hessian::stage(1),
         hessian::stage(2),
         nonmax::stage(),
-        dispatch::stage(),
+        workgroups::stage(),
         orientation::stage(),
-        descriptor::turned_stage(),
-        descriptor::upright_stage(),
+        descriptor::stage(true),
+        descriptor::stage(false),
     ]
 }

@@ -1,13 +1,14 @@
 //! Non-maximum suppression over position and scale, with sub-sample interpolation.
+//! `shaders/nonmax.wgsl`.
 
 use super::{
     FeatureConfig,
     hessian::{DETERMINANT_SCALE, FILTER_SIZES, Grid, Hessian},
-    keypoints::{HEADER_BYTES, list_buffer},
+    keypoints::KeypointList,
 };
 use crate::{
     error::Result,
-    gpu::{Binding, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -30,8 +31,8 @@ struct Params {
 pub fn stage() -> Stage {
     Stage {
         name: "nonmax",
-        source: include_str!("../../shaders/nonmax.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        source: concat!(include_str!("../../shaders/shared/keypoint.wgsl"), include_str!("../../shaders/nonmax.wgsl")),
+        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }
 }
@@ -43,9 +44,8 @@ pub fn integer_threshold(threshold: f32) -> i32 {
 
 /// The keypoints of all octaves for pictures of one size.
 pub struct Nonmax {
-    kernel: Kernel,
-    octaves: Vec<(wgpu::BindGroup, [u32; 3])>,
-    list: wgpu::Buffer,
+    octaves: Vec<Dispatch>,
+    list: KeypointList,
 }
 
 impl Nonmax {
@@ -61,7 +61,7 @@ impl Nonmax {
         config: &FeatureConfig,
     ) -> Result<Self> {
         let kernel = Kernel::new(device, &stage());
-        let list = list_buffer(device, config.max_features)?;
+        let list = KeypointList::new(device, config.max_features)?;
         let octaves = (0..config.octaves)
             .map(|octave| {
                 let grid = Grid::new(width, height, config.step, octave);
@@ -77,25 +77,25 @@ impl Nonmax {
                     sizes: FILTER_SIZES[octave as usize],
                 };
                 let params = uniform_buffer(device, "suppression in an octave", &params);
-                let bind_group = kernel.bind(device, &[&params, hessian.responses(octave), &list]);
                 let groups =
                     [grid.width.div_ceil(2).div_ceil(WORKGROUP[0]), grid.height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
-                (bind_group, groups)
+                let buffers = [&params, hessian.responses(octave), list.found(), list.keypoints()];
+                kernel.dispatch(device, &buffers, groups)
             })
             .collect();
-        Ok(Self { kernel, octaves, list })
+        Ok(Self { octaves, list })
     }
 
     /// Records the emptying of the list, then one pass for each octave.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.clear_buffer(&self.list, 0, Some(HEADER_BYTES));
-        for (bind_group, groups) in &self.octaves {
-            self.kernel.record(encoder, bind_group, *groups);
+        encoder.clear_buffer(self.list.found(), 0, None);
+        for octave in &self.octaves {
+            octave.record(encoder);
         }
     }
 
-    /// The list of keypoints: see [`super::keypoints`].
-    pub fn list(&self) -> &wgpu::Buffer {
+    /// The list of keypoints.
+    pub fn list(&self) -> &KeypointList {
         &self.list
     }
 }

@@ -93,46 +93,33 @@ impl Kernel {
         Self { name: stage.name, layout, pipeline }
     }
 
-    /// Binds whole buffers in the order of the stage's bindings.
-    pub(crate) fn bind(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+    /// Binds whole `buffers`, in the order of the stage's bindings, for `groups` workgroups along x, y and z.
+    pub(crate) fn dispatch(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: [u32; 3]) -> Dispatch {
+        self.bind(device, buffers, Groups::Known(groups))
+    }
+
+    /// As [`Self::dispatch`], for as many workgroups as the first three words of `groups` will say when the device
+    /// gets there.
+    pub(crate) fn dispatch_indirect(
+        &self,
+        device: &wgpu::Device,
+        buffers: &[&wgpu::Buffer],
+        groups: &wgpu::Buffer,
+    ) -> Dispatch {
+        self.bind(device, buffers, Groups::Indirect(groups.clone()))
+    }
+
+    fn bind(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: Groups) -> Dispatch {
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
             .collect();
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.name),
             layout: &self.layout,
             entries: &entries,
-        })
-    }
-
-    /// [`Self::bind`] and a number of workgroups, ready to be recorded any number of times.
-    pub(crate) fn dispatch(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: [u32; 3]) -> Dispatch {
-        Dispatch { kernel: self.clone(), bind_group: self.bind(device, buffers), groups }
-    }
-
-    /// Records one dispatch of `groups` workgroups, in a pass of its own.
-    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, groups: [u32; 3]) {
-        let [x, y, z] = groups;
-        self.pass(encoder, bind_group).dispatch_workgroups(x, y, z);
-    }
-
-    /// Records one dispatch of as many workgroups as `groups` will hold when the device gets there.
-    pub(crate) fn record_indirect(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        bind_group: &wgpu::BindGroup,
-        groups: &wgpu::Buffer,
-    ) {
-        self.pass(encoder, bind_group).dispatch_workgroups_indirect(groups, 0);
-    }
-
-    fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup) -> wgpu::ComputePass<'e> {
-        let mut pass =
-            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(self.name), timestamp_writes: None });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, bind_group, &[]);
-        pass
+        });
+        Dispatch { kernel: self.clone(), bind_group, groups }
     }
 }
 
@@ -140,13 +127,27 @@ impl Kernel {
 pub struct Dispatch {
     kernel: Kernel,
     bind_group: wgpu::BindGroup,
-    groups: [u32; 3],
+    groups: Groups,
+}
+
+/// How many workgroups there are.
+enum Groups {
+    Known([u32; 3]),
+    /// As three words of a buffer say.
+    Indirect(wgpu::Buffer),
 }
 
 impl Dispatch {
     /// Records it, in a pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.record(encoder, &self.bind_group, self.groups);
+        let label = Some(self.kernel.name);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+        pass.set_pipeline(&self.kernel.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        match &self.groups {
+            Groups::Known([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+            Groups::Indirect(groups) => pass.dispatch_workgroups_indirect(groups, 0),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     dense::{Dense, DenseConfig, Interpolation, View},
-    disparity::{NONE, SCALE},
+    disparity::{DisparityMap, NONE, SCALE},
     image::{Luma, Plane},
 };
 
@@ -23,15 +23,14 @@ pub fn cost(reference: &Luma, searched: &Luma, radius: u32, (x, y): (u32, u32), 
     sum
 }
 
-/// For each pixel of `view` the disparity of least cost, unless `uniqueness` per cent or less lie
-/// between it and its best rival. Ties go to the smaller disparity.
-pub fn block_match(left: &Luma, right: &Luma, view: View, uniqueness: u32, config: &DenseConfig) -> Dense {
+/// For each pixel of `view` the disparity of least cost, unless its best rival is too close. Ties go to the smaller disparity.
+pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig) -> Dense {
     let (width, height) = left.size();
     let rows: Vec<Vec<(i32, u8)>> = (0..height)
         .into_par_iter()
         .map(|y| {
             let costs = row_costs(left, right, view, y, config);
-            costs.iter().map(|costs| decide(costs, uniqueness, config)).collect()
+            costs.iter().map(|costs| decide(costs, config)).collect()
         })
         .collect();
     let pixels = |x: u32, y: u32| rows[y as usize][x as usize];
@@ -39,6 +38,12 @@ pub fn block_match(left: &Luma, right: &Luma, view: View, uniqueness: u32, confi
         disparity: Plane::from_fn(width, height, |x, y| pixels(x, y).0),
         confidence: Plane::from_fn(width, height, |x, y| pixels(x, y).1),
     }
+}
+
+/// For each pixel of `view` the whole disparity of least cost. Ties go to the smaller disparity.
+pub fn winners(left: &Luma, right: &Luma, view: View, config: &DenseConfig) -> DisparityMap {
+    let config = DenseConfig { interpolation: Interpolation::None, uniqueness: 0, ..config.clone() };
+    block_match(left, right, view, &config).disparity
 }
 
 /// For each pixel of row `y` the cost of each disparity of the range, `None` where its partner lies
@@ -68,13 +73,13 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
 }
 
 /// The fixed-point disparity and the confidence that follow from a pixel's costs.
-fn decide(costs: &[Option<u32>], uniqueness: u32, config: &DenseConfig) -> (i32, u8) {
+fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
     let candidates = || costs.iter().enumerate().filter_map(|(index, &cost)| Some((cost?, index)));
     let Some((best, winner)) = candidates().min() else {
         return (NONE, 0);
     };
     let rival = candidates().filter(|&(_, index)| index.abs_diff(winner) > 1).map(|(cost, _)| cost).min();
-    let unique = |rival| uniqueness == 0 || 100 * rival > (100 + uniqueness) * best;
+    let unique = |rival| config.uniqueness == 0 || 100 * rival > (100 + config.uniqueness) * best;
     if !rival.is_none_or(unique) {
         return (NONE, 0);
     }
@@ -125,18 +130,18 @@ mod tests {
     #[test]
     fn ties_go_to_the_smaller_disparity() {
         let flat = Luma::filled(5, 3, 7);
-        let dense = block_match(&flat, &flat, View::Left, 0, &config(-1, 3));
+        let dense = block_match(&flat, &flat, View::Left, &config(-1, 3));
         // The first column has no partner at disparity 1, the last none at -1.
         assert_eq!(dense.disparity.row(1), [-SCALE, -SCALE, -SCALE, -SCALE, 0]);
     }
 
     #[test]
     fn the_rival_is_no_neighbour_of_the_winner() {
-        let c = config(0, 4);
-        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(20)], 50, &c).0, 0);
-        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(15)], 50, &c).0, NONE);
+        let c = DenseConfig { uniqueness: 50, ..config(0, 4) };
+        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(20)], &c).0, 0);
+        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(15)], &c).0, NONE);
         // 1 + 254 * (20 - 10) / 20
-        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(20)], 50, &c).1, 128);
+        assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(20)], &c).1, 128);
     }
 
     #[test]
@@ -155,9 +160,8 @@ mod tests {
     fn both_views_see_one_shift() {
         let left = Luma::from_fn(24, 8, |x, y| ((x * 37 + y * 91).wrapping_mul(2_654_435_761) >> 13) as u8);
         let right = Luma::from_fn(24, 8, |x, y| left.get_clamped(i64::from(x) + 3, i64::from(y)));
-        let c = DenseConfig { interpolation: Interpolation::None, ..config(0, 8) };
-        let of_left = block_match(&left, &right, View::Left, 0, &c).disparity;
-        let of_right = block_match(&left, &right, View::Right, 0, &c).disparity;
+        let of_left = winners(&left, &right, View::Left, &config(0, 8));
+        let of_right = winners(&left, &right, View::Right, &config(0, 8));
         assert!((6..20).all(|x| of_left.get(x, 4) == 3 * SCALE), "{:?}", of_left.row(4));
         assert!((3..17).all(|x| of_right.get(x, 4) == 3 * SCALE), "{:?}", of_right.row(4));
     }

@@ -41,12 +41,12 @@ mod tests {
     fn by_hand() {
         let plane = |values: &[i32]| Plane::new(values.len() as u32, 1, values.to_vec()).unwrap();
         let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
-        let mut dense = Dense { confidence: disparity.map(|_| 9), disparity };
+        let mut dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
         // Partners: 0 of 0; 0 of 1; 1 of 2 (300 is nearest to one pixel); 1 of 3; outside.
         let others = plane(&[40, 260, NONE, 0, 0, 0]);
         check_consistency(&mut dense, View::Left, &others, 40);
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
-        assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 9, 0]);
+        assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
 
         let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled(3, 1, 9) };
         // -128 is a half: up, to 0.

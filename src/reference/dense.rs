@@ -1,6 +1,6 @@
 //! The dense half in one call.
 
-use super::{block_match, check_consistency};
+use super::{block_match, check_consistency, winners};
 use crate::{
     dense::{Dense, DenseConfig},
     error::{Error, Result},
@@ -17,9 +17,9 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
     config.validate()?;
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
-    let mut dense = block_match(left, right, config.reference, config.uniqueness, &config);
+    let mut dense = block_match(left, right, config.reference, &config);
     if let Some(max_difference) = config.consistency {
-        let others = block_match(left, right, config.reference.other(), 0, &config).disparity;
+        let others = winners(left, right, config.reference.other(), &config);
         check_consistency(&mut dense, config.reference, &others, max_difference);
     }
     Ok(dense)

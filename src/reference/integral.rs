@@ -1,7 +1,10 @@
 //! The integral image: any box of the picture as four look-ups (Crow, 'Summed-Area Tables for
 //! Texture Mapping', SIGGRAPH 1984; Viola and Jones, CVPR 2001).
 
-use crate::image::{Luma, Plane};
+use crate::{
+    image::{Luma, Plane},
+    reference::{integral_columns::sum_columns, integral_rows::sum_rows},
+};
 
 /// Sums of luma over everything above and to the left.
 ///
@@ -16,18 +19,8 @@ pub struct IntegralImage {
 impl IntegralImage {
     /// The integral image of `luma`.
     pub fn new(luma: &Luma) -> Self {
-        let (width, height) = luma.size();
-        let mut sums = Plane::filled(width + 1, height + 1, 0u32);
-        let (mut above, mut rest) = sums.data_mut().split_at_mut(width as usize + 1);
-        for y in 0..height {
-            let (row, below) = rest.split_at_mut(width as usize + 1);
-            let mut left = 0u32;
-            for (x, &value) in luma.row(y).iter().enumerate() {
-                left = left.wrapping_add(u32::from(value));
-                row[x + 1] = above[x + 1].wrapping_add(left);
-            }
-            (above, rest) = (row, below);
-        }
+        let mut sums = sum_rows(luma);
+        sum_columns(&mut sums);
         Self { sums }
     }
 

@@ -11,12 +11,15 @@ pub mod detector;
 pub mod haar;
 pub mod hessian;
 pub mod integral;
+pub mod integral_columns;
+pub mod integral_rows;
 pub mod luma;
 pub mod nonmax;
 pub mod orientation;
 mod pad;
+pub mod workgroups;
 
-pub use block_match::{block_match, cost};
+pub use block_match::{block_match, cost, winners};
 pub use consistency::check_consistency;
 pub use dense::compute_dense;
 pub use pad::padded;

@@ -13,15 +13,17 @@ fn on_device(dense: &Dense, view: View, others: &DisparityMap, max_difference: u
     let device = &gpu().device;
     let (width, height) = dense.disparity.size();
     let others = upload(others.data());
-    let disparities = upload(dense.disparity.data());
-    let confidences = upload(dense.confidence.map(|&c| u32::from(c)).data());
+    let pixels = (width * height) as usize;
+    let both: Vec<i32> =
+        dense.disparity.data().iter().copied().chain(dense.confidence.data().iter().map(|&c| c.into())).collect();
+    let matches = upload(&both);
     let size = (width, height);
-    let check =
-        Consistency::new(device).prepare(device, size, view, max_difference, &others, [&disparities, &confidences]);
+    let check = Consistency::new(device).prepare(device, size, width * height, view, max_difference, &others, &matches);
     run(|encoder| check.record(encoder));
+    let both = download::<i32>(&matches);
     Dense {
-        disparity: Plane::new(width, height, download(&disparities)).unwrap(),
-        confidence: Plane::new(width, height, download::<u32>(&confidences)).unwrap().map(|&c| c as u8),
+        disparity: Plane::new(width, height, both[..pixels].to_vec()).unwrap(),
+        confidence: Plane::new(width, height, both[pixels..].to_vec()).unwrap().map(|&c| c as u8),
     }
 }
 
@@ -57,9 +59,9 @@ fn the_twin_checks_the_same() {
 fn by_hand() {
     let plane = |values: &[i32]| Plane::new(values.len() as u32, 1, values.to_vec()).unwrap();
     let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
-    let dense = Dense { confidence: disparity.map(|_| 9), disparity };
+    let dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
     let others = plane(&[40, 260, NONE, 0, 0, 0]);
     let checked = on_device(&dense, View::Left, &others, 40);
     assert_eq!(checked.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
-    assert_eq!(checked.confidence.data(), [9, 0, 9, 0, 9, 0]);
+    assert_eq!(checked.confidence.data(), [9, 0, 9, 0, 0, 0]);
 }

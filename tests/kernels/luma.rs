@@ -1,6 +1,6 @@
-use hsad::{image::Luma, luma::RgbaToLuma};
+use hsad::{luma::RgbaToLuma, reference};
 
-use crate::common::{SIZES, assert_same, download, gpu, poison, run, upload};
+use crate::common::{SIZES, assert_same, download, gpu, photographs, picture, poison, run, upload};
 
 fn packed(width: u32, height: u32, pixels: &[[u8; 4]]) -> Vec<u32> {
     let stage = RgbaToLuma::new(&gpu().device, &upload(pixels), width, height).unwrap();
@@ -22,11 +22,24 @@ fn rows_start_new_words() {
     assert_eq!(packed(1, 3, &[[1; 4], [2; 4], [3; 4]]), [1, 2, 3]);
 }
 
+fn assert_equals_the_twin(name: &str, (width, height): (u32, u32), pixels: &[[u8; 4]]) {
+    let luma = reference::luma::from_rgba(width, height, pixels.as_flattened()).unwrap();
+    assert_same(name, &packed(width, height, pixels), &reference::luma::pack(&luma));
+}
+
 #[test]
-fn grey_stays_grey_at_every_size() {
+fn equals_the_twin_at_every_size() {
     for (width, height) in SIZES {
-        let luma = Luma::from_fn(width, height, |x, y| (x * 7 + y * 13) as u8);
-        let pixels: Vec<_> = luma.data().iter().map(|&grey| [grey, grey, grey, 255]).collect();
-        assert_same(&format!("{width}x{height}"), &packed(width, height, &pixels), &hsad::luma::pack(&luma));
+        let [red, green, blue] = [1, 2, 3].map(|seed| picture(width, height, seed));
+        let pixels: Vec<_> =
+            (0..red.data().len()).map(|i| [red.data()[i], green.data()[i], blue.data()[i], i as u8]).collect();
+        assert_equals_the_twin(&format!("{width}x{height}"), (width, height), &pixels);
+    }
+}
+
+#[test]
+fn equals_the_twin_on_photographs() {
+    for (name, picture) in photographs() {
+        assert_equals_the_twin(&name, picture.size(), picture.data());
     }
 }

@@ -1,17 +1,20 @@
-//! Every kernel on a device: hand-computed cases, and sizes that divide by nothing.
+//! Every kernel on a device: hand-computed cases, and against its CPU twin at sizes that divide by nothing and on real
+//! pictures.
 //!
 //! A device is part of these tests: without any they fail. Mesa's lavapipe needs no GPU.
+#![cfg(feature = "cli")]
 
 mod block_match;
 mod common;
 mod consistency;
 mod descriptor;
 mod detector;
-mod dispatch;
 mod hessian;
-mod integral;
+mod integral_columns;
+mod integral_rows;
 mod luma;
 mod matcher;
 mod nonmax;
 mod orientation;
 mod pad;
+mod workgroups;

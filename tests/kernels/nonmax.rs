@@ -1,11 +1,18 @@
-use hsad::features::{
-    FeatureConfig,
-    hessian::{Grid, Hessian, LAYERS},
-    keypoints::Keypoint,
-    nonmax::{Nonmax, integer_threshold},
+use hsad::{
+    features::{
+        FeatureConfig,
+        hessian::{Grid, Hessian, LAYERS},
+        keypoints::Keypoint,
+        nonmax::{Nonmax, integer_threshold},
+    },
+    reference::integral::IntegralImage,
+    wgpu,
 };
 
-use crate::common::{download, gpu, poison, run, upload, write};
+use crate::common::{
+    assert_mostly, download, gpu, integral_image, keypoint, keypoints_of, pictures, place_near, poison, run, upload,
+    write,
+};
 
 const SIDE: u32 = 64;
 
@@ -21,14 +28,23 @@ fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32),
         responses[((k * grid.height + j) * grid.width + i) as usize] = determinant << 1 | 1;
     }
     write(hessian.responses(octave), &responses);
-    poison(stage.list());
-    run(|encoder| stage.record(encoder));
-    let list = download::<u8>(stage.list());
-    let count: u32 = bytemuck::pod_read_unaligned(&list[..4]);
-    let room = (count as usize).min(config.max_features as usize);
-    let mut keypoints: Vec<Keypoint> = bytemuck::pod_collect_to_vec(&list[4..][..room * size_of::<Keypoint>()]);
+    found(config, &stage, |encoder| stage.record(encoder))
+}
+
+/// What a stage finds: how many there would have been with more room, and the list in order.
+fn found(
+    config: &FeatureConfig,
+    stage: &Nonmax,
+    record: impl FnOnce(&mut wgpu::CommandEncoder),
+) -> (usize, Vec<Keypoint>) {
+    poison(stage.list().found());
+    poison(stage.list().keypoints());
+    run(record);
+    let count = download::<u32>(stage.list().found())[0] as usize;
+    let mut keypoints: Vec<Keypoint> = download(stage.list().keypoints());
+    keypoints.truncate(count.min(config.max_features as usize));
     keypoints.sort_by_key(Keypoint::key);
-    (count as usize, keypoints)
+    (count, keypoints)
 }
 
 /// As above, with a threshold of 100.
@@ -42,7 +58,7 @@ fn maxima(octave: u32, samples: &[((u32, u32, u32), i32)]) -> Vec<Keypoint> {
 fn a_lone_peak_stays_where_it_is() {
     let found = maxima(0, &[((30, 31, 1), 1000)]);
     let response = 1000 << 1 | 1;
-    assert_eq!(found, [Keypoint { x: 30.0, y: 31.0, scale: 2.0, response, octave: 0, index: 31 * 64 + 30 }]);
+    assert_eq!(found, [Keypoint { response, index: 31 * 64 + 30, ..keypoint(30.0, 31.0, 2.0) }]);
 }
 
 #[test]
@@ -55,9 +71,8 @@ fn the_grid_of_octave_1_has_a_step_of_2() {
 }
 
 #[test]
-fn the_quadratic_moves_the_peak() {
-    // Across: 0 1000 500: gradient 250, curvature -1500, offset 1/6. Between layers: 200 1000 0:
-    // gradient -100, curvature -1800, offset -1/18.
+fn parabolas_move_the_peak() {
+    // Across: 0 1000 500, half of 500 over 1500. Between layers: 200 1000 0, half of -200 over 1800.
     let found = maxima(0, &[((30, 30, 2), 1000), ((31, 30, 2), 500), ((30, 30, 1), 200)]);
     assert_eq!(found.len(), 1);
     assert!((found[0].x - (30.0 + 1.0 / 6.0)).abs() < 1e-4, "{found:?}");
@@ -67,11 +82,23 @@ fn the_quadratic_moves_the_peak() {
     assert_eq!(found[0].index, (64 + 30) * 64 + 30);
 }
 
+/// A quadric through all 27 samples would put this peak more than half a sample away.
 #[test]
-fn a_peak_beyond_half_a_sample_is_dropped() {
-    // Around the peak along the diagonal, nearly as high: the fit lies more than half a sample off.
+fn no_peak_is_dropped() {
     let ridge = [((30, 30, 1), 1000), ((31, 30, 1), 990), ((30, 31, 1), 990), ((31, 31, 1), 999)];
-    assert_eq!(maxima(0, &ridge), []);
+    let found = maxima(0, &ridge);
+    assert_eq!(found.len(), 1);
+    // Half of 990 over 1010.
+    assert!((found[0].x - 30.490_1).abs() < 1e-4 && (found[0].y - 30.490_1).abs() < 1e-4, "{found:?}");
+}
+
+/// Twice the curvature of the highest possible peak among the lowest values needs 32 bits.
+#[test]
+fn extreme_determinants_do_not_overflow() {
+    let high = 29_013 * 29_013;
+    let found = maxima(0, &[((30, 30, 1), high), ((29, 30, 1), -high), ((31, 30, 1), high), ((30, 29, 1), -high)]);
+    assert_eq!((found[0].x, found[0].index), (30.5, 30 * 64 + 30));
+    assert!((found[0].y - (30.0 + 0.5 / 3.0)).abs() < 1e-4, "{found:?}");
 }
 
 #[test]
@@ -114,4 +141,48 @@ fn the_counter_goes_on_when_the_room_is_used_up() {
     let config = FeatureConfig { octaves: 1, max_features: 2, threshold: 1e-9, ..FeatureConfig::default() };
     let (count, kept) = maxima_with(&config, 0, &[((20, 30, 1), 900), ((30, 30, 1), 900), ((40, 30, 1), 900)]);
     assert_eq!((count, kept.len()), (3, 2));
+}
+
+fn near(a: &Keypoint, b: &Keypoint) -> bool {
+    let exact = |k: &Keypoint| (k.key(), k.response, k.orientation.to_bits());
+    exact(a) == exact(b) && place_near([a.x, a.y, a.scale], [b.x, b.y, b.scale])
+}
+
+#[test]
+fn equals_the_twin() {
+    let mut total = 0;
+    for (name, picture) in pictures() {
+        let (width, height) = picture.size();
+        for (step, threshold) in [(1, 0.000_01), (2, 0.000_001)] {
+            let config = FeatureConfig { octaves: 5, step, threshold, ..FeatureConfig::default() };
+            let hessian = Hessian::new(&gpu().device, &integral_image(&picture), width, height, &config).unwrap();
+            let stage = Nonmax::new(&gpu().device, &hessian, width, height, &config).unwrap();
+            let (_, found) = found(&config, &stage, |encoder| {
+                hessian.record(encoder);
+                stage.record(encoder);
+            });
+            let expected = keypoints_of(&IntegralImage::new(&picture), 5, step, threshold);
+            assert_mostly(&format!("{name}, step {step}"), &found, &expected, 0.0, near);
+            total += found.len();
+        }
+    }
+    assert!(total > 1000, "{total}");
+}
+
+#[test]
+fn a_changed_keypoint_is_seen() {
+    let good = Keypoint { response: 9, octave: 1, index: 5, ..keypoint(30.0, 20.0, 2.0) };
+    assert!(near(&good, &good));
+    for changed in [
+        Keypoint { x: 30.001, ..good },
+        Keypoint { y: 19.999, ..good },
+        Keypoint { scale: 2.001, ..good },
+        Keypoint { orientation: 1e-9, ..good },
+        Keypoint { response: 8, ..good },
+        Keypoint { octave: 0, ..good },
+        Keypoint { index: 6, ..good },
+        Keypoint { x: f32::NAN, ..good },
+    ] {
+        assert!(!near(&changed, &good), "{changed:?}");
+    }
 }

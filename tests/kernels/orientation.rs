@@ -1,36 +1,38 @@
 use std::f32::consts::PI;
 
 use hsad::{
-    features::{
-        dispatch::Dispatch,
-        integral::Integral,
-        keypoints::{Keypoint, list_buffer},
-        orientation::Orientation,
-    },
+    features::{keypoints::Keypoint, orientation::Orientation, workgroups::Workgroups},
     image::Luma,
+    reference::{self, haar::Place, integral::IntegralImage},
 };
 
-use crate::common::{download, gpu, poison, run, upload_luma, write};
+use crate::common::{
+    angle_near, assert_mostly, download, gpu, integral_image, keypoint, keypoint_list, keypoints_of, picture, pictures,
+    run,
+};
+
+/// The orientations of keypoints.
+fn orientations_of(picture: &Luma, keypoints: &[Keypoint]) -> Vec<f32> {
+    let device = &gpu().device;
+    // What is not written would be out of range.
+    let poisoned: Vec<_> = keypoints.iter().map(|&keypoint| Keypoint { orientation: f32::NAN, ..keypoint }).collect();
+    let list = keypoint_list(&poisoned);
+    let workgroups = Workgroups::new(device, &list);
+    let stage = Orientation::new(device, &integral_image(picture), &list, workgroups.groups(), picture.size());
+    run(|encoder| {
+        workgroups.record(encoder);
+        stage.record(encoder);
+    });
+    let found = download::<Keypoint>(list.keypoints());
+    for (found, given) in found.iter().zip(keypoints) {
+        assert_eq!(Keypoint { orientation: given.orientation, ..*found }, *given, "only the orientation is written");
+    }
+    found.into_iter().map(|keypoint| keypoint.orientation).collect()
+}
 
 /// The orientations at points (x, y, scale).
 fn orientations(picture: &Luma, points: &[[f32; 3]]) -> Vec<f32> {
-    let device = &gpu().device;
-    let (width, height) = picture.size();
-    let integral = Integral::new(device, &upload_luma(picture), width, height).unwrap();
-    let list = list_buffer(device, points.len() as u32).unwrap();
-    let keypoints = points.iter().map(|&[x, y, scale]| Keypoint { x, y, scale, response: 0, octave: 0, index: 0 });
-    let mut bytes = (points.len() as u32).to_ne_bytes().to_vec();
-    keypoints.for_each(|keypoint| bytes.extend(bytemuck::bytes_of(&keypoint)));
-    write(&list, &bytes);
-    let dispatch = Dispatch::new(device, &list);
-    let stage = Orientation::new(device, integral.integral(), &list, (width, height), points.len() as u32).unwrap();
-    poison(stage.orientations());
-    run(|encoder| {
-        integral.record(encoder);
-        dispatch.record(encoder);
-        stage.record(encoder, dispatch.groups());
-    });
-    download(stage.orientations())
+    orientations_of(picture, &points.iter().map(|&[x, y, scale]| keypoint(x, y, scale)).collect::<Vec<_>>())
 }
 
 #[test]
@@ -73,4 +75,36 @@ fn every_keypoint_of_many_gets_its_own() {
     let points = vec![[30.0, 30.0, 2.0]; 700];
     let found = orientations(&picture, &points);
     assert!(found.iter().all(|angle| angle.abs() < 0.01), "{found:?}");
+}
+
+fn twin(integral: &IntegralImage, keypoint: &Keypoint) -> f32 {
+    reference::orientation::orientation(integral, Place::new(keypoint.x, keypoint.y, keypoint.scale))
+}
+
+/// Where a gradient is at the very end of a window, or two windows' sums are equally long, the last digit decides which
+/// window wins. Allowed at one in 200; seen at none of 35,000 on lavapipe.
+#[test]
+fn equals_the_twin() {
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    for (_, picture) in pictures() {
+        let integral = IntegralImage::new(&picture);
+        let keypoints = keypoints_of(&integral, 5, 1, 0.000_1);
+        if keypoints.is_empty() {
+            continue;
+        }
+        found.extend(orientations_of(&picture, &keypoints));
+        expected.extend(keypoints.iter().map(|keypoint| twin(&integral, keypoint)));
+    }
+    assert!(found.len() > 1000, "{}", found.len());
+    assert_mostly("orientations", &found, &expected, 0.005, angle_near);
+}
+
+/// Beyond edges, at any scale.
+#[test]
+fn equals_the_twin_anywhere() {
+    let picture = picture(97, 133, 11);
+    let integral = IntegralImage::new(&picture);
+    let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0]).collect();
+    let expected: Vec<_> = points.iter().map(|&[x, y, scale]| twin(&integral, &keypoint(x, y, scale))).collect();
+    assert_mostly("orientations", &orientations(&picture, &points), &expected, 0.005, angle_near);
 }

@@ -1,30 +1,31 @@
 //! The number of workgroups for the stages after the keypoint list, from the list's own counter,
-//! so that nothing has to be read back in between.
+//! so that nothing has to be read back in between. `shaders/workgroups.wgsl`.
 
-use super::keypoints::DISPATCH_WIDTH;
-use crate::gpu::{Binding, Kernel, Stage};
+use super::keypoints::{DISPATCH_WIDTH, KeypointList};
+use crate::gpu::{Binding, Dispatch, Kernel, Stage};
 
 /// The stage.
 pub fn stage() -> Stage {
     Stage {
-        name: "dispatch",
-        source: include_str!("../../shaders/dispatch.wgsl"),
-        bindings: &[Binding::Read, Binding::Write],
+        name: "workgroups",
+        source: concat!(
+            include_str!("../../shaders/shared/keypoint.wgsl"),
+            include_str!("../../shaders/workgroups.wgsl")
+        ),
+        bindings: &[Binding::Read, Binding::Read, Binding::Write],
         constants: vec![("DISPATCH_WIDTH", DISPATCH_WIDTH.into())],
     }
 }
 
 /// The workgroups for one keypoint list.
-pub struct Dispatch {
-    kernel: Kernel,
-    bind_group: wgpu::BindGroup,
+pub struct Workgroups {
+    dispatch: Dispatch,
     groups: wgpu::Buffer,
 }
 
-impl Dispatch {
+impl Workgroups {
     /// Reads the counter of `list`.
-    pub fn new(device: &wgpu::Device, list: &wgpu::Buffer) -> Self {
-        let kernel = Kernel::new(device, &stage());
+    pub fn new(device: &wgpu::Device, list: &KeypointList) -> Self {
         let groups = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("workgroups"),
             size: size_of::<wgpu::util::DispatchIndirectArgs>() as u64,
@@ -34,13 +35,14 @@ impl Dispatch {
                 | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let bind_group = kernel.bind(device, &[list, &groups]);
-        Self { kernel, bind_group, groups }
+        let buffers = [list.found(), list.keypoints(), &groups];
+        let dispatch = Kernel::new(device, &stage()).dispatch(device, &buffers, [1, 1, 1]);
+        Self { dispatch, groups }
     }
 
     /// Records the count.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.record(encoder, &self.bind_group, [1, 1, 1]);
+        self.dispatch.record(encoder);
     }
 
     /// Three words: workgroups along x, y and z.

@@ -1,0 +1,113 @@
+//! What the two halves take on a device, cold and warm: `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES]]`.
+//!
+//! One line a measurement: its name, the first run (which compiles) and the minimum and the median of
+//! the others, in milliseconds. `scripts/compare-opencv.py` runs it beside OpenCV.
+
+use std::{hint::black_box, path::Path, time::Instant};
+
+use hsad::{
+    config::Preset,
+    dense::{DenseConfig, Matcher},
+    disparity::DisparityRange,
+    features::{Detector, FeatureConfig},
+    gpu::{DeviceChoice, Gpu},
+    image::Luma,
+    io::{Picture, load},
+    luma::pack,
+    matching::match_features,
+    seeding::Seeding,
+    wgpu::{self, util::DeviceExt},
+};
+
+const RUNS: usize = 20;
+
+fn main() -> hsad::Result<()> {
+    // Cargo adds a --bench of its own.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
+    let picture = |i: usize, name: &str| load::load(&arguments.get(i).map_or_else(|| root.join(name), Into::into));
+    let pair = [picture(0, "left.png")?, picture(1, "right.png")?];
+    let disparities = arguments.get(2).and_then(|count| count.parse().ok()).unwrap_or(64);
+    let gpu = Gpu::open(&DeviceChoice::Best)?;
+    let (width, height) = pair[0].size();
+    println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info.name, gpu.info.driver_info);
+    let luma = pair.each_ref().map(Picture::luma);
+    dense(&gpu, &luma, disparities)?;
+    features(&gpu, &luma)
+}
+
+/// Runs `work` and prints its times.
+fn time(name: &str, mut work: impl FnMut() -> hsad::Result<()>) -> hsad::Result<()> {
+    let mut run = || {
+        let start = Instant::now();
+        work().map(|()| 1e3 * start.elapsed().as_secs_f64())
+    };
+    let first = run()?;
+    let mut others = (0..RUNS).map(|_| run()).collect::<hsad::Result<Vec<_>>>()?;
+    others.sort_by(f64::total_cmp);
+    println!("{name}: first {first:.1} ms, minimum {:.1} ms, median {:.1} ms", others[0], others[RUNS / 2]);
+    Ok(())
+}
+
+fn upload(gpu: &Gpu, luma: &Luma) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("luma"),
+        contents: bytemuck::cast_slice(&pack(luma)),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+    })
+}
+
+fn submit(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    record(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+}
+
+/// Block matching with a 7x7 window: both views, uniqueness, consistency and sub-pixel.
+fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result<()> {
+    let range = DisparityRange::new(0, disparities)?;
+    let config = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
+    let (left_luma, right_luma) = (upload(gpu, left), upload(gpu, right));
+    let build = || Matcher::new(&gpu.device, left.size(), &config, &left_luma, &right_luma);
+    let start = Instant::now();
+    let matcher = build()?;
+    println!("dense, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
+    let bytes = 4 * left.data().len() as u64;
+    let [map, confidence] = ["disparities", "confidences"].map(|label| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    });
+    time("dense 7x7", || {
+        submit(gpu, |encoder| matcher.record(encoder, &map, &confidence));
+        Ok(())
+    })
+}
+
+/// Both views detected and described, then matched.
+fn features(gpu: &Gpu, luma: &[Luma; 2]) -> hsad::Result<()> {
+    let (width, height) = luma[0].size();
+    let detectors = luma
+        .iter()
+        .map(|view| Detector::new(&gpu.device, &upload(gpu, view), width, height, &FeatureConfig::default()))
+        .collect::<hsad::Result<Vec<_>>>()?;
+    let detect = || -> hsad::Result<Vec<_>> {
+        submit(gpu, |encoder| detectors.iter().for_each(|detector| detector.record(encoder)));
+        detectors.iter().map(|detector| detector.read(&gpu.device, &gpu.queue)).collect()
+    };
+    time("features of both views", || detect().map(|found| drop(black_box(found))))?;
+    let found = detect()?;
+    let seeding = Preset::Standard.config().seeding;
+    time("matching", || {
+        match_features(&found[0], &found[1], &seeding.matching).map(|matches| drop(black_box(matches)))
+    })?;
+    time("seeding", || {
+        Seeding::find((&luma[0], &luma[1]), (&found[0], &found[1]), &seeding).map(|seeding| drop(black_box(seeding)))
+    })?;
+    println!("features: {} and {}", found[0].len(), found[1].len());
+    Ok(())
+}

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Every check there is, on the GPU path: formatting, lints, documentation, tests.
+#
+# Needs a Rust toolchain and a Vulkan driver. Where there is no driver it installs Mesa's lavapipe,
+# which needs no GPU (apt only). Without any adapter it fails: nothing is skipped in silence.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+# Mesa complains about a missing one in every process.
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
+
+say() { printf '\n== %s\n' "$*"; }
+
+command -v cargo >/dev/null || { echo 'test.sh: no cargo: install Rust from https://rustup.rs' >&2; exit 1; }
+for component in fmt clippy; do
+    cargo "$component" --version >/dev/null 2>&1 || rustup component add "${component/fmt/rustfmt}"
+done
+
+say 'formatting'
+cargo fmt --all --check
+
+say 'build'
+cargo build --all-targets
+
+say 'adapter'
+devices() { target="${CARGO_TARGET_DIR:-target}"; "$target/debug/hsad" devices --adapters; }
+if ! devices >/dev/null 2>&1; then
+    if command -v apt-get >/dev/null; then
+        sudo=''
+        [ "$(id -u)" -eq 0 ] || sudo='sudo'
+        $sudo apt-get update -qq
+        $sudo apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1
+    else
+        echo "test.sh: no Vulkan driver: install Mesa's (Fedora: mesa-vulkan-drivers, Arch: vulkan-swrast," \
+            "Alpine: mesa-vulkan-swrast) and the Vulkan loader" >&2
+    fi
+fi
+devices
+
+say 'lints'
+cargo clippy --all-targets -- -D warnings
+# The library alone, as someone who embeds it builds it.
+cargo clippy --lib --no-default-features -- -D warnings
+
+say 'documentation'
+RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+
+say 'tests'
+cargo test
