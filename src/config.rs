@@ -3,7 +3,7 @@
 use crate::{
     dense::{DenseConfig, Interpolation, View},
     disparity::DisparityRange,
-    error::Result,
+    error::{Error, Result},
     features::FeatureConfig,
     seeding::SeedingConfig,
 };
@@ -45,6 +45,13 @@ impl Config {
     pub fn validate(&self) -> Result<()> {
         self.features.validate()?;
         self.seeding.matching.validate()?;
+        if self.strongest == Some(0) {
+            return Err(Error::Parameter {
+                name: "strongest",
+                value: "0".into(),
+                expected: "it must be at least 1".into(),
+            });
+        }
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
         self.dense(range).validate()
@@ -123,6 +130,7 @@ mod tests {
         let standard = || Preset::Standard.config();
         let bad = [
             (Config { window: 8, ..standard() }, "window is 8"),
+            (Config { strongest: Some(0), ..standard() }, "strongest is 0"),
             (Config { uniqueness: 101, ..standard() }, "uniqueness is 101"),
             (Config { least: Some(i32::MIN), ..standard() }, "the disparity range"),
             (

@@ -106,7 +106,7 @@ struct Scene {
 impl Scene {
     fn new() -> anyhow::Result<Self> {
         let shipped = |name| Path::new("the shipped scene").join(name);
-        let meta: Value = serde_json::from_str(META).context("the shipped meta.json")?;
+        let meta: Value = serde_json::from_str(META)?;
         let calib = meta["calib_txt"].as_str().context("the shipped meta.json has no calib_txt")?;
         Ok(Self {
             left: load::decode(LEFT, &shipped("left.png"))?,

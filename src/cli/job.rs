@@ -60,7 +60,8 @@ fn warnings(job: &Job, outcome: &Outcome) -> Vec<String> {
     if let RangeSource::Fallback(thin) = outcome.range_source {
         warnings.push(format!("{}; {} were searched instead", Error::from(thin), span(outcome.range)));
     }
-    if outcome.seeding.trust < LITTLE_TRUST {
+    // Without a range of their own, matches say nothing about trust.
+    if outcome.seeding.range.is_ok() && outcome.seeding.trust < LITTLE_TRUST {
         warnings.push(format!(
             "hardly any matching interest points support this result (trust {:.2} of 1)",
             outcome.seeding.trust
@@ -89,7 +90,11 @@ fn outside(outcome: &Outcome) -> Option<String> {
     let mixed_up = "if left and right are mixed up, exchange them";
     if within < 0.5 {
         let (percent, range) = (100.0 * within, span(outcome.range));
-        let advice = if negative > 0.5 { mixed_up } else { "leave --disparities out to have the range found" };
+        let advice = match outcome.range_source {
+            _ if negative > 0.5 => mixed_up,
+            RangeSource::Asked => "leave --disparities out to have the range found",
+            _ => "lower --min-disparity",
+        };
         Some(format!(
             "only {percent:.0} % of the matches lie in {range}, theirs are {least:.0} to {most:.0} px: {advice}"
         ))

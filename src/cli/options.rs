@@ -1,6 +1,6 @@
 //! Options that several subcommands share, and how they become a configuration.
 
-use std::path::PathBuf;
+use std::{fmt::Display, path::PathBuf};
 
 use clap::{Args, ValueEnum};
 use hsad::{
@@ -11,6 +11,7 @@ use hsad::{
     features::FeatureConfig,
     gpu::DeviceChoice,
     io::Calibration,
+    matching::MatchConfig,
     pair::Backend,
 };
 
@@ -46,14 +47,11 @@ impl RunOptions {
 #[derive(Args)]
 #[command(next_help_heading = "Interest points")]
 pub struct FeatureOptions {
-    /// Octaves of filter sizes, 1 to 5 [default: 5]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help = with_default("Octaves of filter sizes, 1 to 5", FeatureConfig::default().octaves))]
     octaves: Option<u32>,
-    /// Sampling step of the first octave in pixels, 1 or 2 [default: 1]
-    #[arg(long, value_name = "PX")]
+    #[arg(long, value_name = "PX", help = with_default("Sampling step of the first octave in pixels, 1 or 2", FeatureConfig::default().step))]
     step: Option<u32>,
-    /// Least determinant of the Hessian, with grey values of 0 to 1
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", help = with_default("Least determinant of the Hessian, with grey values of 0 to 1", FeatureConfig::default().threshold))]
     threshold: Option<f32>,
     /// Compute orientations, for views that are turned against each other
     #[arg(long, conflicts_with = "upright")]
@@ -61,8 +59,7 @@ pub struct FeatureOptions {
     /// Compute no orientations, the better choice where nothing is turned
     #[arg(long)]
     upright: bool,
-    /// Room for this many points; more are an error
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help = with_default("Room for this many points; more are an error", FeatureConfig::default().max_features))]
     max_features: Option<u32>,
 }
 
@@ -77,6 +74,11 @@ impl FeatureOptions {
             max_features: self.max_features.unwrap_or(config.max_features),
         }
     }
+}
+
+/// An option's help with the value that the library takes where it is not given.
+fn with_default(help: &str, value: impl Display) -> String {
+    format!("{help} [default: {value}]")
 }
 
 /// How pixels are matched.
@@ -112,8 +114,8 @@ pub struct MatchOptions {
     /// How disparities between whole pixels are found [standard: equiangular, paper: parabola]
     #[arg(long, value_enum)]
     interpolation: Option<InterpolationName>,
-    /// Largest ratio of the distances of the best and the second descriptor, up to 1 [default: 0.85]
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
+        descriptor, up to 1", MatchConfig::default().ratio))]
     ratio: Option<f32>,
     /// Show only the N strongest interest points and matches in the figures [standard: all, paper:
     /// 10]

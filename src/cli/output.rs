@@ -27,20 +27,19 @@ impl Output {
     /// # Errors
     /// [`Error::Io`] with `folder`.
     pub fn open(folder: &Path) -> Result<Self> {
-        let failed = |source: io::Error| Error::Io { path: folder.into(), source };
+        let failed = |what: &str, error: io::Error| {
+            let reason = format!("{what} ({error}): name another folder with -o");
+            Error::Io { path: folder.into(), source: io::Error::new(error.kind(), reason) }
+        };
         if folder.exists() && !folder.is_dir() {
-            let reason = "this is a file, and the results need a folder: name another one with -o";
-            return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, reason)));
+            return Err(failed("the results need a folder", io::ErrorKind::NotADirectory.into()));
         }
         let missing = |path: &&Path| *path != Path::new("") && !path.exists();
         let created = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         // From here on what was created is removed again, whatever fails.
         let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
-        fs::create_dir_all(folder).map_err(failed)?;
-        temporary_in(folder).map_err(|error| {
-            let reason = format!("no file can be written in this folder ({error}): name another one with -o");
-            failed(io::Error::new(error.kind(), reason))
-        })?;
+        fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
+        temporary_in(folder).map_err(|error| failed("no file can be written in this folder", error))?;
         Ok(output)
     }
 
@@ -125,7 +124,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "mine").unwrap();
-        assert!(Output::open(&file).err().unwrap().to_string().contains("name another one with -o"));
+        assert!(Output::open(&file).err().unwrap().to_string().contains("name another folder with -o"));
         assert!(Output::open(&file.join("below")).is_err());
         assert_eq!(fs::read(&file).unwrap(), b"mine");
     }

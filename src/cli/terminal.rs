@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// One line that says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    eprintln!("error: {}", one_line(&format!("{error:#}")));
+    eprintln!("error: {}", one_line(&error.to_string()));
 }
 
 /// One line about something that the result does not show by itself.

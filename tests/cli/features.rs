@@ -1,0 +1,69 @@
+//! `hsad features`.
+
+use std::fs;
+
+use hsad::io::load;
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+
+use crate::common::{folder, hsad, hsad_without_driver, names, scene};
+
+const HEADER: &str = "x,y,scale,orientation,response,dark";
+
+/// The CSV on stdout with these arguments, and what stands on stderr.
+fn printed(args: &[&str]) -> (Vec<Vec<f64>>, String) {
+    let output = hsad().arg("features").arg(scene("planes", "left.png")).args(args).output().unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut lines = text.lines();
+    assert!(lines.next().unwrap().starts_with(HEADER));
+    let rows = lines.map(|line| line.split(',').map(|value| value.parse().unwrap()).collect()).collect();
+    (rows, String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn csv_goes_to_stdout_and_the_number_to_stderr() {
+    let (rows, stderr) = printed(&["--device", "cpu"]);
+    assert!(rows.len() > 100);
+    assert!(stderr.starts_with(&format!("{} interest points", rows.len())), "{stderr}");
+    for row in &rows {
+        let [x, y, scale, orientation, response, dark] = row[..] else { panic!("{row:?}") };
+        assert!((0.0..340.0).contains(&x) && (0.0..255.0).contains(&y) && scale > 1.0);
+        assert!(orientation == 0.0 && response > 0.0 && (dark == 0.0 || dark == 1.0));
+    }
+    assert_eq!(printed(&["--device", "cpu", "-q"]), (rows, String::new()));
+}
+
+#[test]
+fn descriptors_have_unit_length_and_orientations_differ() {
+    let (rows, _) = printed(&["--device", "cpu", "--descriptors", "--oriented"]);
+    assert!(rows.iter().any(|row| row[3] != 0.0));
+    for row in rows {
+        assert_eq!(row.len(), 70);
+        assert!((row[6..].iter().map(|value| value * value).sum::<f64>() - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_higher_threshold_finds_fewer() {
+    let count = |threshold: &str| printed(&["--device", "cpu", "-q", "--threshold", threshold]).0.len();
+    assert!(count("0.01") < count("0.001"));
+}
+
+#[test]
+fn files_go_to_the_folder() {
+    let temporary = folder();
+    let out = temporary.path().join("out");
+    let mut command = hsad();
+    command.arg("features").arg(scene("planes", "left.png")).arg("-o").arg(&out).args(["--device", "cpu"]);
+    command.assert().success().stdout(contains("interest points").and(contains("out"))).stderr("");
+    assert_eq!(names(&out), ["features.csv", "keypoints.png"]);
+    assert!(fs::read_to_string(out.join("features.csv")).unwrap().starts_with(HEADER));
+    assert_eq!(load::load(&out.join("keypoints.png")).unwrap().size(), (340, 255));
+}
+
+#[test]
+fn without_a_driver_the_cpu_works_and_says_so() {
+    let mut command = hsad_without_driver();
+    command.arg("features").arg(scene("weak", "left.png"));
+    command.assert().success().stdout(contains(HEADER)).stderr(contains("warning: the CPU does the work"));
+}

@@ -1,0 +1,46 @@
+//! The program as a process: what it writes, prints and returns.
+
+#![cfg(feature = "cli")]
+
+mod bad_input;
+mod common;
+mod demo;
+mod devices;
+mod features;
+mod match_views;
+#[path = "../pictures/mod.rs"]
+mod pictures;
+
+use common::hsad;
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+
+#[test]
+fn help_has_examples_and_exit_codes() {
+    hsad()
+        .arg("--help")
+        .assert()
+        .success()
+        .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
+    for command in ["match", "features", "devices", "demo"] {
+        hsad().args([command, "--help"]).assert().success().stdout(contains("Examples:").and(contains("Usage:")));
+    }
+    hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn usage_errors_are_two() {
+    for args in [&[][..], &["match"], &["match", "a", "b"], &["nonsense"], &["demo", "--window", "7"]] {
+        hsad().args(args).assert().code(2);
+    }
+    let out = ["match", "a", "b", "-o", "out"];
+    for args in [
+        &["--window", "abc"][..],
+        &["--no-lr-check", "--max-lr-difference", "1"],
+        &["--oriented", "--upright"],
+        &["--focal", "700"],
+        &["--calib", "c", "--focal", "700", "--baseline", "0.1"],
+        &["--preset", "best"],
+    ] {
+        hsad().args(out).args(args).assert().code(2).stderr(contains("error: "));
+    }
+}

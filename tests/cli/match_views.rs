@@ -1,0 +1,238 @@
+//! `hsad match`: files, report, options, odd pairs.
+
+use std::{fs, path::Path};
+
+use hsad::{
+    disparity::{NONE, coverage},
+    image::Plane,
+    io::{disparity_png, load, pfm},
+};
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+use serde_json::json;
+
+use crate::common::{folder, grey_png, hsad, hsad_without_driver, match_on_cpu, names, noise, report, scene, views};
+
+#[test]
+fn writes_maps_that_agree_and_a_report() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path().join("a/b");
+    let summary = contains("found from").and(contains("coverage")).and(contains("disparity.pfm"));
+    match_on_cpu(&left, &right, &out).assert().success().stdout(summary).stderr("");
+    let files = ["confidence.png", "disparity-color.png", "disparity.pfm", "disparity.png", "report.json"];
+    assert_eq!(names(&out), files);
+
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    assert_eq!(disparity_png::read(&out.join("disparity.png")).unwrap(), map);
+    let confidence = load::load(&out.join("confidence.png")).unwrap().luma();
+    let colors = load::load(&out.join("disparity-color.png")).unwrap();
+    for ((&d, &confidence), &[r, g, b, _]) in map.data().iter().zip(confidence.data()).zip(colors.data()) {
+        assert_eq!((d == NONE, d == NONE), (confidence == 0, [r, g, b] == [0; 3]));
+    }
+    let truth = pfm::read(&scene("planes", "disp_left.pfm")).unwrap();
+    let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
+    assert!(score.bad[0].of_estimated < 0.1 && score.coverage() > 0.7, "{score:?}");
+
+    let report = report(&out);
+    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!([&report["width"], &report["height"]], [340, 255]);
+    assert_eq!(report["device"], json!({ "name": "CPU twins", "backend": "none", "driver": "none" }));
+    assert_eq!(report["left"], left.to_str().unwrap());
+    assert_eq!(report["parameters"]["window"], 11);
+    assert_eq!(report["parameters"]["matching"]["ratio"], json!(0.85));
+    assert_eq!(report["range"]["source"], "seeds");
+    // data/README.md: 9.1 to 57.5 px.
+    let range = |end: &str| report["range"][end].as_i64().unwrap();
+    assert!((-20..=9).contains(&range("min")) && (57..120).contains(&range("max")), "{}", report["range"]);
+    assert_eq!(range("count"), range("max") - range("min") + 1);
+    assert_eq!(report["rectification"]["verdict"], "rectified");
+    assert!(report["features"]["left"].as_u64().unwrap() > 100 && report["seeds"].as_u64().unwrap() > 100);
+    assert!((report["coverage"].as_f64().unwrap() - coverage(&map)).abs() < 1e-9);
+    assert!(report["trust"].as_f64().unwrap() > 0.5);
+    assert!(report["brightness"]["gain"].as_f64().is_some_and(|gain| (gain - 1.0).abs() < 0.1));
+    assert!(["luma", "features", "seeding", "dense", "total"].iter().all(|step| report["seconds"][step].is_f64()));
+    assert_eq!(report["files"].as_array().unwrap().len(), files.len());
+    assert_eq!((&report["calibration"], &report["warnings"]), (&json!(null), &json!([])));
+}
+
+#[test]
+fn gpu_and_cpu_find_the_same_bytes() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let run = |device: &str| {
+        let out = temporary.path().join(device);
+        let mut command = hsad();
+        command.arg("match").args([&left, &right]).arg("-o").arg(&out).args([
+            "--device",
+            device,
+            "--disparities",
+            "72",
+        ]);
+        command.assert().success();
+        (fs::read(out.join("disparity.pfm")).unwrap(), fs::read(out.join("confidence.png")).unwrap(), report(&out))
+    };
+    let ((cpu, cpu_confidence, _), (gpu, gpu_confidence, gpu_report)) = (run("cpu"), run("0"));
+    assert_ne!(gpu_report["device"]["backend"], "none", "this test needs a device; lavapipe is one");
+    assert!(cpu == gpu && cpu_confidence == gpu_confidence);
+}
+
+#[test]
+fn options_override_the_preset() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path();
+    let mut command = match_on_cpu(&left, &right, out);
+    command.args(["--preset", "paper", "--window", "5", "--min-disparity", "-3", "--disparities", "40", "-q"]);
+    command.args(["--uniqueness", "7", "--max-lr-difference", "1.5", "--interpolation", "none", "--octaves", "3"]);
+    command.args(["--step", "2", "--threshold", "0.002", "--upright", "--max-features", "5000", "--ratio", "0.8"]);
+    command.args(["--strongest", "4"]);
+    command.assert().success().stdout("").stderr("");
+    let report = report(out);
+    assert_eq!(report["range"], json!({ "min": -3, "max": 36, "count": 40, "source": "asked" }));
+    let expected = json!({
+        "reference": "right", "window": 5, "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
+        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "force": false,
+        "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
+        "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5, "tile_px": 64 },
+        "strongest": 4
+    });
+    assert_eq!(report["parameters"], expected);
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    assert!(map.data().iter().all(|&d| d == NONE || (d % 256 == 0 && (-768..=36 * 256).contains(&d))));
+}
+
+#[test]
+fn the_paper_searches_to_one_side_from_the_right_view() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path();
+    match_on_cpu(&left, &right, out).args(["--preset", "paper", "--figures"]).assert().success();
+    let found = report(out);
+    let parameters = &found["parameters"];
+    assert_eq!([&parameters["reference"], &parameters["window"]], [&json!("right"), &json!(7)]);
+    assert_eq!([&parameters["min_disparity"], &parameters["strongest"]], [0, 10]);
+    assert_eq!((&parameters["max_lr_difference_px"], &parameters["uniqueness_percent"]), (&json!(null), &json!(0)));
+    assert_eq!((&parameters["features"]["upright"], &found["range"]["source"]), (&json!(false), &json!("seeds")));
+    assert!(found["range"]["min"].as_i64().unwrap() >= 0);
+    for (name, width) in [("keypoints.png", 688), ("matches.png", 688)] {
+        assert_eq!(load::load(&out.join(name)).unwrap().size(), (width, 255));
+    }
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    let truth = pfm::read(&scene("planes", "disp_right.pfm")).unwrap();
+    let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
+    assert!(score.bad[0].of_estimated < 0.4, "{score:?}");
+
+    // Mixed up, all disparities are negative.
+    let out = temporary.path().join("mixed-up");
+    let mut command = match_on_cpu(&right, &left, &out);
+    command.args(["--preset", "paper"]).assert().stderr(contains("if left and right are mixed up, exchange them"));
+}
+
+#[test]
+fn depth_is_metric() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let calib = temporary.path().join("calib.txt");
+    fs::write(&calib, "cam0=[300 0 169.5; 0 300 127; 0 0 1]\ndoffs=5\nbaseline=100\nwidth=340\nheight=255\n").unwrap();
+    let by_file = temporary.path().join("file");
+    let by_options = temporary.path().join("options");
+    let range = ["--disparities", "72"];
+    match_on_cpu(&left, &right, &by_file).args(range).arg("--calib").arg(&calib).assert().success();
+    let mut command = match_on_cpu(&left, &right, &by_options);
+    command.args(range).args(["--focal", "300", "--baseline", "0.1", "--doffs", "5"]).assert().success();
+    for name in ["depth.pfm", "cloud.ply"] {
+        // The middle of 340x255 pixels is the principal point above.
+        assert!(fs::read(by_file.join(name)).unwrap() == fs::read(by_options.join(name)).unwrap(), "{name}");
+    }
+    let map = pfm::read_disparities(&by_file.join("disparity.pfm")).unwrap();
+    let depth = pfm::read(&by_file.join("depth.pfm")).unwrap();
+    for (&d, &z) in map.data().iter().zip(depth.data()) {
+        let expected = if d == NONE { f32::INFINITY } else { 30.0 / (d as f32 / 256.0 + 5.0) };
+        assert!(z == expected || (z - expected).abs() < 1e-5, "{d}: {z}, not {expected}");
+    }
+    let header = String::from_utf8_lossy(&fs::read(by_file.join("cloud.ply")).unwrap()[..200]).into_owned();
+    let points = depth.data().iter().filter(|z| z.is_finite()).count();
+    assert!(header.contains(&format!("element vertex {points}\n")), "{header}");
+    assert_eq!(report(&by_file)["calibration"]["baseline_m"], 0.1);
+}
+
+#[test]
+fn a_range_wider_than_the_picture_is_clipped() {
+    let (temporary, [left, right]) = (folder(), views("weak"));
+    let out = temporary.path();
+    let mut command = match_on_cpu(&left, &right, out);
+    command.args(["--min-disparity", "-1000", "--disparities", "100000"]).assert().success();
+    let range = report(out)["range"].clone();
+    assert_eq!(range, json!({ "min": -286, "max": 286, "count": 573, "source": "asked" }));
+}
+
+#[test]
+fn a_range_that_misses_the_matches_is_told() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let warned = |left: &Path, right: &Path, args: &[&str], expected: &'static str| {
+        let mut command = match_on_cpu(left, right, temporary.path());
+        command.args(args).assert().success().stderr(contains("warning: ").and(contains(expected)));
+    };
+    warned(&left, &right, &["--min-disparity", "100", "--disparities", "50"], "leave --disparities out");
+    warned(&left, &right, &["--min-disparity", "50"], "lower --min-disparity");
+    warned(&right, &left, &["--disparities", "50"], "exchange them");
+    warned(&right, &left, &[], "exchange them");
+}
+
+#[test]
+fn pictures_without_depth_give_results_without_disparities() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    grey_png(&path("black.png"), &Plane::filled(90, 70, 0));
+    for seed in [1, 2] {
+        grey_png(&path(&format!("noise{seed}.png")), &noise(90, 70, seed));
+    }
+    // Black is ambiguous wherever there is a rival, which the first two columns have none of.
+    for (left, right, most) in [("black.png", "black.png", 2.0 / 90.0), ("noise1.png", "noise2.png", 0.1)] {
+        let out = path("out");
+        let mut command = match_on_cpu(&path(left), &path(right), &out);
+        command.assert().success().stderr(contains("range could not be found").and(contains("were searched instead")));
+        let report = report(&out);
+        assert_eq!((&report["range"]["source"], &report["trust"]), (&json!("fallback"), &json!(0.0)));
+        assert!(report["coverage"].as_f64().unwrap() <= most, "{left}: {}", report["coverage"]);
+    }
+}
+
+#[test]
+fn the_same_picture_twice_has_no_depth() {
+    let (temporary, [left, _]) = (folder(), views("planes"));
+    let out = temporary.path();
+    match_on_cpu(&left, &left, out).assert().success().stderr(contains("both views are the same picture"));
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    assert!(map.data().iter().all(|&d| d == NONE || d.abs() < 256));
+}
+
+#[test]
+fn disparities_that_a_png_cannot_hold_are_told() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path();
+    let lost = contains("lie outside the 0 to 255.996 px of a 16-bit PNG");
+    match_on_cpu(&right, &left, out).assert().success().stderr(lost.and(contains("disparity.pfm has them all")));
+    let warnings = report(out)["warnings"].to_string();
+    assert!(warnings.contains("disparity.pfm has them all"), "{warnings}");
+}
+
+#[test]
+fn without_a_driver_the_cpu_works_and_says_so() {
+    let (temporary, [left, right]) = (folder(), views("weak"));
+    let out = temporary.path();
+    let mut command = hsad_without_driver();
+    command.arg("match").args([&left, &right]).arg("-o").arg(out);
+    let told = contains("the CPU does the work").and(contains("mesa-vulkan-drivers"));
+    command.assert().success().stdout(contains("CPU twins")).stderr(told);
+    assert_eq!(report(out)["device"]["backend"], "none");
+}
+
+#[test]
+fn other_kinds_of_pictures_are_read() {
+    let temporary = folder();
+    let luma = load::load(&scene("weak", "left.png")).unwrap().luma();
+    let (width, height) = luma.size();
+    let deep = image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([u16::from(luma.get(x, y)) * 257]));
+    let alpha = image::ImageBuffer::from_fn(width, height, |x, y| image::LumaA([luma.get(x, y), x as u8]));
+    let [deep_path, alpha_path] = ["deep.png", "alpha.png"].map(|name| temporary.path().join(name));
+    image::DynamicImage::ImageLuma16(deep).save(&deep_path).unwrap();
+    image::DynamicImage::ImageLumaA8(alpha).save(&alpha_path).unwrap();
+    // Both are read to the same grey values.
+    match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().success().stderr(contains("the same picture"));
+}
