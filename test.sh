@@ -23,8 +23,9 @@ say 'build'
 cargo build --all-targets
 
 say 'adapter'
-devices() { target="${CARGO_TARGET_DIR:-target}"; "$target/debug/hsad" devices --adapters; }
-if ! devices >/dev/null 2>&1; then
+hsad="${CARGO_TARGET_DIR:-target}/debug/hsad"
+has_adapter() { "$hsad" features data/planes/left.png --device 0 >/dev/null; }
+if ! has_adapter 2>/dev/null; then
     if command -v apt-get >/dev/null; then
         sudo=''
         [ "$(id -u)" -eq 0 ] || sudo='sudo'
@@ -35,7 +36,8 @@ if ! devices >/dev/null 2>&1; then
             "Alpine: mesa-vulkan-swrast) and the Vulkan loader" >&2
     fi
 fi
-devices
+has_adapter
+"$hsad" devices
 
 say 'lints'
 cargo clippy --all-targets -- -D warnings

@@ -117,7 +117,7 @@ fn sizes_and_settings_are_checked() {
 /// On real scenes: the range found without help holds nearly all of the truth, and rows are known to correspond.
 #[test]
 fn real_scenes_lie_in_the_range_found_for_them() {
-    let folder = Path::new("/work/shared/data/stereo");
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo"));
     if !folder.is_dir() {
         eprintln!("skipped: {} is absent", folder.display());
         return;
