@@ -3,8 +3,9 @@
 //
 // Every corner that the three filters of a point read from the integral image has a counterpart
 // one lobe (a third of the filter's side) further on. So, where the grid has a point for every
-// pixel, a thread takes four points, two by two, a lobe apart (TILE = 2), and reads 76 corners
-// instead of 4 * 32. On coarser grids no corners meet, and a thread takes one point (TILE = 1).
+// pixel (DENSE), a thread takes four rows a lobe apart and walks along them a lobe at a time,
+// reading 12 corners a point instead of 32. On coarser grids no corners meet, and a thread takes
+// one point; but half of the filters are those of the finer octave, whose results are copied.
 
 struct Layer {
     // A third of the filter's side.
@@ -22,16 +23,19 @@ struct Params {
     step: u32,
     grid_width: u32,
     grid_height: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
+    // The grid of the finer octave, and how many layers come from there.
+    finer_width: u32,
+    finer_height: u32,
+    shared_layers: u32,
     layers: array<Layer, 4>,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> integral: array<u32>;
+// Responses of the finer octave, where there is one.
+@group(0) @binding(2) var<storage, read> finer: array<i32>;
 // Four layers of grid points: determinant << 1 | (trace > 0), or 0 where the filter does not fit.
-@group(0) @binding(2) var<storage, read_write> responses: array<i32>;
+@group(0) @binding(3) var<storage, read_write> responses: array<i32>;
 
 // Corners outside the picture only ever belong to points whose filter does not fit, and whose
 // result is replaced by 0; whatever the bounds checks return for them does no harm.
@@ -89,41 +93,37 @@ fn dxy(x: u32, y: u32, l: u32) -> i32 {
     return bitcast<i32>(upper - lower);
 }
 
-// `dxx` at (x, y) and at (x + l, y).
-fn dxx_pair(x: u32, y: u32, l: u32) -> vec2i {
-    let y0 = y - l + 1u;
-    let y1 = y + l;
-    let x0 = x - (3u * l - 1u) / 2u;
-    let s0 = above(x0, y0, y1);
-    let s1 = above(x0 + l, y0, y1);
-    let s2 = above(x0 + 2u * l, y0, y1);
-    let s3 = above(x0 + 3u * l, y0, y1);
-    let s4 = above(x0 + 4u * l, y0, y1);
-    return vec2i(second_difference(s0, s1, s2, s3), second_difference(s1, s2, s3, s4));
+// What follows is for four points at once, at (x, y), (x, y + l), (x, y + 2 l) and (x, y + 3 l).
+
+fn four_corners(x: u32, y: u32, l: u32) -> vec4u {
+    return vec4u(corner(x, y), corner(x, y + l), corner(x, y + 2u * l), corner(x, y + 3u * l));
 }
 
-// `dyy` at (x, y) and at (x, y + l).
-fn dyy_pair(x: u32, y: u32, l: u32) -> vec2i {
+fn four_second_differences(s0: vec4u, s1: vec4u, s2: vec4u, s3: vec4u) -> vec4i {
+    return bitcast<vec4i>(s3 - s0 - 3u * (s2 - s1));
+}
+
+// `above` for the rows of Dxx.
+fn four_above(x: u32, y: u32, l: u32) -> vec4u {
+    return four_corners(x, y + l, l) - four_corners(x, y - l + 1u, l);
+}
+
+fn four_dyy(x: u32, y: u32, l: u32) -> vec4i {
     let x0 = x - l + 1u;
     let x1 = x + l;
     let y0 = y - (3u * l - 1u) / 2u;
-    let s0 = beside(x0, x1, y0);
-    let s1 = beside(x0, x1, y0 + l);
-    let s2 = beside(x0, x1, y0 + 2u * l);
-    let s3 = beside(x0, x1, y0 + 3u * l);
+    let s = four_corners(x1, y0, l) - four_corners(x0, y0, l);
     let s4 = beside(x0, x1, y0 + 4u * l);
-    return vec2i(second_difference(s0, s1, s2, s3), second_difference(s1, s2, s3, s4));
+    let s5 = beside(x0, x1, y0 + 5u * l);
+    let s6 = beside(x0, x1, y0 + 6u * l);
+    return four_second_differences(s, vec4u(s.yzw, s4), vec4u(s.zw, s4, s5), vec4u(s.w, s4, s5, s6));
 }
 
-// `right_minus_left` at (x, y) and at (x + l, y).
-fn right_minus_left_pair(x: u32, y: u32, l: u32) -> vec2u {
-    let c0 = corner(x - l, y);
-    let c1 = corner(x, y);
-    let c2 = corner(x + 1u, y);
-    let c3 = corner(x + l, y);
-    let c4 = corner(x + l + 1u, y);
-    let c5 = corner(x + 2u * l + 1u, y);
-    return vec2u(c4 - c2 - (c1 - c0), c5 - c4 - (c3 - c1));
+// The columns left of `x`: their lobe above each point minus their lobe below it.
+fn four_upper_minus_lower(x: u32, y: u32, l: u32) -> vec4u {
+    let above = four_corners(x, y - l, l) - four_corners(x, y + 1u, l);
+    let last = corner(x, y + 3u * l) - corner(x, y + 4u * l + 1u);
+    return vec4u(above.yzw, last) - above;
 }
 
 fn response(xx: i32, yy: i32, xy: i32, layer: Layer) -> i32 {
@@ -146,33 +146,61 @@ fn store(i: u32, j: u32, k: u32, lobe: u32, value: i32) {
     responses[(k * params.grid_height + j) * params.grid_width + i] = select(0, value, fits);
 }
 
+fn one_point(i: u32, j: u32, k: u32) {
+    let l = params.layers[k].lobe;
+    let x = i * params.step;
+    let y = j * params.step;
+    store(i, j, k, l, response(dxx(x, y, l), dyy(x, y, l), dxy(x, y, l), params.layers[k]));
+}
+
+// The finer octave's second and fourth filter are this one's first and second.
+fn copy(i: u32, j: u32, k: u32) {
+    if i < params.grid_width && j < params.grid_height {
+        let value = finer[((2u * k + 1u) * params.finer_height + 2u * j) * params.finer_width + 2u * i];
+        responses[(k * params.grid_height + j) * params.grid_width + i] = value;
+    }
+}
+
+// WALK points in each of four rows, all of them a lobe apart, the uppermost left one at (first, y).
+fn walk(first: u32, y: u32, k: u32) {
+    let layer = params.layers[k];
+    let l = layer.lobe;
+    // The corners that a point shares with the one before it.
+    let border = first - (3u * l - 1u) / 2u;
+    var s0 = four_above(border, y, l);
+    var s1 = four_above(border + l, y, l);
+    var s2 = four_above(border + 2u * l, y, l);
+    var left_outer = four_upper_minus_lower(first - l, y, l);
+    var right_inner = four_upper_minus_lower(first + 1u, y, l);
+    for (var n = 0u; n < WALK; n++) {
+        let x = first + n * l;
+        let s3 = four_above(border + (n + 3u) * l, y, l);
+        let left_inner = four_upper_minus_lower(x, y, l);
+        let right_outer = four_upper_minus_lower(x + l + 1u, y, l);
+        let xx = four_second_differences(s0, s1, s2, s3);
+        let yy = four_dyy(x, y, l);
+        let xy = bitcast<vec4i>(right_outer - right_inner - (left_inner - left_outer));
+        store(x, y, k, l, response(xx.x, yy.x, xy.x, layer));
+        store(x, y + l, k, l, response(xx.y, yy.y, xy.y, layer));
+        store(x, y + 2u * l, k, l, response(xx.z, yy.z, xy.z, layer));
+        store(x, y + 3u * l, k, l, response(xx.w, yy.w, xy.w, layer));
+        s0 = s1;
+        s1 = s2;
+        s2 = s3;
+        left_outer = left_inner;
+        right_inner = right_outer;
+    }
+}
+
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let k = id.z;
-    let layer = params.layers[k];
-    let l = layer.lobe;
-    if TILE == 1 {
-        let x = id.x * params.step;
-        let y = id.y * params.step;
-        store(id.x, id.y, k, l, response(dxx(x, y, l), dyy(x, y, l), dxy(x, y, l), layer));
-        return;
+    if DENSE == 1 {
+        let l = params.layers[k].lobe;
+        walk(id.x / l * WALK * l + id.x % l, id.y / l * 4u * l + id.y % l, k);
+    } else if k < params.shared_layers {
+        copy(id.x, id.y, k);
+    } else {
+        one_point(id.x, id.y, k);
     }
-    let x = id.x / l * 2u * l + id.x % l;
-    let y = id.y / l * 2u * l + id.y % l;
-    let xx_upper = dxx_pair(x, y, l);
-    let xx_lower = dxx_pair(x, y + l, l);
-    let yy_left = dyy_pair(x, y, l);
-    let yy_right = dyy_pair(x + l, y, l);
-    let r0 = right_minus_left_pair(x, y - l, l);
-    let r1 = right_minus_left_pair(x, y, l);
-    let r2 = right_minus_left_pair(x, y + 1u, l);
-    let r3 = right_minus_left_pair(x, y + l, l);
-    let r4 = right_minus_left_pair(x, y + l + 1u, l);
-    let r5 = right_minus_left_pair(x, y + 2u * l + 1u, l);
-    let xy_upper = bitcast<vec2i>(r1 - r0 - (r4 - r2));
-    let xy_lower = bitcast<vec2i>(r3 - r1 - (r5 - r4));
-    store(x, y, k, l, response(xx_upper.x, yy_left.x, xy_upper.x, layer));
-    store(x + l, y, k, l, response(xx_upper.y, yy_right.x, xy_upper.y, layer));
-    store(x, y + l, k, l, response(xx_lower.x, yy_left.y, xy_lower.x, layer));
-    store(x + l, y + l, k, l, response(xx_lower.y, yy_right.y, xy_lower.y, layer));
 }

@@ -1,5 +1,7 @@
 //! Every shader against its Rust side, without any GPU: parsed, validated, and its bindings compared.
 
+use std::path::Path;
+
 use hsad::{
     gpu::{Binding, Stage},
     wgpu::Limits,
@@ -58,6 +60,29 @@ fn every_shader_is_valid_and_binds_what_rust_binds() {
         let found = disagreements(&stage);
         assert!(found.is_empty(), "{}: {}", stage.name, found.join("\n"));
     }
+}
+
+/// A stage's name is that of its shader, its Rust file, its twin and its test.
+#[test]
+fn stages_are_named_the_same_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for stage in hsad::features::stages() {
+        for folder in ["src/features", "src/reference", "tests/kernels"] {
+            let file = root.join(folder).join(stage.name).with_extension("rs");
+            assert!(file.is_file(), "{} is missing", file.display());
+        }
+    }
+    let mut shaders: Vec<_> = std::fs::read_dir(root.join("shaders"))
+        .expect("the folder of the shaders")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.is_file())
+        .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
+        .collect();
+    let mut names: Vec<_> = hsad::stages().iter().map(|stage| stage.name.to_owned()).collect();
+    shaders.sort();
+    names.sort();
+    names.dedup();
+    assert_eq!(names, shaders);
 }
 
 #[test]

@@ -21,7 +21,13 @@ pub const DETERMINANT_SCALE: f64 = (256.0 * 255.0) * (256.0 * 255.0);
 /// Bay et al.'s 0.9, by which Dxy is weighted so that box filters balance as Gaussians do.
 const XY_WEIGHT: f64 = 0.9;
 
-const WORKGROUP: [u32; 2] = [16, 4];
+const WORKGROUP: [u32; 2] = [8, 8];
+
+/// Points in a row, and rows, that a thread takes where the grid has a point for every pixel.
+const WALK: [u32; 2] = [8, 4];
+
+/// Layers whose filters are also those of the finer octave.
+const SHARED_LAYERS: u32 = 2;
 
 /// The points at which an octave's filters are centred: every `step` pixels from pixel 0 on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,21 +72,23 @@ struct Params {
     step: u32,
     grid_width: u32,
     grid_height: u32,
-    padding: [u32; 3],
+    finer_width: u32,
+    finer_height: u32,
+    shared_layers: u32,
     layers: [Layer; LAYERS as usize],
 }
 
-/// The stage, for threads of `tile * tile` responses: 2 where the grid has a point for every
-/// pixel, 1 elsewhere.
-pub fn stage(tile: u32) -> Stage {
+/// The stage, for a grid with a point for every pixel (`dense`) or for any other.
+pub fn stage(dense: bool) -> Stage {
     Stage {
         name: "hessian",
         source: include_str!("../../shaders/hessian.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
         constants: vec![
             ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
             ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-            ("TILE", tile.into()),
+            ("DENSE", dense.into()),
+            ("WALK", WALK[0].into()),
         ],
     }
 }
@@ -107,31 +115,39 @@ impl Hessian {
         height: u32,
         config: &FeatureConfig,
     ) -> Result<Self> {
-        // For tiles of 1 and of 2, where an octave uses them.
         let mut kernels = [None, None];
-        let octaves = (0..config.octaves).map(|octave| {
+        let mut octaves: Vec<Octave> = Vec::new();
+        for octave in 0..config.octaves {
             let sizes = FILTER_SIZES[octave as usize];
             let grid = Grid::new(width, height, config.step, octave);
-            let tile = if grid.step == 1 { 2 } else { 1 };
-            let kernel = kernels[tile as usize - 1].get_or_insert_with(|| Kernel::new(device, &stage(tile)));
+            let dense = grid.step == 1;
+            let kernel = kernels[usize::from(dense)].get_or_insert_with(|| Kernel::new(device, &stage(dense)));
+            // The first octave shares nothing, and anything can be bound in place of a finer one.
+            let finer_grid = octave.checked_sub(1).map(|finer| Grid::new(width, height, config.step, finer));
+            let finer = octaves.last().map_or(integral, |finer| &finer.responses);
             let params = Params {
                 width,
                 height,
                 step: grid.step,
                 grid_width: grid.width,
                 grid_height: grid.height,
-                padding: [0; 3],
+                finer_width: finer_grid.map_or(0, |grid| grid.width),
+                finer_height: finer_grid.map_or(0, |grid| grid.height),
+                shared_layers: finer_grid.map_or(0, |_| SHARED_LAYERS),
                 layers: sizes.map(Layer::new),
             };
             let params = uniform_buffer(device, "octave", &params);
             let bytes = 4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height);
             let responses = storage_buffer(device, "responses of an octave", bytes)?;
-            let threads = |points: u32| if tile == 1 { points } else { threads_of_pairs(points, sizes) };
-            let groups =
-                [threads(grid.width).div_ceil(WORKGROUP[0]), threads(grid.height).div_ceil(WORKGROUP[1]), LAYERS];
-            Ok(Octave { dispatch: kernel.dispatch(device, &[&params, integral, &responses], groups), responses })
-        });
-        let octaves = octaves.collect::<Result<_>>()?;
+            let threads = if dense {
+                [walkers(grid.width, WALK[0], sizes), walkers(grid.height, WALK[1], sizes)]
+            } else {
+                [grid.width, grid.height]
+            };
+            let groups = [threads[0].div_ceil(WORKGROUP[0]), threads[1].div_ceil(WORKGROUP[1]), LAYERS];
+            let dispatch = kernel.dispatch(device, &[&params, integral, finer, &responses], groups);
+            octaves.push(Octave { dispatch, responses });
+        }
         Ok(Self { octaves })
     }
 
@@ -149,12 +165,12 @@ impl Hessian {
     }
 }
 
-/// Threads along one side where each takes two points that are a lobe apart: two lobes of points
-/// for every lobe of threads, the last two only begun.
-fn threads_of_pairs(points: u32, sizes: [u32; LAYERS as usize]) -> u32 {
+/// Threads along one side where each takes `each` points, a lobe apart: one for every point of the
+/// first lobe of so many, and so on.
+fn walkers(points: u32, each: u32, sizes: [u32; LAYERS as usize]) -> u32 {
     let threads = |size: u32| {
         let lobe = size / 3;
-        points / (2 * lobe) * lobe + (points % (2 * lobe)).min(lobe)
+        points / (each * lobe) * lobe + (points % (each * lobe)).min(lobe)
     };
     sizes.into_iter().map(threads).max().unwrap_or(0)
 }
@@ -171,16 +187,24 @@ mod tests {
     }
 
     #[test]
-    fn threads_reach_every_point() {
-        for points in 1..100 {
-            let threads = threads_of_pairs(points, FILTER_SIZES[0]);
+    fn walkers_reach_every_point() {
+        for (points, each) in (1..300).flat_map(|points| WALK.map(|each| (points, each))) {
+            let threads = walkers(points, each, FILTER_SIZES[0]);
             for lobe in FILTER_SIZES[0].map(|size| size / 3) {
+                let first = |thread| thread / lobe * each * lobe + thread % lobe;
                 let mut reached: Vec<_> =
-                    (0..threads).map(|t| t / lobe * 2 * lobe + t % lobe).flat_map(|p| [p, p + lobe]).collect();
+                    (0..threads).flat_map(|thread| (0..each).map(move |n| first(thread) + n * lobe)).collect();
                 reached.sort_unstable();
                 reached.dedup();
                 assert!((0..points).all(|p| reached.binary_search(&p).is_ok()), "{points} points, lobe {lobe}");
             }
+        }
+    }
+
+    #[test]
+    fn neighbouring_octaves_share_two_filters() {
+        for pair in FILTER_SIZES.windows(2) {
+            assert_eq!(pair[1][..SHARED_LAYERS as usize], [pair[0][1], pair[0][3]]);
         }
     }
 }

@@ -26,8 +26,8 @@ pub fn stages() -> Vec<Stage> {
     vec![
         integral_rows::stage(),
         integral_columns::stage(),
-        hessian::stage(1),
-        hessian::stage(2),
+        hessian::stage(true),
+        hessian::stage(false),
         nonmax::stage(),
         workgroups::stage(),
         orientation::stage(),

@@ -124,7 +124,7 @@ pub fn keypoint(x: f32, y: f32, scale: f32) -> Keypoint {
     Keypoint { x, y, scale, orientation: 0.0, response: 0, octave: 0, index: 0 }
 }
 
-/// The keypoints that the twins find in a picture on the grid of every pixel, in the order of the final list.
+/// The keypoints that the twins find in a picture, in the order of the final list.
 pub fn keypoints_of(integral: &IntegralImage, octaves: u32, step: u32, threshold: f32) -> Vec<Keypoint> {
     let octave_keypoints = |index| {
         let octave = Octave::new(integral, index, step);
