@@ -70,6 +70,9 @@ impl Config {
     }
 }
 
+/// The least determinant of the Hessian that OpenSURF accepts by default.
+const OPENSURF_THRESHOLD: f32 = 0.0004;
+
 /// A set of parameters that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
@@ -104,7 +107,7 @@ impl Preset {
         match self {
             Self::Standard => standard,
             Self::Paper => Config {
-                features: FeatureConfig { upright: false, ..standard.features },
+                features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..standard.features },
                 least: Some(0),
                 strongest: Some(10),
                 reference: View::Right,
