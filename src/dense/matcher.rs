@@ -14,9 +14,12 @@ use crate::{
     luma::pack,
 };
 
-/// More rows than this are never matched at once: bands keep single dispatches short on devices
-/// that are also drawing the desktop, and below 65,535 workgroups.
+/// More rows than this are never matched at once, to stay below 65,535 workgroups.
 const MAX_BAND_ROWS: u32 = 8192;
+
+/// Nor are more pixel-disparities: a device that also draws the desktop is taken away from a dispatch
+/// that takes seconds, and slow ones do 10^9 of them in about one.
+const MAX_BAND_WORK: u64 = 1 << 30;
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,7 +80,8 @@ impl Matcher {
         band_rows: u32,
     ) -> Result<Self> {
         config.validate()?;
-        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        // The kernels count words and pixels in 32 bits.
+        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
         let band_rows = band_rows_within(limit, size, config, Tile::of(device), band_rows)?;
         guarded(device, "dense matching", || Self::build(device, size, config, [left, right], band_rows))
     }
@@ -102,7 +106,6 @@ impl Matcher {
             bytes += 4 * words;
             storage_buffer(device, label, 4 * words)
         };
-        // Fits: twice the pixels of a band are a buffer of less than 2^32 bytes.
         let confidence_offset = width * band_rows;
         let pixels = u64::from(confidence_offset);
         let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
@@ -163,10 +166,13 @@ impl Matcher {
     }
 }
 
-/// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes.
+/// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes and its
+/// work within a second or so.
 fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tile: Tile, wanted: u32) -> Result<u32> {
     let (width, height) = size;
-    let mut rows = wanted.clamp(1, height.min(MAX_BAND_ROWS));
+    let work = u64::from(width) * u64::from(config.searched(width)?.count);
+    let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
+    let mut rows = wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS));
     loop {
         let planes = 4 * Layout::new(size, 0, rows, config, tile)?.words();
         let needed = planes.max(8 * u64::from(width) * u64::from(rows));
