@@ -21,6 +21,25 @@ pub const fn luma([red, green, blue]: [u8; 3]) -> u8 {
     ((77 * red as u32 + 150 * green as u32 + 29 * blue as u32 + 128) >> 8) as u8
 }
 
+/// A picture smaller by a whole `factor`: the rounded mean of each block of `factor` x `factor` pixels, or of what the
+/// picture has of it.
+///
+/// # Panics
+/// If `factor` is 0.
+pub fn reduced(luma: &Luma, factor: u32) -> Luma {
+    let (width, height) = luma.size();
+    Luma::from_fn(width.div_ceil(factor), height.div_ceil(factor), |x, y| {
+        let columns = x * factor..((x + 1) * factor).min(width);
+        let (mut sum, mut count) = (0, 0);
+        for row in y * factor..((y + 1) * factor).min(height) {
+            let pixels = &luma.row(row)[columns.start as usize..columns.end as usize];
+            sum += pixels.iter().map(|&pixel| u64::from(pixel)).sum::<u64>();
+            count += pixels.len() as u64;
+        }
+        ((sum + count / 2) / count) as u8
+    })
+}
+
 impl<T> Plane<T> {
     /// Wraps `data`, row by row.
     ///
@@ -121,6 +140,14 @@ impl<T: Copy> Plane<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_reduced_picture_by_hand() {
+        let luma = Luma::new(3, 3, vec![1, 2, 10, 3, 5, 20, 7, 8, 9]).unwrap();
+        // 11 / 4 = 2.75; 30 / 2; 15 / 2 = 7.5, up; 9.
+        assert_eq!(reduced(&luma, 2), Luma::new(2, 2, vec![3, 15, 8, 9]).unwrap());
+        assert_eq!(reduced(&luma, 1), luma);
+    }
 
     #[test]
     fn luma_of_known_colours() {

@@ -4,7 +4,7 @@
 //! has `ceil(width / 4)` words, and what lies beyond the width is 0.
 
 use crate::{
-    error::Result,
+    error::{Error, Result},
     gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
     image::Luma,
 };
@@ -31,6 +31,27 @@ pub fn stage() -> Stage {
 /// Bytes of a packed picture.
 pub fn packed_bytes(width: u32, height: u32) -> u64 {
     4 * u64::from(width.div_ceil(4)) * u64::from(height)
+}
+
+/// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
+pub const MAX_SIDE: u32 = 1 << 19;
+
+/// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size.
+pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Result<()> {
+    let refuse = |expected: String| {
+        Err(Error::Parameter { name: "the picture", value: format!("{width}x{height} pixels"), expected })
+    };
+    if width.min(height) == 0 || width.max(height) > MAX_SIDE {
+        return refuse(format!("its sides must be 1 to {MAX_SIDE}"));
+    }
+    if luma.size() < packed_bytes(width, height) {
+        return refuse(format!(
+            "its packed luma, {} bytes, is more than the {} given",
+            packed_bytes(width, height),
+            luma.size()
+        ));
+    }
+    Ok(())
 }
 
 /// Packs a picture as the kernels read it.

@@ -5,9 +5,9 @@ use crate::{
     error::{Error, Result},
     features::{self, Detector, Feature, FeatureConfig},
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
-    image::Luma,
+    image::{Luma, reduced},
     io::Picture,
-    luma::{RgbaToLuma, packed_bytes, unpack},
+    luma::{MAX_SIDE, RgbaToLuma, pack, packed_bytes, unpack},
     reference,
 };
 
@@ -90,6 +90,14 @@ impl<'b> Pair<'b> {
         if left.size() != right.size() {
             return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
         }
+        let (width, height) = left.size();
+        if width.max(height) > MAX_SIDE {
+            return Err(Error::Parameter {
+                name: "the picture",
+                value: format!("{width}x{height} pixels"),
+                expected: format!("no side may be longer than {MAX_SIDE}"),
+            });
+        }
         match backend {
             Backend::Cpu => Ok(Self { left: left.luma(), right: right.luma(), device: None }),
             Backend::Gpu(gpu) => {
@@ -103,6 +111,22 @@ impl<'b> Pair<'b> {
     /// Left and right luma.
     pub fn views(&self) -> (&Luma, &Luma) {
         (&self.left, &self.right)
+    }
+
+    /// The pair smaller by a whole `factor`, each pixel the mean of a block.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`], [`Error::OutOfMemory`].
+    pub fn reduced(&self, factor: u32) -> Result<Self> {
+        let (left, right) = (reduced(&self.left, factor), reduced(&self.right, factor));
+        let device = match &self.device {
+            None => None,
+            Some(OnDevice { gpu, .. }) => {
+                let upload = |luma| upload(gpu, luma);
+                Some(OnDevice { gpu, left: upload(&left)?, right: upload(&right)? })
+            }
+        };
+        Ok(Self { left, right, device })
     }
 
     /// Width and height of both views.
@@ -149,6 +173,14 @@ impl<'b> Pair<'b> {
             None => reference::compute_dense(&self.left, &self.right, config),
         }
     }
+}
+
+/// Packed luma on the device.
+fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
+    let words = pack(luma);
+    let buffer = guarded(&gpu.device, "the picture", || storage_buffer(&gpu.device, "luma", 4 * words.len() as u64))?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+    Ok(buffer)
 }
 
 /// The luma of a picture, on the device and here.

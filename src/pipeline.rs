@@ -10,8 +10,11 @@ use crate::{
     features::{Feature, FeatureConfig},
     io::Picture,
     pair::{Backend, Pair},
-    seeding::{Seeding, ThinSupport, Verdict},
+    seeding::{Seeding, ThinSupport, Verdict, enlarged_feature},
 };
+
+/// Points are looked for in pictures of at most this many pixels; larger ones are reduced first.
+const MAX_SPARSE_PIXELS: u64 = 1 << 21;
 
 /// A step of the pipeline, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,19 +99,24 @@ pub fn run(
     enter(Some(Step::Luma));
     let pair = Pair::new(backend, left, right)?;
     enter(Some(Step::Features));
-    let mut features = pair.features(&config.features)?;
+    let factor = reduction(pair.size());
+    let reduced = if factor == 1 { None } else { Some(pair.reduced(factor)?) };
+    let sparse = reduced.as_ref().unwrap_or(&pair);
+    let mut features = sparse.features(&config.features)?;
     enter(Some(Step::Seeding));
     let find =
-        |features: &[Vec<Feature>; 2]| Seeding::find(pair.views(), (&features[0], &features[1]), &config.seeding);
+        |features: &[Vec<Feature>; 2]| Seeding::find(sparse.views(), (&features[0], &features[1]), &config.seeding);
     let mut seeding = find(&features)?;
     if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
         // Views that are turned against each other are recognised only with orientations.
-        let turned = pair.features(&FeatureConfig { upright: false, ..config.features.clone() })?;
+        let turned = sparse.features(&FeatureConfig { upright: false, ..config.features.clone() })?;
         let found = find(&turned)?;
         if found.rectification.verdict != Verdict::Unknown {
             (features, seeding) = (turned, found);
         }
     }
+    let seeding = seeding.enlarged(factor);
+    let features = features.map(|view| view.into_iter().map(|point| enlarged_feature(point, factor)).collect());
     if seeding.rectification.verdict == Verdict::NotRectified && !config.force {
         return Err(Error::NotRectified { diagnosis: seeding.rectification.to_string() });
     }
@@ -125,6 +133,13 @@ pub fn run(
     let dense = pair.dense(&config.dense(range))?;
     enter(None);
     Ok(Outcome { features, seeding, range, range_source, dense, times })
+}
+
+/// The whole number by which a pair is reduced before points are looked for. A few thousand points tell
+/// all there is to tell, and matching them takes time with their square.
+fn reduction((width, height): (u32, u32)) -> u32 {
+    let pixels = u64::from(width) * u64::from(height);
+    (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
 }
 
 /// The part of a range that was found that lies above the limit.
@@ -155,6 +170,15 @@ fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn large_pictures_are_reduced() {
+        assert_eq!(reduction((1, 1)), 1);
+        assert_eq!(reduction((2048, 1024)), 1);
+        assert_eq!(reduction((2048, 1025)), 2);
+        // 24 megapixels in blocks of 16 are 1.5.
+        assert_eq!(reduction((6000, 4000)), 4);
+    }
 
     #[test]
     fn a_found_range_is_cut_at_the_limit() {

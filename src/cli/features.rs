@@ -68,7 +68,7 @@ impl Features {
                 terminal::print(&csv)?;
                 if !self.run.quiet {
                     // Not on stdout, where it would be a line of the table.
-                    eprintln!("{found}");
+                    terminal::note(&found);
                 }
             }
         }

@@ -11,12 +11,22 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// One line that says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    eprintln!("error: {}", one_line(&error.to_string()));
+    complain("error", &error.to_string());
 }
 
 /// One line about something that the result does not show by itself.
 pub fn warning(text: impl Display) {
-    eprintln!("warning: {}", one_line(&text.to_string()));
+    complain("warning", &text.to_string());
+}
+
+/// One line that belongs to no result.
+pub fn note(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Where stderr itself is gone there is nobody left to tell.
+fn complain(kind: &str, text: &str) {
+    let _ = writeln!(io::stderr(), "{kind}: {}", one_line(text));
 }
 
 /// Messages of drivers come in paragraphs, and a file's name can hold anything.

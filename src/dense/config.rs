@@ -108,6 +108,7 @@ impl DenseConfig {
     /// # Errors
     /// [`Error::Parameter`] with the accepted range.
     pub fn validate(&self) -> Result<()> {
+        DisparityRange::new(self.range.min, self.range.count)?;
         let check = |ok: bool, name, value: u32, expected: &str| {
             if ok {
                 Ok(())

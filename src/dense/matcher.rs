@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Result},
     gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
     image::{Luma, Plane},
-    luma::pack,
+    luma::{check_packed, pack},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -80,6 +80,9 @@ impl Matcher {
         band_rows: u32,
     ) -> Result<Self> {
         config.validate()?;
+        for luma in [left, right] {
+            check_packed(luma, size.0, size.1)?;
+        }
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
         let band_rows = band_rows_within(limit, size, config, Tile::of(device), band_rows)?;

@@ -15,7 +15,7 @@ use crate::{
     error::{Error, Result},
     gpu::{Gpu, Readback, guarded, storage_buffer},
     image::Luma,
-    luma,
+    luma::{self, check_packed},
 };
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
@@ -28,7 +28,6 @@ pub struct Detector {
     /// None in upright mode.
     orientation: Option<Orientation>,
     descriptor: Descriptor,
-    found: Readback,
 }
 
 /// The values of one descriptor.
@@ -50,6 +49,7 @@ impl Detector {
         config: &FeatureConfig,
     ) -> Result<Self> {
         config.validate()?;
+        check_packed(luma, width, height)?;
         guarded(device, "finding interest points", || {
             let rows = IntegralRows::new(device, luma, width, height)?;
             let integral = rows.sums();
@@ -61,8 +61,7 @@ impl Detector {
             let (groups, size) = (workgroups.groups(), (width, height));
             let orientation = (!config.upright).then(|| Orientation::new(device, integral, list, groups, size));
             let descriptor = Descriptor::new(device, integral, list, groups, size, config.upright)?;
-            let found = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
-            Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor, found })
+            Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor })
         })
     }
 
@@ -77,19 +76,20 @@ impl Detector {
             orientation.record(encoder);
         }
         self.descriptor.record(encoder);
-        self.found.record(encoder, self.nonmax.list().found());
     }
 
     /// Waits for the recorded work, once submitted, and returns what it found, sorted by octave,
     /// layer, row and column.
     ///
-    /// Only as much is copied as was found, which takes a submission of its own.
+    /// Only as much is copied as was found, which takes two submissions.
     ///
     /// # Errors
     /// [`Error::Parameter`] where more was found than there is room for; [`Error::DeviceLost`].
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
         let list = self.nonmax.list();
-        let found = self.found.read::<u32>(device, 1)?[0];
+        let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
+        submit(device, queue, |encoder| count.record(encoder, list.found()));
+        let found = count.read::<u32>(device, 1)?[0];
         if found > list.capacity() {
             return Err(too_many(found, list.capacity()));
         }
@@ -97,12 +97,13 @@ impl Detector {
             return Ok(Vec::new());
         }
         let found = found as usize;
+        // Staging of its own for each call, so that several threads may read.
         let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
         let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
-        keypoints.record(&mut encoder, list.keypoints());
-        descriptors.record(&mut encoder, self.descriptor.descriptors());
-        queue.submit([encoder.finish()]);
+        submit(device, queue, |encoder| {
+            keypoints.record(encoder, list.keypoints());
+            descriptors.record(encoder, self.descriptor.descriptors());
+        });
         let keypoints = keypoints.read::<Keypoint>(device, found)?;
         let descriptors = descriptors.read::<Values>(device, found)?;
 
@@ -124,10 +125,14 @@ pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<F
         guarded(&gpu.device, "the picture", || storage_buffer(&gpu.device, "luma", luma::packed_bytes(width, height)))?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&luma::pack(picture)));
     let detector = Detector::new(&gpu.device, &buffer, width, height, config)?;
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("detect") });
-    detector.record(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
+    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder));
     detector.read(&gpu.device, &gpu.queue)
+}
+
+fn submit(device: &wgpu::Device, queue: &wgpu::Queue, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
+    record(&mut encoder);
+    queue.submit([encoder.finish()]);
 }
 
 fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {

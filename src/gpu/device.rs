@@ -111,6 +111,9 @@ fn find(infos: &[wgpu::AdapterInfo], wanted: &str) -> Option<usize> {
     if let Ok(index) = wanted.parse::<usize>() {
         return (index < infos.len()).then_some(index);
     }
-    let wanted = wanted.to_lowercase();
+    let wanted = wanted.trim().to_lowercase();
+    if wanted.is_empty() {
+        return None;
+    }
     infos.iter().position(|info| info.name.to_lowercase().contains(&wanted))
 }

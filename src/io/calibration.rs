@@ -60,7 +60,7 @@ impl Calibration {
     /// # Errors
     /// [`Error::Io`] if the file cannot be read, otherwise as [`Self::parse`].
     pub fn read(path: &Path) -> Result<Self> {
-        Self::parse(&String::from_utf8_lossy(&read_whole(path, MAX_BYTES)?), path)
+        Self::parse(String::from_utf8_lossy(&read_whole(path, MAX_BYTES)?).trim_start_matches('\u{feff}'), path)
     }
 
     /// The calibration in the text of a `calib.txt`; `path` is named in errors. `cam0`, `doffs` and

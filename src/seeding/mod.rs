@@ -4,12 +4,14 @@
 //! None of this makes a pixel's disparity: where seeds are thin, the whole range is searched.
 
 mod brightness;
+mod enlarged;
 mod range;
 mod rectification;
 mod support;
 mod tiles;
 
 pub use brightness::Brightness;
+pub use enlarged::enlarged_feature;
 pub use range::ThinSupport;
 pub use rectification::{Rectification, Verdict};
 pub use tiles::TileRanges;

@@ -1,6 +1,7 @@
 //! A disparity range for every tile of the left view.
 
-use crate::{disparity::DisparityRange, matching::Seed, seeding::range::extent};
+use super::{enlarged::enlarged_range, range::extent};
+use crate::{disparity::DisparityRange, matching::Seed};
 
 /// Tiles to each side whose seeds widen a tile's range.
 const REACH: u32 = 2;
@@ -43,6 +44,12 @@ impl TileRanges {
         };
         let ranges = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         Self { side, columns, rows, ranges: ranges.map(|(column, row)| range(column, row)).collect() }
+    }
+
+    /// The same tiles of a picture that is larger by `factor`.
+    pub(super) fn enlarged(self, factor: u32) -> Self {
+        let ranges = self.ranges.into_iter().map(|range| enlarged_range(range, factor)).collect();
+        Self { side: factor * self.side, ranges, ..self }
     }
 
     /// Pixels on a tile's side.

@@ -1,0 +1,60 @@
+//! The pipeline from two pictures to a map, where it does more than its steps.
+#![cfg(feature = "cli")]
+
+use std::path::Path;
+
+use hsad::{
+    config::Preset,
+    dense::View,
+    gpu::DeviceChoice,
+    io::{Picture, load, pfm},
+    pair::Backend,
+    pipeline::{self, RangeSource},
+};
+
+fn scene(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
+}
+
+/// Each pixel as a block of `factor` x `factor`.
+fn enlarged(picture: &Picture, factor: u32) -> Picture {
+    let (width, height) = picture.size();
+    Picture::from_fn(factor * width, factor * height, |x, y| picture.get(x / factor, y / factor))
+}
+
+/// Points of large pictures are looked for in reduced ones; what they tell must be of the large ones.
+#[test]
+fn a_large_pair_is_seen_at_its_own_size() {
+    let folder = scene("planes");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let factor = 6;
+    let views = (&enlarged(&left, factor), &enlarged(&right, factor));
+    assert!(views.0.data().len() > 1 << 21, "not large enough to be reduced");
+    let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let outcome = pipeline::run(&backend, views, &Preset::Standard.config(), |_| ()).unwrap();
+
+    assert_eq!(outcome.range_source, RangeSource::Seeds);
+    let truth = pfm::read(&folder.join("disp_left.pfm")).unwrap();
+    let known = truth.data().iter().filter(|d| d.is_finite()).map(|&d| (d * factor as f32).round() as i32);
+    let (inside, outside): (Vec<i32>, Vec<i32>) = known.partition(|&d| outcome.range.contains(d));
+    assert!(outside.len() * 100 < inside.len(), "{} of the truth outside of {:?}", outside.len(), outcome.range);
+    assert!(outcome.seeding.rectification.is_rectified());
+    let (width, height) = views.0.size();
+    let far = outcome.features[0].iter().filter(|f| f.x > width as f32 / 2.0 && f.x < width as f32).count();
+    assert!(far > outcome.features[0].len() / 4, "points are not where the picture is");
+    assert!(outcome.features[0].iter().all(|f| f.y < height as f32));
+}
+
+#[test]
+fn the_paper_searches_from_the_right_view_to_the_right_only() {
+    let folder = scene("curved");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let config = Preset::Paper.config();
+    assert_eq!(config.reference, View::Right);
+    let outcome = pipeline::run(&Backend::Cpu, (&left, &right), &config, |_| ()).unwrap();
+    assert!(outcome.range.min >= 0);
+    let truth = pfm::read(&folder.join("disp_right.pfm")).unwrap();
+    let score = hsad::eval::score(&outcome.dense.disparity, &truth, None, &[1.0]).unwrap();
+    assert!(score.coverage() == 1.0, "no check takes a pixel away");
+    assert!(score.bad[0].of_known < 0.6, "{score:?}");
+}
