@@ -34,10 +34,14 @@ impl Tile {
     /// For GPUs, which would rather run many threads of few registers.
     pub const HARDWARE: Self = Self { quads: 1, height: 4 };
 
+    /// The same where only winners are wanted, of which there is less to remember.
+    pub const SOFTWARE_WINNERS: Self = Self { quads: 2, height: 16 };
+
     /// The tile for `device`.
-    pub fn of(device: &wgpu::Device) -> Self {
-        match device.adapter_info().device_type {
-            wgpu::DeviceType::Cpu => Self::SOFTWARE,
+    pub fn of(device: &wgpu::Device, wanted: Wanted) -> Self {
+        match (device.adapter_info().device_type, wanted) {
+            (wgpu::DeviceType::Cpu, Wanted::Matches) => Self::SOFTWARE,
+            (wgpu::DeviceType::Cpu, Wanted::Winners) => Self::SOFTWARE_WINNERS,
             _ => Self::HARDWARE,
         }
     }

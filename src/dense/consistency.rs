@@ -8,7 +8,7 @@ use crate::{
     gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
 };
 
-const WORKGROUP: [u32; 2] = [64, 1];
+const WORKGROUP: [u32; 2] = [64, 4];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

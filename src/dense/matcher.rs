@@ -85,7 +85,7 @@ impl Matcher {
         }
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
-        let band_rows = band_rows_within(limit, size, config, Tile::of(device), band_rows)?;
+        let band_rows = band_rows_within(limit, size, config, tiles(device), band_rows)?;
         guarded(device, "dense matching", || Self::build(device, size, config, [left, right], band_rows))
     }
 
@@ -97,11 +97,11 @@ impl Matcher {
         band_rows: u32,
     ) -> Result<Self> {
         let (width, height) = size;
-        let tile = Tile::of(device);
+        let [tile, winners_tile] = tiles(device);
         let pad = Pad::new(device);
         let block_match = BlockMatch::new(device, config, Wanted::Matches, tile);
         let check = config.consistency.map(|max_difference| {
-            (BlockMatch::new(device, config, Wanted::Winners, tile), Consistency::new(device), max_difference)
+            (BlockMatch::new(device, config, Wanted::Winners, winners_tile), Consistency::new(device), max_difference)
         });
 
         let mut bytes = 0;
@@ -111,7 +111,7 @@ impl Matcher {
         };
         let confidence_offset = width * band_rows;
         let pixels = u64::from(confidence_offset);
-        let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
+        let planes = buffer("padded planes", plane_words(size, band_rows, config, tiles(device))?)?;
         let matches = buffer("matches", 2 * pixels)?;
         let winners = if check.is_some() { Some(buffer("winners of the other view", pixels)?) } else { None };
 
@@ -131,6 +131,7 @@ impl Matcher {
             let mut dispatches = Vec::from(padding(&layout, view));
             dispatches.push(block_match.prepare(device, &layout, view, &planes, &matches, confidence_offset));
             if let (Some((find_winners, consistency, max_difference)), Some(winners)) = (&check, &winners) {
+                let layout = Layout::new(size, first_row, rows, config, winners_tile)?;
                 dispatches.extend(padding(&layout, view.other()));
                 dispatches.push(find_winners.prepare(device, &layout, view.other(), &planes, winners, 0));
                 let size = (width, rows);
@@ -169,15 +170,26 @@ impl Matcher {
     }
 }
 
+/// The tiles for matches and for winners.
+fn tiles(device: &wgpu::Device) -> [Tile; 2] {
+    [Wanted::Matches, Wanted::Winners].map(|wanted| Tile::of(device, wanted))
+}
+
+/// Words of the padded planes of a band, whichever tile pads them.
+fn plane_words(size: (u32, u32), rows: u32, config: &DenseConfig, tiles: [Tile; 2]) -> Result<u64> {
+    let [matches, winners] = tiles.map(|tile| Layout::new(size, 0, rows, config, tile));
+    Ok(matches?.words().max(winners?.words()))
+}
+
 /// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes and its
 /// work within a second or so.
-fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tile: Tile, wanted: u32) -> Result<u32> {
+fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tiles: [Tile; 2], wanted: u32) -> Result<u32> {
     let (width, height) = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
     let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
     let mut rows = wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS));
     loop {
-        let planes = 4 * Layout::new(size, 0, rows, config, tile)?.words();
+        let planes = 4 * plane_words(size, rows, config, tiles)?;
         let needed = planes.max(8 * u64::from(width) * u64::from(rows));
         if needed <= limit {
             return Ok(rows);

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
 
-const WORKGROUP: [u32; 2] = [16, 4];
+const WORKGROUP: [u32; 2] = [16, 16];
 
 /// Where a padded plane lies: in the picture, and in the buffer. All columns and rows are those of
 /// the picture, or of its mirror image, and may lie outside of it.
