@@ -25,15 +25,14 @@
 //!
 //! Or all at once, the disparity range found by itself:
 //!
-//! ```no_run
+//! ```
 //! use hsad::{config::Preset, gpu::DeviceChoice, io::Picture, pair::Backend, pipeline};
 //!
-//! # fn pictures() -> [Picture; 2] { unimplemented!() }
-//! let [left, right] = pictures();
-//! let backend = Backend::open(&DeviceChoice::Best)?;
-//! let outcome = pipeline::run(&backend, (&left, &right), &Preset::Standard.config(), |_| ())?;
-//! println!("disparities of {:?}", outcome.range);
-//! # Ok::<(), hsad::Error>(())
+//! fn disparity(left: &Picture, right: &Picture) -> hsad::Result<hsad::disparity::DisparityMap> {
+//!     let backend = Backend::open(&DeviceChoice::Best)?;
+//!     let outcome = pipeline::run(&backend, (left, right), &Preset::Standard.config(), |_| ())?;
+//!     Ok(outcome.dense.disparity)
+//! }
 //! ```
 //!
 //! # Conventions

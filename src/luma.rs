@@ -5,7 +5,7 @@
 
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, Stage, guarded, storage_buffer, uniform_buffer},
     image::Luma,
 };
 
@@ -58,6 +58,18 @@ pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Resu
 pub fn pack(luma: &Luma) -> Vec<u32> {
     let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u32::from(pixel));
     (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
+}
+
+/// The picture, packed, in a buffer of its own on the device.
+///
+/// # Errors
+/// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
+pub(crate) fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
+    let (width, height) = luma.size();
+    let allocate = || storage_buffer(&gpu.device, "luma", packed_bytes(width, height));
+    let buffer = guarded(&gpu.device, "the picture", allocate)?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
+    Ok(buffer)
 }
 
 /// The picture that `words` hold, as [`pack`] packs it.

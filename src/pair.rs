@@ -7,7 +7,7 @@ use crate::{
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
     image::{Luma, reduced},
     io::Picture,
-    luma::{MAX_SIDE, RgbaToLuma, pack, packed_bytes, unpack},
+    luma::{MAX_SIDE, RgbaToLuma, packed_bytes, unpack, upload},
     reference,
 };
 
@@ -173,14 +173,6 @@ impl<'b> Pair<'b> {
             None => reference::compute_dense(&self.left, &self.right, config),
         }
     }
-}
-
-/// Packed luma on the device.
-fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
-    let words = pack(luma);
-    let buffer = guarded(&gpu.device, "the picture", || storage_buffer(&gpu.device, "luma", 4 * words.len() as u64))?;
-    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-    Ok(buffer)
 }
 
 /// The luma of a picture, on the device and here.

@@ -9,6 +9,7 @@ use hsad::{
     disparity::DisparityRange,
     features::{Feature, FeatureConfig},
     image::{Luma, Plane},
+    io::{load, pfm},
     reference::detector::detect,
     seeding::{Seeding, SeedingConfig, Verdict},
 };
@@ -136,16 +137,10 @@ fn real_scenes_lie_in_the_range_found_for_them() {
 }
 
 fn luma(path: &Path) -> Luma {
-    let picture = image::open(path).unwrap().to_rgb8();
-    let grey =
-        |p: &image::Rgb<u8>| ((77 * u32::from(p[0]) + 150 * u32::from(p[1]) + 29 * u32::from(p[2]) + 128) >> 8) as u8;
-    Plane::new(picture.width(), picture.height(), picture.pixels().map(grey).collect()).unwrap()
+    load::load(path).unwrap().luma()
 }
 
-/// The finite values of a little-endian PFM.
+/// The disparities that are known.
 fn truth(path: &Path) -> Vec<f32> {
-    let bytes = std::fs::read(path).unwrap();
-    let header: usize = bytes.split_inclusive(|&byte| byte == b'\n').take(3).map(<[u8]>::len).sum();
-    let values = bytes[header..].chunks_exact(4).map(|value| f32::from_le_bytes(value.try_into().unwrap()));
-    values.filter(|value| value.is_finite()).collect()
+    pfm::read(path).unwrap().into_data().into_iter().filter(|value| value.is_finite()).collect()
 }

@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Result},
     gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
     image::{Luma, Plane},
-    luma::{check_packed, pack},
+    luma::{check_packed, upload},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -214,15 +214,8 @@ pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Re
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let device = &gpu.device;
-    let upload = |label, luma: &Luma| -> Result<wgpu::Buffer> {
-        let words = pack(luma);
-        let buffer = storage_buffer(device, label, 4 * words.len() as u64)?;
-        gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        Ok(buffer)
-    };
-    let matcher =
-        Matcher::new(device, left.size(), config, &upload("left luma", left)?, &upload("right luma", right)?)?;
+    let (left_luma, right_luma) = (upload(gpu, left)?, upload(gpu, right)?);
+    let matcher = Matcher::new(&gpu.device, left.size(), config, &left_luma, &right_luma)?;
     matcher.run(gpu)
 }
 

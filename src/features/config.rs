@@ -54,6 +54,15 @@ impl FeatureConfig {
     }
 }
 
+/// More interest points than there is room for.
+pub(crate) fn too_many(found: usize, room: u32) -> Error {
+    Error::Parameter {
+        name: "max_features",
+        value: room.to_string(),
+        expected: format!("the picture has {found} interest points: raise max_features, or raise the threshold"),
+    }
+}
+
 /// An interest point: where a picture's intensity changes in both directions, at one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {

@@ -9,13 +9,14 @@ use super::{
     keypoints::Keypoint,
     nonmax::Nonmax,
     orientation::Orientation,
+    too_many,
     workgroups::Workgroups,
 };
 use crate::{
-    error::{Error, Result},
-    gpu::{Gpu, Readback, guarded, storage_buffer},
+    error::Result,
+    gpu::{Gpu, Readback, guarded},
     image::Luma,
-    luma::{self, check_packed},
+    luma::{check_packed, upload},
 };
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
@@ -91,7 +92,7 @@ impl Detector {
         submit(device, queue, |encoder| count.record(encoder, list.found()));
         let found = count.read::<u32>(device, 1)?[0];
         if found > list.capacity() {
-            return Err(too_many(found, list.capacity()));
+            return Err(too_many(found as usize, list.capacity()));
         }
         if found == 0 {
             return Ok(Vec::new());
@@ -121,9 +122,7 @@ impl Detector {
 /// Those of [`Detector::new`] and [`Detector::read`].
 pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     let (width, height) = picture.size();
-    let buffer =
-        guarded(&gpu.device, "the picture", || storage_buffer(&gpu.device, "luma", luma::packed_bytes(width, height)))?;
-    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&luma::pack(picture)));
+    let buffer = upload(gpu, picture)?;
     let detector = Detector::new(&gpu.device, &buffer, width, height, config)?;
     submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder));
     detector.read(&gpu.device, &gpu.queue)
@@ -144,13 +143,5 @@ fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {
         dark: keypoint.response & 1 == 1,
         orientation: keypoint.orientation,
         descriptor,
-    }
-}
-
-fn too_many(found: u32, room: u32) -> Error {
-    Error::Parameter {
-        name: "max_features",
-        value: room.to_string(),
-        expected: format!("the picture has {found} interest points: raise max_features, or raise the threshold"),
     }
 }

@@ -16,6 +16,7 @@ pub mod workgroups;
 mod config;
 mod detector;
 
+pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
 pub use detector::{Detector, detect};
 

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::{
-    error::{Error, Result},
-    features::{Feature, FeatureConfig},
+    error::Result,
+    features::{Feature, FeatureConfig, too_many},
     image::Luma,
     reference::{
         descriptor::describe,
@@ -21,18 +21,14 @@ use crate::{
 /// A picture too small for the filters has none.
 ///
 /// # Errors
-/// [`Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`], or if there are more
+/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`], or if there are more
 /// than `max_features` points.
 pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     config.validate()?;
     let integral = IntegralImage::new(luma);
     let extrema = extrema(&integral, config);
     if extrema.len() > config.max_features as usize {
-        return Err(Error::Parameter {
-            name: "max_features",
-            value: config.max_features.to_string(),
-            expected: format!("this picture has {} interest points: allow as many, or raise threshold", extrema.len()),
-        });
+        return Err(too_many(extrema.len(), config.max_features));
     }
     Ok(extrema.into_par_iter().map(|extremum| feature(&integral, extremum, config.upright)).collect())
 }
@@ -101,7 +97,7 @@ mod tests {
         let count = detect(&picture, &FeatureConfig::default()).unwrap().len() as u32;
         let limited = |max_features| detect(&picture, &FeatureConfig { max_features, ..Default::default() });
         assert_eq!(limited(count).unwrap().len() as u32, count);
-        assert!(matches!(limited(count - 1), Err(Error::Parameter { name: "max_features", .. })));
+        assert!(matches!(limited(count - 1), Err(crate::Error::Parameter { name: "max_features", .. })));
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! Colour to luma, and the words in which luma travels.
+//! Colour to luma.
 
 use crate::{
     error::{Error, Result},
-    image::Luma,
+    image::{Luma, luma},
 };
 
 /// Luma of a picture of `width * height` RGBA bytes; alpha is ignored.
@@ -18,19 +18,7 @@ pub fn from_rgba(width: u32, height: u32, rgba: &[u8]) -> Result<Luma> {
             expected: "RGBA takes four bytes a pixel".into(),
         });
     }
-    Luma::new(width, height, pixels.iter().map(|&[r, g, b, _]| weigh(r, g, b)).collect())
-}
-
-/// The weights of Rec. 601 in 1/256, rounded; they sum to 256, so that grey stays what it is.
-fn weigh(r: u8, g: u8, b: u8) -> u8 {
-    ((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b) + 128) >> 8) as u8
-}
-
-/// The words of packed luma: each row starts a word, pixel `x` is byte `x % 4` of its row's word
-/// `x / 4`, lowest byte first, and what is left of a row's last word is 0.
-pub fn pack(luma: &Luma) -> Vec<u32> {
-    let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u32::from(pixel));
-    (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
+    Luma::new(width, height, pixels.iter().map(|&[r, g, b, _]| luma([r, g, b])).collect())
 }
 
 #[cfg(test)]
@@ -49,11 +37,5 @@ mod tests {
     fn a_wrong_number_of_bytes_is_refused() {
         assert!(from_rgba(1, 1, &[1, 2, 3]).is_err());
         assert!(from_rgba(2, 1, &[1, 2, 3, 4]).is_err());
-    }
-
-    #[test]
-    fn rows_start_words_and_are_padded_with_zeros() {
-        let luma = Luma::new(5, 2, vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
-        assert_eq!(pack(&luma), [0x0403_0201, 0x05, 0x0908_0706, 0x0a]);
     }
 }

@@ -24,7 +24,7 @@ fn rows_start_new_words() {
 
 fn assert_equals_the_twin(name: &str, (width, height): (u32, u32), pixels: &[[u8; 4]]) {
     let luma = reference::luma::from_rgba(width, height, pixels.as_flattened()).unwrap();
-    assert_same(name, &packed(width, height, pixels), &reference::luma::pack(&luma));
+    assert_same(name, &packed(width, height, pixels), &hsad::luma::pack(&luma));
 }
 
 #[test]
