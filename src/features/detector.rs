@@ -40,8 +40,8 @@ impl Detector {
     /// The device's adapter needs [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`].
     ///
     /// # Errors
-    /// [`Error::Parameter`] where `config` is out of range, [`Error::TooLarge`] where the device
-    /// cannot bind a buffer of the size needed, [`Error::OutOfMemory`], [`Error::Unsupported`].
+    /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
+    /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
     pub fn new(
         device: &wgpu::Device,
         luma: &wgpu::Buffer,
@@ -85,7 +85,7 @@ impl Detector {
     /// Only as much is copied as was found, which takes two submissions.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where more was found than there is room for; [`Error::DeviceLost`].
+    /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
         let list = self.nonmax.list();
         let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
