@@ -18,26 +18,28 @@
 struct Params {
     width: u32,
     rows: u32,
-    // Words a row of the padded reference and of the padded searched plane; where the latter begins.
-    reference_stride: u32,
-    searched_stride: u32,
-    searched_offset: u32,
+    // Words a row of the padded planes.
+    stride: u32,
+    // The words where the first window of the reference begins, and where in the other view it meets
+    // the first disparity that is looked at: whole words, so that a few come before the range.
+    reference_start: u32,
+    searched_start: u32,
     min_disparity: i32,
     disparities: u32,
+    // Disparities that are looked at before the range begins, 0 to 3.
+    skipped: u32,
     // Steps of four disparities.
     steps: u32,
     // Per cent by which the rival's cost must exceed the winner's.
     uniqueness: u32,
-    // Whether columns are counted from the right: the planes are mirrored.
-    mirrored: u32,
-    // Where the confidences begin.
+    // Where the confidences begin, four a word.
     confidence_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// The padded reference plane, then the padded searched plane, four pixels a word.
+// Both padded planes, four pixels a word.
 @group(0) @binding(1) var<storage, read> planes: array<u32>;
-// A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255.
+// A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
 @group(0) @binding(2) var<storage, read_write> matches: array<i32>;
 
 const NOTHING = 0xffffffffu;
@@ -46,36 +48,38 @@ const INDEX_MASK = (1u << SHIFT) - 1u;
 // A number for each of a step's four disparities and each pixel of a row of the tile.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
 
-// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING.
+// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING. With
+// FULL = 0 only `before` is used, for the best of all.
 struct Search {
-    best: vec4<u32>,
-    // The best up to the last disparity but one.
+    // The last key seen, and the best of those before it.
+    previous: vec4<u32>,
     before: vec4<u32>,
     // The best that is not a direct neighbour of the winner.
     rival: vec4<u32>,
     // The winner's two neighbours.
     below: vec4<u32>,
     above: vec4<u32>,
-    // The last key seen.
-    previous: vec4<u32>,
 }
 
-fn consider(s: Search, key: vec4<u32>) -> Search {
+fn best_of(s: Search) -> vec4<u32> {
+    return select(min(s.previous, s.before), s.before, FULL == 0);
+}
+
+// `wins`: this key is the best so far; `last_won`: the previous one was, up to then.
+fn consider(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -> Search {
+    let nothing = vec4<u32>(NOTHING);
     var next = s;
-    next.best = min(s.best, key);
     if FULL == 0 {
+        next.before = min(s.before, key);
         return next;
     }
-    let nothing = vec4<u32>(NOTHING);
-    let wins = key < s.best;
-    // Whether the winner so far lies at least two disparities back, so that it and this key are
-    // rivals. If not, a new winner's rival is what was best before the old one.
-    let apart = s.best == s.before;
-    next.rival = min(s.rival, select(select(nothing, s.before, wins), max(key, s.best), apart));
-    next.below = select(s.below, s.previous, wins);
-    next.above = select(select(key, s.above, apart), nothing, wins);
-    next.before = s.best;
     next.previous = key;
+    next.before = best_of(s);
+    // Next to the winner so far a key is its neighbour, further on its rival; a new winner's rival is
+    // the best of what came before its neighbour.
+    next.rival = min(s.rival, select(select(key, nothing, last_won), s.before, wins));
+    next.below = select(s.below, s.previous, wins);
+    next.above = select(select(s.above, key, last_won), nothing, wins);
     return next;
 }
 
@@ -84,10 +88,10 @@ fn consider(s: Search, key: vec4<u32>) -> Search {
 fn tags_of(x: i32, step: u32) -> Costs {
     var tags: Costs;
     for (var k = 0; k < 4; k++) { // unroll
-        let index = 4u * step + k;
+        let index = 4u * step + k - params.skipped;
         let end = select(0u, params.width, index < params.disparities);
         for (var q = 0; q < QUADS; q++) { // unroll
-            let partner = vec4<i32>(x + 4 * q - params.min_disparity - i32(index)) + vec4<i32>(0, 1, 2, 3);
+            let partner = vec4<i32>(x + 4 * q + DIRECTION * (params.min_disparity + i32(index))) + vec4<i32>(0, 1, 2, 3);
             tags[k][q] = select(vec4<u32>(NOTHING), vec4<u32>(index), vec4<u32>(partner) < vec4<u32>(end));
         }
     }
@@ -108,9 +112,13 @@ fn slide(window: Costs, entering: Costs, leaving: Costs) -> Costs {
 // A step's four disparities for a row of the tile.
 fn consider_all(searches: array<Search, QUADS>, window: Costs, tags: Costs) -> array<Search, QUADS> {
     var next = searches;
-    for (var k = 0; k < 4; k++) { // unroll
-        for (var q = 0; q < QUADS; q++) { // unroll
-            next[q] = consider(next[q], window[k][q] | tags[k][q]);
+    for (var q = 0; q < QUADS; q++) { // unroll
+        var last_won = next[q].previous < next[q].before;
+        for (var k = 0; k < 4; k++) { // unroll
+            let key = window[k][q] | tags[k][q];
+            let wins = key < best_of(next[q]);
+            next[q] = consider(next[q], key, wins, last_won);
+            last_won = wins;
         }
     }
     return next;
@@ -127,12 +135,10 @@ fn unpack(word: u32) -> vec4<i32> {
 
 // For four disparities, the sums of absolute differences of a tile's pixels along one row of their
 // windows. Four disparities on, the searched words are the same, one place further.
-fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> Costs {
-    var a: array<vec4<i32>, WORDS>;
+fn row_sums(a: array<vec4<i32>, WORDS>, searched: array<u32, WORDS + 1>) -> Costs {
     var b: array<vec4<i32>, WORDS + 1>;
     b[0] = unpack(searched[0]);
     for (var j = 0; j < WORDS; j++) { // unroll
-        a[j] = unpack(reference[j]);
         b[j + 1] = unpack(searched[j + 1]);
     }
     var sums: Costs;
@@ -141,7 +147,7 @@ fn row_sums(reference: array<u32, WORDS>, searched: array<u32, WORDS + 1>) -> Co
         var difference: array<u32, SPAN + 1>;
         for (var i = 0; i < SPAN; i++) { // unroll
             difference[i] = u32(abs(
-                a[(FIRST + i) / 4][(FIRST + i) % 4] - b[(FIRST + i + 4 - k) / 4][(FIRST + i + 4 - k) % 4]
+                a[(FIRST + i) / 4][(FIRST + i) % 4] - b[(SEARCHED_FIRST + i + DIRECTION * k) / 4][(SEARCHED_FIRST + i + DIRECTION * k) % 4]
             ));
         }
         var sum = 0u;
@@ -192,15 +198,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
 
-    var reference: array<array<u32, WORDS>, ROWS>;
-    // One word more: the four pixels further left that the next step needs come in front.
+    var reference: array<array<vec4<i32>, WORDS>, ROWS>;
+    // One word more: four disparities on, the same words serve again, one place further.
     var searched: array<array<u32, WORDS + 1>, ROWS>;
     for (var y = 0; y < ROWS; y++) { // unroll
-        let reference_row = (y0 + y) * params.reference_stride + column;
-        let searched_row = params.searched_offset + (y0 + y) * params.searched_stride + params.steps + column;
+        let row = (y0 + y) * params.stride + column;
         for (var j = 0; j < WORDS; j++) { // unroll
-            reference[y][j] = planes[reference_row + j];
-            searched[y][j] = planes[searched_row + j];
+            reference[y][j] = unpack(planes[params.reference_start + row + j]);
+            searched[y][j + START] = planes[params.searched_start + row + j];
         }
     }
 
@@ -208,7 +213,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var searches: array<array<Search, QUADS>, ROWS>;
     for (var y = 0; y < ROWS; y++) { // unroll
         for (var q = 0; q < QUADS; q++) { // unroll
-            searches[y][q] = Search(nothing, nothing, nothing, nothing, nothing, nothing);
+            searches[y][q] = Search(nothing, nothing, nothing, nothing, nothing);
         }
     }
 
@@ -218,11 +223,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var sums: array<Costs, ROWS + SIDE>;
         var window: Costs;
         for (var y = 0; y < ROWS; y++) { // unroll
-            for (var j = 0; j < WORDS; j++) { // unroll
-                searched[y][WORDS - j] = searched[y][WORDS - j - 1];
+            let row = params.searched_start + (y0 + y) * params.stride + column;
+            if DIRECTION < 0 {
+                for (var j = 0; j < WORDS; j++) { // unroll
+                    searched[y][WORDS - j] = searched[y][WORDS - j - 1];
+                }
+                searched[y][0] = planes[row - 1u - step];
+            } else {
+                for (var j = 0; j < WORDS; j++) { // unroll
+                    searched[y][j] = searched[y][j + 1];
+                }
+                searched[y][WORDS] = planes[row + WORDS + step];
             }
-            let searched_row = params.searched_offset + (y0 + y) * params.searched_stride + params.steps + column;
-            searched[y][0] = planes[searched_row - 1u - step];
             sums[y + SIDE] = row_sums(reference[y], searched[y]);
             window = slide(window, sums[y + SIDE], sums[y]);
             if y >= SIDE - 1 {
@@ -233,25 +245,41 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 
     for (var n = 0; n < TILE_HEIGHT; n++) { // unroll
         for (var q = 0; q < QUADS; q++) { // unroll
-            let s = searches[n + SIDE - 1][q];
-            for (var t = 0; t < 4; t++) { // unroll
-                finish(x + 4 * q + t, y0 + n, s.best[t], s.rival[t], s.below[t], s.above[t]);
-            }
+            finish(4u * (column + q), y0 + n, searches[n + SIDE - 1][q]);
         }
     }
 }
 
-// Writes the answer of one pixel.
-fn finish(x: u32, y: u32, best: u32, rival: u32, below: u32, above: u32) {
+// Writes the answers of four pixels, of which those of a last column may lie beyond the picture.
+fn finish(x: u32, y: u32, s: Search) {
     if x >= params.width || y >= params.rows {
         return;
     }
-    let pixel = y * params.width + select(x, params.width - 1u - x, params.mirrored != 0u);
+    let best = best_of(s);
+    let answers = array<vec2<u32>, 4>(
+        answer(best.x, s.rival.x, s.below.x, s.above.x),
+        answer(best.y, s.rival.y, s.below.y, s.above.y),
+        answer(best.z, s.rival.z, s.below.z, s.above.z),
+        answer(best.w, s.rival.w, s.below.w, s.above.w),
+    );
+    var word = 0u;
+    for (var t = 0; t < 4; t++) { // unroll
+        if x + t < params.width {
+            matches[y * params.width + x + t] = i32(answers[t].x);
+            word |= answers[t].y << (8u * t);
+        }
+    }
+    if FULL != 0 {
+        matches[params.confidence_offset + y * ((params.width + 3u) / 4u) + x / 4u] = i32(word);
+    }
+}
+
+// The disparity of a pixel, as bits, and its confidence.
+fn answer(best: u32, rival: u32, below: u32, above: u32) -> vec2<u32> {
     let whole = (params.min_disparity + i32(best & INDEX_MASK)) * SCALE;
     let exists = best != NOTHING;
     if FULL == 0 {
-        matches[pixel] = select(NONE, whole, exists);
-        return;
+        return vec2<u32>(u32(select(NONE, whole, exists)), 0u);
     }
     let cost = best >> SHIFT;
     let rival_cost = rival >> SHIFT;
@@ -260,6 +288,6 @@ fn finish(x: u32, y: u32, best: u32, rival: u32, below: u32, above: u32) {
     let has_neighbours = below != NOTHING && above != NOTHING;
     let fraction = select(0, subpixel(below >> SHIFT, cost, above >> SHIFT), has_neighbours);
     let margin = select(quotient(254u * (rival_cost - cost), max(rival_cost, 1u)), 0u, unrivalled);
-    matches[pixel] = select(NONE, whole + fraction, exists && unique);
-    matches[params.confidence_offset + pixel] = select(0, i32(1u + margin), exists && unique);
+    let holds = exists && unique;
+    return vec2<u32>(u32(select(NONE, whole + fraction, holds)), select(0u, 1u + margin, holds));
 }

@@ -10,31 +10,41 @@ struct Params {
     direction: i32,
     // In 1/256 px.
     max_difference: u32,
-    // Where the confidences begin.
+    // Where the confidences begin, four a word.
     confidence_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 // A fixed-point disparity a pixel of the other view.
 @group(0) @binding(1) var<storage, read> others: array<i32>;
-// A fixed-point disparity a pixel of the reference view, then a confidence a pixel.
+// A fixed-point disparity a pixel of the reference view, then a confidence a pixel, four a word.
 @group(0) @binding(2) var<storage, read_write> matches: array<i32>;
 
+// A thread checks four pixels, whose confidences are one word.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= params.width || id.y >= params.rows {
+    let x = 4u * id.x;
+    if x >= params.width || id.y >= params.rows {
         return;
     }
     let row = id.y * params.width;
-    let pixel = row + id.x;
-    let disparity = matches[pixel];
-    let partner = i32(id.x) + params.direction * ((disparity + SCALE / 2) >> SCALE_BITS);
+    var kept = 0u;
+    for (var t = 0u; t < min(4u, params.width - x); t++) {
+        let disparity = matches[row + x + t];
+        if is_consistent(row, i32(x + t), disparity) {
+            kept |= 255u << (8u * t);
+        } else {
+            matches[row + x + t] = NONE;
+        }
+    }
+    let word = params.confidence_offset + id.y * ((params.width + 3u) / 4u) + id.x;
+    matches[word] &= i32(kept);
+}
+
+fn is_consistent(row: u32, x: i32, disparity: i32) -> bool {
+    let partner = x + params.direction * ((disparity + SCALE / 2) >> SCALE_BITS);
     let other = others[row + u32(clamp(partner, 0, i32(params.width) - 1))];
     let exists = disparity != NONE && partner >= 0 && partner < i32(params.width) && other != NONE;
-    // Only now is their difference sure to be one.
-    if exists && u32(abs(disparity - other)) <= params.max_difference {
-        return;
-    }
-    matches[pixel] = NONE;
-    matches[params.confidence_offset + pixel] = 0;
+    // Only where both exist is their difference sure to be one.
+    return exists && u32(abs(disparity - other)) <= params.max_difference;
 }

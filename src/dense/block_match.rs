@@ -52,14 +52,14 @@ impl Tile {
 struct Params {
     width: u32,
     rows: u32,
-    reference_stride: u32,
-    searched_stride: u32,
-    searched_offset: u32,
+    stride: u32,
+    reference_start: u32,
+    searched_start: u32,
     min_disparity: i32,
     disparities: u32,
+    skipped: u32,
     steps: u32,
     uniqueness: u32,
-    mirrored: u32,
     confidence_offset: u32,
 }
 
@@ -72,9 +72,10 @@ pub enum Wanted {
     Winners,
 }
 
-/// The block-matching kernel for one window and one interpolation.
+/// The block-matching kernel for one view, one window and one interpolation.
 pub struct BlockMatch {
     kernel: Kernel,
+    view: View,
     uniqueness: u32,
     tile: Tile,
 }
@@ -86,9 +87,14 @@ fn margin(radius: u32) -> u32 {
 
 impl BlockMatch {
     /// What the kernel is made of.
-    pub fn stage(config: &DenseConfig, wanted: Wanted, tile: Tile) -> Stage {
+    pub fn stage(config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Stage {
         let radius = config.radius();
         let constant = |value: u32| i64::from(value);
+        // To the left the words that a step brings come in front, to the right behind.
+        let (direction, front) = match view {
+            View::Left => (-1, 4),
+            View::Right => (1, 0),
+        };
         Stage {
             name: "block_match",
             source: include_str!("../../shaders/block_match.wgsl"),
@@ -103,6 +109,9 @@ impl BlockMatch {
                 ("SPAN", constant(4 * tile.quads + config.window - 1)),
                 ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
+                ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
+                ("DIRECTION", direction),
+                ("START", i64::from(view == View::Right)),
                 ("SHIFT", constant(config.index_bits())),
                 ("SCALE", SCALE.into()),
                 ("NONE", NONE.into()),
@@ -121,47 +130,46 @@ impl BlockMatch {
         }
     }
 
-    /// Compiles it for `config`'s window, interpolation and uniqueness.
-    pub fn new(device: &wgpu::Device, config: &DenseConfig, wanted: Wanted, tile: Tile) -> Self {
-        let kernel = Kernel::new(device, &Self::stage(config, wanted, tile));
-        Self { kernel, uniqueness: config.uniqueness, tile }
+    /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
+    pub fn new(device: &wgpu::Device, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
+        let kernel = Kernel::new(device, &Self::stage(config, view, wanted, tile));
+        Self { kernel, view, uniqueness: config.uniqueness, tile }
     }
 
     /// Matches the padded `planes` of `layout`, writing a fixed-point disparity for each pixel of
     /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
-    /// `confidence_offset` on.
+    /// `confidence_offset` on, four a word and each row in words of its own.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         layout: &Layout,
-        view: View,
         planes: &wgpu::Buffer,
         matches: &wgpu::Buffer,
         confidence_offset: u32,
     ) -> Dispatch {
+        let [reference_start, searched_start] = layout.starts(self.view);
         let params = Params {
             width: layout.width,
             rows: layout.rows,
-            reference_stride: layout.reference_stride(),
-            searched_stride: layout.searched_stride(),
-            searched_offset: layout.searched_offset(),
+            stride: layout.stride(),
+            reference_start,
+            searched_start,
             min_disparity: layout.range.min,
             disparities: layout.range.count,
+            skipped: (layout.range.min - 4 * layout.first_step()) as u32,
             steps: layout.steps(),
             uniqueness: self.uniqueness,
-            mirrored: (view == View::Right).into(),
             confidence_offset,
         };
         let Tile { quads, height } = self.tile;
-        debug_assert_eq!(self.tile, layout.tile);
         let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "block_match", &params);
         self.kernel.dispatch(device, &[&params, planes, matches], groups)
     }
 }
 
-/// How the padded planes of a band lie in their buffer: the reference plane, then the searched one,
-/// which reaches further left by the whole range, so that no step of the search leaves it.
+/// How the padded planes of a band lie in their buffer: the left one, then the right one. Each
+/// reaches so far beyond the picture that no window and no step of a search leaves it.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     width: u32,
@@ -170,11 +178,14 @@ pub struct Layout {
     rows: u32,
     radius: u32,
     range: DisparityRange,
-    tile: Tile,
+    /// Rows and words a row that are covered by whole tiles.
+    tiled_rows: u32,
+    tiled_words: u32,
 }
 
 impl Layout {
-    /// The layout for rows `first_row` to `first_row + rows` of a picture of `size`.
+    /// The layout for rows `first_row` to `first_row + rows` of a picture of `size`, for kernels of
+    /// these `tiles`.
     ///
     /// # Errors
     /// As [`DenseConfig::searched`].
@@ -183,54 +194,85 @@ impl Layout {
         first_row: u32,
         rows: u32,
         config: &DenseConfig,
-        tile: Tile,
+        tiles: &[Tile],
     ) -> Result<Self> {
         let range = config.searched(width)?;
-        Ok(Self { width, height, first_row, rows, radius: config.radius(), range, tile })
+        let covered = |length: u32, side: fn(&Tile) -> u32| {
+            tiles.iter().map(|tile| length.next_multiple_of(side(tile))).max().unwrap_or(length)
+        };
+        Ok(Self {
+            width,
+            height,
+            first_row,
+            rows,
+            radius: config.radius(),
+            range,
+            tiled_rows: covered(rows, |tile| tile.height),
+            tiled_words: covered(width.div_ceil(4), |tile| tile.quads),
+        })
     }
 
     /// Words of the buffer that holds both planes.
     pub fn words(&self) -> u64 {
-        u64::from(self.padded_rows()) * u64::from(self.reference_stride() + self.searched_stride())
+        2 * u64::from(self.padded_rows()) * u64::from(self.stride())
     }
 
-    /// How the two pictures are padded for `view`: the reference, then the searched one.
-    pub fn padding(&self, view: View) -> [PadParams; 2] {
-        let margin = margin(self.radius) as i32;
-        let plane = |first_column, stride, offset| PadParams {
+    /// How the left and the right picture are padded.
+    pub fn padding(&self) -> [PadParams; 2] {
+        [View::Left, View::Right].map(|view| PadParams {
             width: self.width,
             height: self.height,
-            first_column,
+            first_word: -((margin(self.radius) / 4 + self.reach(view)) as i32),
             first_row: self.first_row as i32 - self.radius as i32,
             rows: self.padded_rows(),
-            stride,
-            offset,
-            mirrored: (view == View::Right).into(),
+            stride: self.stride(),
+            offset: self.offset(view),
+        })
+    }
+
+    /// The words where the first window of `view` begins, and where the other view's does at the first
+    /// disparity of the first step.
+    fn starts(&self, view: View) -> [u32; 2] {
+        let start = |view| self.offset(view) + self.reach(view);
+        let first = match view {
+            View::Left => -self.first_step(),
+            View::Right => self.first_step(),
         };
-        let reach = self.range.min + 4 * self.steps() as i32;
-        [
-            plane(-margin, self.reference_stride(), 0),
-            plane(-margin - reach, self.searched_stride(), self.searched_offset()),
-        ]
+        [start(view), start(view.other()).wrapping_add_signed(first)]
+    }
+
+    /// Words in front of the margin of a plane that searches may reach: in the left picture those
+    /// for negative disparities, in the right one those for positive.
+    fn reach(&self, view: View) -> u32 {
+        let words = match view {
+            View::Left => -self.first_step(),
+            View::Right => self.first_step() + self.steps() as i32,
+        };
+        words.max(0) as u32
+    }
+
+    fn offset(&self, view: View) -> u32 {
+        match view {
+            View::Left => 0,
+            View::Right => self.padded_rows() * self.stride(),
+        }
     }
 
     fn padded_rows(&self) -> u32 {
-        self.rows.next_multiple_of(self.tile.height) + 2 * self.radius
+        self.tiled_rows + 2 * self.radius
+    }
+
+    /// The step of four disparities in which the range begins.
+    fn first_step(&self) -> i32 {
+        self.range.min.div_euclid(4)
     }
 
     fn steps(&self) -> u32 {
-        self.range.count.div_ceil(4)
+        (self.range.last().div_euclid(4) - self.first_step() + 1) as u32
     }
 
-    fn reference_stride(&self) -> u32 {
-        self.width.div_ceil(4).next_multiple_of(self.tile.quads) + 2 * margin(self.radius) / 4
-    }
-
-    fn searched_stride(&self) -> u32 {
-        self.reference_stride() + self.steps()
-    }
-
-    fn searched_offset(&self) -> u32 {
-        self.padded_rows() * self.reference_stride()
+    /// Words of a padded row.
+    fn stride(&self) -> u32 {
+        self.tiled_words + 2 * margin(self.radius) / 4 + self.reach(View::Left) + self.reach(View::Right)
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
 };
 
-const WORKGROUP: [u32; 2] = [64, 4];
+const WORKGROUP: [u32; 2] = [32, 8];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -46,7 +46,7 @@ impl Consistency {
     }
 
     /// Takes away from `matches` of `view` (`width` x `rows` disparities, and from word
-    /// `confidence_offset` on as many confidences) what the other view's disparities contradict by
+    /// `confidence_offset` on as many confidences, four a word and each row in words of its own) what the other view's disparities contradict by
     /// more than `max_difference` / 256 px.
     #[expect(clippy::too_many_arguments, reason = "four sizes and two buffers, each of one kind")]
     pub fn prepare(
@@ -65,7 +65,7 @@ impl Consistency {
         };
         let params = Params { width, rows, direction, max_difference, confidence_offset };
         let params = uniform_buffer(device, "consistency", &params);
-        let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&params, others, matches], groups)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
-    config::{DenseConfig, View},
+    config::DenseConfig,
     consistency::Consistency,
     pad::Pad,
 };
@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Result},
     gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
     image::{Luma, Plane},
-    luma::{check_packed, upload},
+    luma::{check_packed, unpack, upload},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -85,7 +85,7 @@ impl Matcher {
         }
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
-        let band_rows = band_rows_within(limit, size, config, tiles(device), band_rows)?;
+        let band_rows = band_rows_within(limit, size, config, &tiles(device, config), band_rows)?;
         guarded(device, "dense matching", || Self::build(device, size, config, [left, right], band_rows))
     }
 
@@ -97,11 +97,13 @@ impl Matcher {
         band_rows: u32,
     ) -> Result<Self> {
         let (width, height) = size;
-        let [tile, winners_tile] = tiles(device);
+        let tiles = tiles(device, config);
+        let view = config.reference;
         let pad = Pad::new(device);
-        let block_match = BlockMatch::new(device, config, Wanted::Matches, tile);
+        let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
         let check = config.consistency.map(|max_difference| {
-            (BlockMatch::new(device, config, Wanted::Winners, winners_tile), Consistency::new(device), max_difference)
+            let winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tiles[1]);
+            (winners, Consistency::new(device), max_difference)
         });
 
         let mut bytes = 0;
@@ -110,30 +112,25 @@ impl Matcher {
             storage_buffer(device, label, 4 * words)
         };
         let confidence_offset = width * band_rows;
-        let pixels = u64::from(confidence_offset);
-        let planes = buffer("padded planes", plane_words(size, band_rows, config, tiles(device))?)?;
-        let matches = buffer("matches", 2 * pixels)?;
-        let winners = if check.is_some() { Some(buffer("winners of the other view", pixels)?) } else { None };
-
-        let padding = |layout: &Layout, view: View| {
-            let [reference, searched] = match view {
-                View::Left => [left, right],
-                View::Right => [right, left],
-            };
-            let [of_reference, of_searched] = layout.padding(view);
-            [pad.prepare(device, of_reference, reference, &planes), pad.prepare(device, of_searched, searched, &planes)]
+        let planes = buffer("padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
+        let matches = buffer("matches", match_words(width, band_rows))?;
+        let winners = match check {
+            Some(_) => Some(buffer("winners of the other view", confidence_offset.into())?),
+            None => None,
         };
+
         let mut bands = Vec::new();
         for first_row in (0..height).step_by(band_rows as usize) {
             let rows = band_rows.min(height - first_row);
-            let layout = Layout::new(size, first_row, rows, config, tile)?;
-            let view = config.reference;
-            let mut dispatches = Vec::from(padding(&layout, view));
-            dispatches.push(block_match.prepare(device, &layout, view, &planes, &matches, confidence_offset));
+            let layout = Layout::new(size, first_row, rows, config, &tiles)?;
+            let [pad_left, pad_right] = layout.padding();
+            let mut dispatches = vec![
+                pad.prepare(device, pad_left, left, &planes),
+                pad.prepare(device, pad_right, right, &planes),
+                block_match.prepare(device, &layout, &planes, &matches, confidence_offset),
+            ];
             if let (Some((find_winners, consistency, max_difference)), Some(winners)) = (&check, &winners) {
-                let layout = Layout::new(size, first_row, rows, config, winners_tile)?;
-                dispatches.extend(padding(&layout, view.other()));
-                dispatches.push(find_winners.prepare(device, &layout, view.other(), &planes, winners, 0));
+                dispatches.push(find_winners.prepare(device, &layout, &planes, winners, 0));
                 let size = (width, rows);
                 let limit = *max_difference;
                 dispatches.push(consistency.prepare(device, size, confidence_offset, view, limit, winners, &matches));
@@ -153,44 +150,46 @@ impl Matcher {
         self.bands.len()
     }
 
-    /// Records the whole matching, which ends with `disparities` (`i32`) and `confidences` (`u32`,
-    /// 0 to 255) of every pixel of the reference view in the caller's buffers, row by row. Both
-    /// need `COPY_DST`.
+    /// Records the whole matching, which ends with `disparities` (`i32`) and `confidences` (0 to 255,
+    /// four a word, in rows of `width.div_ceil(4)` words) of every pixel of the reference view in
+    /// the caller's buffers, row by row. Both need `COPY_DST`.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer) {
         for band in &self.bands {
             for dispatch in &band.dispatches {
                 dispatch.record(encoder);
             }
-            let row_bytes = 4 * u64::from(self.size.0);
-            let (offset, length) = (row_bytes * u64::from(band.first_row), row_bytes * u64::from(band.rows));
-            let confidence_bytes = 4 * u64::from(self.confidence_offset);
-            encoder.copy_buffer_to_buffer(&self.matches, 0, disparities, offset, Some(length));
-            encoder.copy_buffer_to_buffer(&self.matches, confidence_bytes, confidences, offset, Some(length));
+            let mut copy = |from: u64, to: &wgpu::Buffer, row_words: u32| {
+                let row_bytes = 4 * u64::from(row_words);
+                let (offset, length) = (row_bytes * u64::from(band.first_row), row_bytes * u64::from(band.rows));
+                encoder.copy_buffer_to_buffer(&self.matches, from, to, offset, Some(length));
+            };
+            copy(0, disparities, self.size.0);
+            copy(4 * u64::from(self.confidence_offset), confidences, self.size.0.div_ceil(4));
         }
     }
 }
 
-/// The tiles for matches and for winners.
-fn tiles(device: &wgpu::Device) -> [Tile; 2] {
-    [Wanted::Matches, Wanted::Winners].map(|wanted| Tile::of(device, wanted))
+/// The tiles for matches, and for the other view's winners if they are wanted.
+fn tiles(device: &wgpu::Device, config: &DenseConfig) -> Vec<Tile> {
+    let winners = config.consistency.map(|_| Wanted::Winners);
+    [Some(Wanted::Matches), winners].into_iter().flatten().map(|wanted| Tile::of(device, wanted)).collect()
 }
 
-/// Words of the padded planes of a band, whichever tile pads them.
-fn plane_words(size: (u32, u32), rows: u32, config: &DenseConfig, tiles: [Tile; 2]) -> Result<u64> {
-    let [matches, winners] = tiles.map(|tile| Layout::new(size, 0, rows, config, tile));
-    Ok(matches?.words().max(winners?.words()))
+/// Words of a band's disparities and confidences.
+fn match_words(width: u32, rows: u32) -> u64 {
+    u64::from(rows) * (u64::from(width) + u64::from(width.div_ceil(4)))
 }
 
 /// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes and its
 /// work within a second or so.
-fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tiles: [Tile; 2], wanted: u32) -> Result<u32> {
+fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tiles: &[Tile], wanted: u32) -> Result<u32> {
     let (width, height) = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
     let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
     let mut rows = wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS));
     loop {
-        let planes = 4 * plane_words(size, rows, config, tiles)?;
-        let needed = planes.max(8 * u64::from(width) * u64::from(rows));
+        let planes = Layout::new(size, 0, rows, config, tiles)?.words();
+        let needed = 4 * planes.max(match_words(width, rows));
         if needed <= limit {
             return Ok(rows);
         }
@@ -228,14 +227,17 @@ impl Matcher {
         let (width, height) = self.size;
         let pixels = width as usize * height as usize;
         let device = &gpu.device;
+        let row_words = width.div_ceil(4) as usize;
         let [disparities, confidences] = guarded(device, "the disparity map", || {
-            Ok(["disparities", "confidences"].map(|label| Readback::new(device, label, 4 * pixels as u64)))
+            let lengths = [("disparities", pixels), ("confidences", row_words * height as usize)];
+            Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
         })?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
         self.record(&mut encoder, disparities.buffer(), confidences.buffer());
         gpu.queue.submit([encoder.finish()]);
         let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
-        let confidence = Plane::new(width, height, confidences.read::<u32>(device, pixels)?)?.map(|&c| c as u8);
+        let words: Vec<u32> = confidences.read(device, row_words * height as usize)?;
+        let confidence = unpack(width, height, &words);
         Ok(Dense { disparity, confidence })
     }
 }

@@ -18,13 +18,14 @@ pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
-/// window.
+/// window, for what each view is asked for.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Consistency::stage()];
     for window in (3..=31).step_by(2) {
         let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
         let config = DenseConfig { window, ..DenseConfig::new(DisparityRange { min: 0, count: 1 }) };
-        stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| BlockMatch::stage(&config, wanted, tile)));
+        let asked = [(View::Left, Wanted::Matches), (View::Right, Wanted::Winners)];
+        stages.extend(asked.map(|(view, wanted)| BlockMatch::stage(&config, view, wanted, tile)));
     }
     stages
 }

@@ -4,10 +4,10 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
 
-const WORKGROUP: [u32; 2] = [16, 16];
+const WORKGROUP: [u32; 2] = [64, 4];
 
-/// Where a padded plane lies: in the picture, and in the buffer. All columns and rows are those of
-/// the picture, or of its mirror image, and may lie outside of it.
+/// Where a padded plane lies: in the picture, and in the buffer. All words and rows are those of
+/// the picture, and may lie outside of it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PadParams {
@@ -15,8 +15,8 @@ pub struct PadParams {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// Column of the first padded pixel.
-    pub first_column: i32,
+    /// The first padded word: of four pixels, counted from the picture's first.
+    pub first_word: i32,
     /// Row of the first padded row.
     pub first_row: i32,
     /// Padded rows.
@@ -25,8 +25,6 @@ pub struct PadParams {
     pub stride: u32,
     /// Word of the buffer at which the plane begins.
     pub offset: u32,
-    /// 1: the picture is seen in a mirror, column x showing column `width - 1 - x`.
-    pub mirrored: u32,
 }
 
 /// The padding kernel.

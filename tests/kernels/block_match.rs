@@ -4,6 +4,7 @@ use hsad::{
     dense::{BlockMatch, DenseConfig, Interpolation, Layout, Pad, Tile, View, Wanted},
     disparity::{DisparityRange, SCALE},
     image::Luma,
+    luma::pack,
     reference,
 };
 
@@ -13,18 +14,16 @@ use crate::common::*;
 fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig, wanted: Wanted, tile: Tile) -> Vec<i32> {
     let device = &gpu().device;
     let (width, height) = left.size();
-    let layout = Layout::new(left.size(), 0, height, config, tile).expect("a layout");
+    let layout = Layout::new(left.size(), 0, height, config, &[tile]).expect("a layout");
     let planes = upload(&vec![0_u32; layout.words() as usize]);
-    let pixels = width * height;
-    let matches = upload(&vec![0_u32; pixels as usize * if wanted == Wanted::Matches { 2 } else { 1 }]);
-    let [left, right] = [left, right].map(upload_luma);
-    let [reference, searched] = if view == View::Left { [&left, &right] } else { [&right, &left] };
-    let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, wanted, tile));
-    let [reference_padding, searched_padding] = layout.padding(view);
+    let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
+    let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
+    let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
+    let [left_padding, right_padding] = layout.padding();
     let dispatches = [
-        pad.prepare(device, reference_padding, reference, &planes),
-        pad.prepare(device, searched_padding, searched, &planes),
-        kernel.prepare(device, &layout, view, &planes, &matches, pixels),
+        pad.prepare(device, left_padding, &upload_luma(left), &planes),
+        pad.prepare(device, right_padding, &upload_luma(right), &planes),
+        kernel.prepare(device, &layout, &planes, &matches, width * height),
     ];
     poison(&planes);
     poison(&matches);
@@ -56,9 +55,9 @@ fn compare_tiled(what: &str, (left, right): (&Luma, &Luma), view: View, config: 
     let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
     let expected = reference::block_match(left, right, view, &searched);
     let actual = on_device(left, right, view, config, Wanted::Matches, tile);
-    let (disparities, confidences) = actual.split_at(actual.len() / 2);
+    let (disparities, confidences) = actual.split_at(left.data().len());
     assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
-    let expected: Vec<i32> = expected.confidence.data().iter().map(|&c| c.into()).collect();
+    let expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
     assert_same(&format!("{what}, confidences"), confidences, &expected);
     let winners = on_device(left, right, view, config, Wanted::Winners, tile);
     assert_same(&format!("{what}, winners"), &winners, reference::winners(left, right, view, &searched).data());

@@ -4,6 +4,7 @@ use hsad::{
     dense::{Consistency, Dense, View},
     disparity::{DisparityMap, NONE},
     image::Plane,
+    luma::{pack, unpack},
     reference::check_consistency,
 };
 
@@ -14,8 +15,8 @@ fn on_device(dense: &Dense, view: View, others: &DisparityMap, max_difference: u
     let (width, height) = dense.disparity.size();
     let others = upload(others.data());
     let pixels = (width * height) as usize;
-    let both: Vec<i32> =
-        dense.disparity.data().iter().copied().chain(dense.confidence.data().iter().map(|&c| c.into())).collect();
+    let confidence = pack(&dense.confidence).into_iter().map(u32::cast_signed);
+    let both: Vec<i32> = dense.disparity.data().iter().copied().chain(confidence).collect();
     let matches = upload(&both);
     let size = (width, height);
     let check = Consistency::new(device).prepare(device, size, width * height, view, max_difference, &others, &matches);
@@ -23,7 +24,7 @@ fn on_device(dense: &Dense, view: View, others: &DisparityMap, max_difference: u
     let both = download::<i32>(&matches);
     Dense {
         disparity: Plane::new(width, height, both[..pixels].to_vec()).unwrap(),
-        confidence: Plane::new(width, height, both[pixels..].to_vec()).unwrap().map(|&c| c as u8),
+        confidence: unpack(width, height, bytemuck::cast_slice(&both[pixels..])),
     }
 }
 
