@@ -137,7 +137,7 @@ pub fn run(
 
 /// The whole number by which a pair is reduced before points are looked for. A few thousand points tell
 /// all there is to tell, and matching them takes time with their square.
-fn reduction((width, height): (u32, u32)) -> u32 {
+pub fn reduction((width, height): (u32, u32)) -> u32 {
     let pixels = u64::from(width) * u64::from(height);
     (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
 }

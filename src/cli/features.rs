@@ -5,7 +5,10 @@ use std::{io::Write, path::PathBuf};
 use clap::Args;
 use hsad::{
     features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    image::reduced,
     io::{figure, load, png},
+    pipeline::reduction,
+    seeding::enlarged_feature,
 };
 
 use super::{
@@ -29,6 +32,10 @@ pub struct Features {
     /// Write features.csv and keypoints.png to this folder instead of the terminal
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Look for points at the picture's full size. Without it, one of more than 2 megapixels is reduced
+    /// by a whole factor first, as `hsad match` does
+    #[arg(long)]
+    full_size: bool,
     /// Add the 64 values of each descriptor
     #[arg(long)]
     descriptors: bool,
@@ -48,7 +55,10 @@ impl Features {
         let backend = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("finding interest points");
-        let features = backend.features(&picture.luma(), &config)?;
+        let luma = picture.luma();
+        let factor = if self.full_size { 1 } else { reduction(luma.size()) };
+        let features = backend.features(&reduced(&luma, factor), &config)?;
+        let features: Vec<_> = features.into_iter().map(|point| enlarged_feature(point, factor)).collect();
 
         let csv = csv(&features, self.descriptors);
         if let Some(output) = &mut output {
@@ -60,7 +70,8 @@ impl Features {
         }
         drop(progress);
 
-        let found = format!("{} interest points, found by {}", features.len(), backend.name());
+        let size = if factor == 1 { String::new() } else { format!(" at 1/{factor} of its size") };
+        let found = format!("{} interest points{size}, found by {}", features.len(), backend.name());
         match output {
             Some(_) if self.run.quiet => {}
             Some(output) => terminal::print(&format!("{found}; see {}\n", output.folder().display()))?,

@@ -21,7 +21,8 @@ Exit codes:
   0  all is done
   1  the work failed: a file, a picture or a device is not as it has to be
   2  usage: an option that does not exist, or whose value lies outside its range
-  3  the pair is not rectified (hsad match --force goes on all the same)";
+  3  the pair is not rectified (hsad match --force goes on all the same)
+130  interrupted: nothing half done is left";
 
 /// Stereo depth from two photographs, on any GPU
 #[derive(Parser)]
@@ -42,6 +43,7 @@ enum Command {
 impl Cli {
     /// Does what was asked.
     pub fn run(self) -> anyhow::Result<()> {
+        output::clean_up_when_interrupted()?;
         match self.command {
             Command::Match(command) => command.run(),
             Command::Features(command) => command.run(),

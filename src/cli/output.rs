@@ -4,12 +4,38 @@ use std::{
     fs::{self, File},
     io::{self, BufWriter},
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
 };
 
 use hsad::{
     Error, Result,
-    io::atomic::{Staged, temporary_in},
+    io::atomic::{self, Staged, temporary_in},
 };
+
+/// Folders that were created for a run, the deepest first.
+static CREATED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Leaves nothing half done behind when the process is interrupted: the handler runs in a thread of
+/// its own, and the process ends without dropping anything.
+///
+/// # Errors
+/// Where the system has no such signals.
+pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
+    ctrlc::set_handler(|| {
+        atomic::abandon();
+        remove_empty(&CREATED.lock().unwrap_or_else(PoisonError::into_inner));
+        // What a shell reports for a program that ended by SIGINT.
+        std::process::exit(130);
+    })?;
+    Ok(())
+}
+
+/// Only an empty folder can be removed, so results are safe.
+fn remove_empty(folders: &[PathBuf]) {
+    for folder in folders {
+        let _ = fs::remove_dir(folder);
+    }
+}
 
 /// Collects files. Unless [`Self::finish`] is reached, none of them appears, and folders that were
 /// created for them go again.
@@ -35,7 +61,8 @@ impl Output {
             return Err(failed("the results need a folder", io::ErrorKind::NotADirectory.into()));
         }
         let missing = |path: &&Path| *path != Path::new("") && !path.exists();
-        let created = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let created: Vec<_> = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        CREATED.lock().unwrap_or_else(PoisonError::into_inner).extend(created.iter().cloned());
         // From here on what was created is removed again, whatever fails.
         let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
         fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
@@ -80,10 +107,7 @@ impl Output {
 impl Drop for Output {
     fn drop(&mut self) {
         self.staged.clear();
-        for folder in &self.created {
-            // Only an empty folder can be removed, so results are safe.
-            let _ = fs::remove_dir(folder);
-        }
+        remove_empty(&self.created);
     }
 }
 

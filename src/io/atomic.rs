@@ -3,7 +3,9 @@
 use std::{
     fs::{self, File, OpenOptions},
     io::{self, BufWriter, Write},
+    mem,
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
 };
 
 use crate::error::{Error, Result};
@@ -81,6 +83,20 @@ fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     Ok((Some((temporary, target)), written))
 }
 
+/// Every temporary file that was made, also those that are gone or in their place by now.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the temporary files that are not in their place yet. For a process that is interrupted and
+/// ends without dropping anything: from here on no thread can make another.
+pub fn abandon() {
+    let temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
+    for path in temporaries.iter() {
+        // Most are gone already.
+        let _ = fs::remove_file(path);
+    }
+    mem::forget(temporaries);
+}
+
 /// A file in `folder` that is gone once dropped: also how to find out, before any work, whether
 /// files can be written there.
 ///
@@ -96,7 +112,11 @@ pub fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     // The temporary file's name in these errors would say nothing to anyone.
-    builder.prefix(".hsad-").tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))
+    builder.prefix(".hsad-");
+    let mut temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
+    let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
+    temporaries.push(file.path().into());
+    Ok(file)
 }
 
 fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {

@@ -80,16 +80,19 @@ impl Calibration {
         }
         let size = match (entries.get("width"), entries.get("height")) {
             (Some(width), Some(height)) => Some((width.side()?, height.side()?)),
-            _ => None,
+            (None, None) => None,
+            (Some(alone), None) | (None, Some(alone)) => return Err(alone.wrong("there with both width and height")),
         };
-        Ok(Self {
+        let calibration = Self {
             focal: left.focal,
             baseline: 1e-3 * entries.required("baseline")?.positive("a distance in mm above 0")?,
             doffs: entries.required("doffs")?.number("a number of pixels")?,
             cx: left.cx,
             cy: left.cy,
             size,
-        })
+        };
+        calibration.validate().map_err(|error| malformed(path, error.to_string()))?;
+        Ok(calibration)
     }
 
     /// Refuses what no pair of cameras can have.
@@ -100,12 +103,15 @@ impl Calibration {
         let check = |name, value: f64, ok: bool, rule: &str| {
             if ok { Ok(()) } else { Err(Error::Parameter { name, value: value.to_string(), expected: rule.into() }) }
         };
-        let positive = |value: f64| value.is_finite() && value > 0.0;
-        check("the focal length", self.focal, positive(self.focal), "it must be a number of pixels above 0")?;
-        check("the baseline", self.baseline, positive(self.baseline), "it must be a number of metres above 0")?;
-        check("doffs", self.doffs, self.doffs.is_finite(), "it must be a number of pixels")?;
-        check("cx", self.cx, self.cx.is_finite(), "it must be a number of pixels")?;
-        check("cy", self.cy, self.cy.is_finite(), "it must be a number of pixels")
+        // Beyond a thousand kilometres or a million pixels lies a mistake, not a camera; depths of such
+        // numbers would all be 0 or infinite.
+        let positive = |value: f64| (1e-6..=1e6).contains(&value);
+        let within = |value: f64| value.abs() <= 1e6;
+        check("the focal length", self.focal, positive(self.focal), "it must be 10^-6 to 10^6 pixels")?;
+        check("the baseline", self.baseline, positive(self.baseline), "it must be 10^-6 to 10^6 metres")?;
+        check("doffs", self.doffs, within(self.doffs), "it must be -10^6 to 10^6 pixels")?;
+        check("cx", self.cx, within(self.cx), "it must be -10^6 to 10^6 pixels")?;
+        check("cy", self.cy, within(self.cy), "it must be -10^6 to 10^6 pixels")
     }
 
     /// Refuses pictures of another size than the one that this holds for: scaled pictures have
@@ -289,6 +295,9 @@ mod tests {
             ("baseline=193.001", "baseline=inf", "line 4"),
             ("baseline=193.001", "baseline=5e-324", "line 4"),
             ("height=497", "height=0", "line 6: height is '0'"),
+            ("height=497\n", "", "line 5: width is '741', but it must be there with both width and height"),
+            ("doffs=32.778", "doffs=-1e300", "doffs"),
+            ("baseline=193.001", "baseline=1e308", "the baseline"),
             ("width=741", "width=-741", "line 5"),
             ("ndisp=70", "doffs=70", "line 7: doffs is there twice"),
             ("cam0=[999.421", "cam0=[-999.421", "line 1: cam0"),
@@ -308,9 +317,9 @@ mod tests {
     fn numbers_are_validated() {
         let error =
             |focal, baseline, doffs| Calibration::centred(focal, baseline, doffs, (9, 9)).unwrap_err().to_string();
-        assert_eq!(error(0.0, 1.0, 0.0), "the focal length is 0, but it must be a number of pixels above 0");
-        assert_eq!(error(1.0, f64::NAN, 0.0), "the baseline is NaN, but it must be a number of metres above 0");
-        assert_eq!(error(1.0, 1.0, f64::INFINITY), "doffs is inf, but it must be a number of pixels");
+        assert_eq!(error(0.0, 1.0, 0.0), "the focal length is 0, but it must be 10^-6 to 10^6 pixels");
+        assert_eq!(error(1.0, f64::NAN, 0.0), "the baseline is NaN, but it must be 10^-6 to 10^6 metres");
+        assert_eq!(error(1.0, 1.0, f64::INFINITY), "doffs is inf, but it must be -10^6 to 10^6 pixels");
     }
 
     #[test]

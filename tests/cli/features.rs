@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use hsad::io::load;
+use hsad::{image::Plane, io::load};
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 
-use crate::common::{folder, hsad, hsad_without_driver, names, scene};
+use crate::common::{folder, grey_png, hsad, hsad_without_driver, names, noise, scene};
 
 const HEADER: &str = "x,y,scale,orientation,response,dark";
 
@@ -66,4 +66,27 @@ fn without_a_driver_the_cpu_works_and_says_so() {
     let mut command = hsad_without_driver();
     command.arg("features").arg(scene("weak", "left.png"));
     command.assert().success().stdout(contains(HEADER)).stderr(contains("warning: the CPU does the work"));
+}
+
+#[test]
+fn large_pictures_are_reduced_unless_told_otherwise() {
+    let folder = folder();
+    let path = folder.path().join("large.png");
+    // Blobs of 16 px, which are there at either size.
+    let blobs = noise(125, 75, 5);
+    grey_png(&path, &Plane::from_fn(2000, 1200, |x, y| blobs.get(x / 16, y / 16)));
+    let run = |option: &[&str]| {
+        let mut command = hsad();
+        command.arg("features").arg(&path).args(option).args(["--device", "cpu", "--upright"]);
+        let output = command.output().unwrap();
+        assert!(output.status.success());
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (table, note) = run(&[]);
+    assert!(note.contains("interest points at 1/2 of its size"), "{note}");
+    // Places are those of the whole picture all the same.
+    let columns = table.lines().skip(1).map(|line| line.split(',').next().unwrap().parse::<f32>().unwrap());
+    assert!(columns.fold(0.0, f32::max) > 1500.0);
+    let (_, note) = run(&["--full-size", "--octaves", "1"]);
+    assert!(!note.contains("of its size"), "{note}");
 }

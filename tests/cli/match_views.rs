@@ -236,3 +236,29 @@ fn other_kinds_of_pictures_are_read() {
     // Both are read to the same grey values.
     match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().success().stderr(contains("the same picture"));
 }
+
+#[cfg(unix)]
+#[test]
+fn nothing_is_left_after_an_interruption() {
+    use std::{process, thread, time::Duration};
+
+    let folder = folder();
+    let [left, right, out] = ["left.png", "right.png", "out/new"].map(|name| folder.path().join(name));
+    // The twins take a minute for this pair.
+    for path in [&left, &right] {
+        grey_png(path, &noise(1500, 1300, 3));
+    }
+    let mut run = process::Command::new(assert_cmd::cargo::cargo_bin!("hsad"))
+        .args(["match", "--device", "cpu", "--disparities", "1000", "--force", "--quiet", "-o"])
+        .args([&out, &left, &right])
+        .spawn()
+        .unwrap();
+    while !out.exists() {
+        assert!(run.try_wait().unwrap().is_none(), "ended before it was interrupted");
+        thread::sleep(Duration::from_millis(5));
+    }
+    thread::sleep(Duration::from_millis(200));
+    assert!(process::Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(!folder.path().join("out").exists(), "a folder is left");
+}
