@@ -42,46 +42,8 @@ struct Params {
 // A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
 @group(0) @binding(2) var<storage, read_write> matches: array<i32>;
 
-const NOTHING = 0xffffffffu;
-const INDEX_MASK = (1u << SHIFT) - 1u;
-
 // A number for each of a step's four disparities and each pixel of a row of the tile.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
-
-// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING. With
-// FULL = 0 only `before` is used, for the best of all.
-struct Search {
-    // The last key seen, and the best of those before it.
-    previous: vec4<u32>,
-    before: vec4<u32>,
-    // The best that is not a direct neighbour of the winner.
-    rival: vec4<u32>,
-    // The winner's two neighbours.
-    below: vec4<u32>,
-    above: vec4<u32>,
-}
-
-fn best_of(s: Search) -> vec4<u32> {
-    return select(min(s.previous, s.before), s.before, FULL == 0);
-}
-
-// `wins`: this key is the best so far; `last_won`: the previous one was, up to then.
-fn consider(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -> Search {
-    let nothing = vec4<u32>(NOTHING);
-    var next = s;
-    if FULL == 0 {
-        next.before = min(s.before, key);
-        return next;
-    }
-    next.previous = key;
-    next.before = best_of(s);
-    // Next to the winner so far a key is its neighbour, further on its rival; a new winner's rival is
-    // the best of what came before its neighbour.
-    next.rival = min(s.rival, select(select(key, nothing, last_won), s.before, wins));
-    next.below = select(s.below, s.previous, wins);
-    next.above = select(select(s.above, key, last_won), nothing, wins);
-    return next;
-}
 
 // What is ored to the costs of a step for pixels from column x on: the disparity's index; or, where
 // it leads out of the picture or the range, all ones.
@@ -163,30 +125,6 @@ fn row_sums(a: array<vec4<i32>, WORDS>, searched: array<u32, WORDS + 1>) -> Cost
         }
     }
     return sums;
-}
-
-// The exact quotient, rounded down, where it is below 2^16. By way of floats, since software drivers
-// divide integers lane by lane: the estimate is off by one at most, whatever the rounding.
-fn quotient(numerator: u32, divisor: u32) -> u32 {
-    let estimate = u32(f32(numerator) / f32(divisor));
-    let rest = i32(numerator - estimate * divisor);
-    return estimate - select(0u, 1u, rest < 0) + select(0u, 1u, rest >= i32(divisor));
-}
-
-// The minimum's place between its neighbours' costs, in 1/256 px from the winner, -128 to 128: the
-// nearest integer to 128 (left - right) / divisor, halves up.
-fn subpixel(below: u32, best: u32, above: u32) -> i32 {
-    let left = below - best;
-    let right = above - best;
-    var divisor = 0u;
-    if INTERPOLATION == PARABOLA {
-        divisor = left + right;
-    } else if INTERPOLATION == EQUIANGULAR {
-        divisor = max(left, right);
-    }
-    // 128 is added before the division, and taken away after it, to keep it unsigned.
-    let nearest = i32(quotient(256u * (left - right) + 257u * divisor, max(2u * divisor, 1u))) - 128;
-    return select(nearest, 0, divisor == 0u);
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
@@ -272,22 +210,4 @@ fn finish(x: u32, y: u32, s: Search) {
     if FULL != 0 {
         matches[params.confidence_offset + y * ((params.width + 3u) / 4u) + x / 4u] = i32(word);
     }
-}
-
-// The disparity of a pixel, as bits, and its confidence.
-fn answer(best: u32, rival: u32, below: u32, above: u32) -> vec2<u32> {
-    let whole = (params.min_disparity + i32(best & INDEX_MASK)) * SCALE;
-    let exists = best != NOTHING;
-    if FULL == 0 {
-        return vec2<u32>(u32(select(NONE, whole, exists)), 0u);
-    }
-    let cost = best >> SHIFT;
-    let rival_cost = rival >> SHIFT;
-    let unrivalled = rival == NOTHING;
-    let unique = params.uniqueness == 0u || unrivalled || rival_cost * 100u > cost * (100u + params.uniqueness);
-    let has_neighbours = below != NOTHING && above != NOTHING;
-    let fraction = select(0, subpixel(below >> SHIFT, cost, above >> SHIFT), has_neighbours);
-    let margin = select(quotient(254u * (rival_cost - cost), max(rival_cost, 1u)), 0u, unrivalled);
-    let holds = exists && unique;
-    return vec2<u32>(u32(select(NONE, whole + fraction, holds)), select(0u, 1u + margin, holds));
 }

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{
-    config::{DenseConfig, Interpolation, View},
+    config::{DenseConfig, View},
     pad::PadParams,
 };
 use crate::{
@@ -97,7 +97,11 @@ impl BlockMatch {
         };
         Stage {
             name: "block_match",
-            source: include_str!("../../shaders/block_match.wgsl"),
+            source: concat!(
+                include_str!("../../shaders/shared/quotient.wgsl"),
+                include_str!("../../shaders/shared/selection.wgsl"),
+                include_str!("../../shaders/block_match.wgsl")
+            ),
             bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
@@ -118,14 +122,7 @@ impl BlockMatch {
                 ("FULL", (wanted == Wanted::Matches).into()),
                 ("PARABOLA", 1),
                 ("EQUIANGULAR", 2),
-                (
-                    "INTERPOLATION",
-                    match config.interpolation {
-                        Interpolation::None => 0,
-                        Interpolation::Parabola => 1,
-                        Interpolation::Equiangular => 2,
-                    },
-                ),
+                ("INTERPOLATION", config.interpolation.code()),
             ],
         }
     }

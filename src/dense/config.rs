@@ -38,6 +38,17 @@ pub enum Interpolation {
     Equiangular,
 }
 
+impl Interpolation {
+    /// What the kernels know it by.
+    pub(super) fn code(self) -> i64 {
+        match self {
+            Self::None => 0,
+            Self::Parabola => 1,
+            Self::Equiangular => 2,
+        }
+    }
+}
+
 /// Block matching and its checks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DenseConfig {

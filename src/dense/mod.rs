@@ -3,29 +3,45 @@
 //! padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) for both views ->
 //! left-right consistency. All of it is integer arithmetic and equals the CPU twins bit for bit.
 
+mod band;
 mod block_match;
+mod census;
 mod config;
 mod consistency;
+mod cost;
 mod matcher;
 mod pad;
+mod path;
+mod select;
 
 use crate::{disparity::DisparityRange, gpu::Stage};
 
+pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
+pub use census::{Brightness, Census};
 pub use config::{DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
+pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
+pub use path::{Direction, Path, Penalties};
+pub use select::Select;
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, for what each view is asked for.
 pub fn stages() -> Vec<Stage> {
-    let mut stages = vec![Pad::stage(), Consistency::stage()];
+    let mut stages = vec![Pad::stage(), Consistency::stage(), Census::stage()];
     for window in (3..=31).step_by(2) {
         let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
         let config = DenseConfig { window, ..DenseConfig::new(DisparityRange { min: 0, count: 1 }) };
         let asked = [(View::Left, Wanted::Matches), (View::Right, Wanted::Winners)];
         stages.extend(asked.map(|(view, wanted)| BlockMatch::stage(&config, view, wanted, tile)));
     }
+    let part = Difference { weight: 1, limit: 1 };
+    let cost = Cost { census: 1, difference: part, gradient: part };
+    stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+    let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
+    stages.extend(Direction::ALL.map(|direction| Path::stage(&penalties, direction, 2)));
+    stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| Select::stage(4, Interpolation::Parabola, wanted)));
     stages
 }

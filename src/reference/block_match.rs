@@ -73,7 +73,7 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
 }
 
 /// The fixed-point disparity and the confidence that follow from a pixel's costs.
-fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
+pub(super) fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
     let candidates = || costs.iter().enumerate().filter_map(|(index, &cost)| Some((cost?, index)));
     let Some((best, winner)) = candidates().min() else {
         return (NONE, 0);

@@ -4,7 +4,9 @@
 //! Integer stages equal their kernels bit for bit.
 
 mod block_match;
+mod census;
 mod consistency;
+mod cost;
 mod dense;
 pub mod descriptor;
 pub mod detector;
@@ -17,9 +19,15 @@ pub mod luma;
 pub mod nonmax;
 pub mod orientation;
 mod pad;
+mod path;
+mod select;
 pub mod workgroups;
 
 pub use block_match::{block_match, cost, winners};
+pub use census::{brightened, census};
 pub use consistency::check_consistency;
+pub use cost::cost_volume;
 pub use dense::compute_dense;
 pub use pad::padded;
+pub use path::path;
+pub use select::select;

@@ -5,8 +5,10 @@
 #![cfg(feature = "cli")]
 
 mod block_match;
+mod census;
 mod common;
 mod consistency;
+mod cost;
 mod descriptor;
 mod detector;
 mod hessian;
@@ -17,4 +19,6 @@ mod matcher;
 mod nonmax;
 mod orientation;
 mod pad;
+mod path;
+mod select;
 mod workgroups;

@@ -1,0 +1,141 @@
+//! A path of semi-global matching. `shaders/path.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{band::VolumeBand, cost::MAX_COST};
+use crate::{
+    error::{Error, Result},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
+
+const WORKGROUP: u32 = 16;
+
+/// What changes of the disparity along a path cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Penalties {
+    /// A change by one.
+    pub p1: u32,
+    /// A larger one where the luma stays the same, at most 128.
+    pub p2: u32,
+    /// A larger one where the luma changes, at least: `p1` to `p2`.
+    pub least_p2: u32,
+    /// The change of luma that halves `p2`, 1 to 255.
+    pub p2_scale: u32,
+}
+
+impl Penalties {
+    /// The penalty for a jump where the luma changes by `change`: `p2 scale / (scale + change)`, rounded
+    /// down, or the least.
+    pub fn p2_at(&self, change: u32) -> u32 {
+        (self.p2 * self.p2_scale / (self.p2_scale + change)).max(self.least_p2)
+    }
+
+    /// Refuses what would not fit in the volumes' eight bits.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the rule.
+    pub fn validate(&self) -> Result<()> {
+        let check = |name, value: u32, range: std::ops::RangeInclusive<u32>| {
+            if range.contains(&value) {
+                return Ok(());
+            }
+            let expected = format!("it must be {} to {}", range.start(), range.end());
+            Err(Error::Parameter { name, value: value.to_string(), expected })
+        };
+        check("P2", self.p2, 1..=255 - MAX_COST)?;
+        check("the least P2", self.least_p2, 1..=self.p2)?;
+        check("P1", self.p1, 0..=self.least_p2)?;
+        check("the scale of P2", self.p2_scale, 1..=255)
+    }
+}
+
+/// From where to where a path goes: to the next column and row, each -1, 0 or 1, not both 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Direction {
+    /// Columns a pixel.
+    pub dx: i32,
+    /// Rows a pixel.
+    pub dy: i32,
+}
+
+impl Direction {
+    /// Along the rows and the columns first, then aslant: those of the first four or of all eight are used.
+    pub const ALL: [Self; 8] = {
+        const fn d(dx: i32, dy: i32) -> Direction {
+            Direction { dx, dy }
+        }
+        [d(1, 0), d(-1, 0), d(0, 1), d(0, -1), d(1, 1), d(-1, -1), d(1, -1), d(-1, 1)]
+    };
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    width: u32,
+    rows: u32,
+    first_row: u32,
+    cost_start: u32,
+    path_start: u32,
+    goes_on: u32,
+}
+
+/// The kernel of a path in one direction, for one number of disparities.
+pub struct Path {
+    kernel: Kernel,
+    direction: Direction,
+}
+
+impl Path {
+    /// What the kernel is made of, for `words` words a pixel.
+    pub fn stage(penalties: &Penalties, direction: Direction, words: u32) -> Stage {
+        Stage {
+            name: "path",
+            source: concat!(
+                include_str!("../../shaders/shared/quotient.wgsl"),
+                include_str!("../../shaders/path.wgsl")
+            ),
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP", WORKGROUP.into()),
+                ("WORDS", words.into()),
+                ("DX", direction.dx.into()),
+                ("DY", direction.dy.into()),
+                ("P1", penalties.p1.into()),
+                ("P2", penalties.p2.into()),
+                ("LEAST_P2", penalties.least_p2.into()),
+                ("P2_SCALE", penalties.p2_scale.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &wgpu::Device, penalties: &Penalties, direction: Direction, words: u32) -> Self {
+        Self { kernel: Kernel::new(device, &Self::stage(penalties, direction, words)), direction }
+    }
+
+    /// Follows all lines through a band of `costs`. The path's costs stand from word `start` of `paths` on;
+    /// with `goes_on` the row before it in the path's direction holds where lines come from.
+    #[expect(clippy::too_many_arguments, reason = "three buffers, each of one kind, and a place in one")]
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        band: &VolumeBand,
+        reference: &wgpu::Buffer,
+        costs: &wgpu::Buffer,
+        paths: &wgpu::Buffer,
+        start: u32,
+        goes_on: bool,
+    ) -> Dispatch {
+        let params = Params {
+            width: band.width,
+            rows: band.rows,
+            first_row: band.first_row,
+            cost_start: 0,
+            path_start: start,
+            goes_on: goes_on.into(),
+        };
+        let lines = if self.direction.dy == 0 { band.rows } else { band.width };
+        let params = uniform_buffer(device, "path", &params);
+        self.kernel.dispatch(device, &[&params, reference, costs, paths], [lines.div_ceil(WORKGROUP), 1, 1])
+    }
+}

@@ -1,0 +1,25 @@
+//! From the costs of all paths to disparities, from the definition.
+
+use super::block_match::decide;
+use crate::{
+    dense::{Dense, DenseConfig},
+    image::Plane,
+};
+
+/// For each of `size` pixels the disparity whose costs on all `paths` add up to the least, unless its best rival is too
+/// close. Ties go to the smaller disparity.
+pub fn select(paths: &[Vec<u8>], (width, height): (u32, u32), config: &DenseConfig) -> Dense {
+    let count = config.range.count.next_multiple_of(4) as usize;
+    let answers: Vec<(i32, u8)> = (0..width as usize * height as usize)
+        .map(|pixel| {
+            let sum = |d| Some(paths.iter().map(|path| u32::from(path[pixel * count + d])).sum());
+            let sums: Vec<Option<u32>> = (0..config.range.count as usize).map(sum).collect();
+            decide(&sums, config)
+        })
+        .collect();
+    let at = |x: u32, y: u32| answers[(y * width + x) as usize];
+    Dense {
+        disparity: Plane::from_fn(width, height, |x, y| at(x, y).0),
+        confidence: Plane::from_fn(width, height, |x, y| at(x, y).1),
+    }
+}
