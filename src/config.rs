@@ -1,7 +1,7 @@
 //! Everything that can be chosen for a pair, and presets of it.
 
 use crate::{
-    dense::{DenseConfig, Interpolation, View},
+    dense::{Aggregation, Brightness, DenseConfig, Interpolation, View},
     disparity::DisparityRange,
     error::{Error, Result},
     features::FeatureConfig,
@@ -25,8 +25,8 @@ pub struct Config {
     pub strongest: Option<usize>,
     /// The view whose pixels get a disparity.
     pub reference: View,
-    /// Side of the matching window in pixels, odd, 3 to 31.
-    pub window: u32,
+    /// How matching costs are put together.
+    pub aggregation: Aggregation,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
     /// See [`crate::dense::DenseConfig::uniqueness`].
@@ -57,10 +57,19 @@ impl Config {
         self.dense(range).validate()
     }
 
+    /// The side of the matching window: one pixel, where paths put the costs together.
+    pub fn window(&self) -> u32 {
+        match self.aggregation {
+            Aggregation::Window(side) => side,
+            Aggregation::Paths(_) => 1,
+        }
+    }
+
     /// What the dense half is asked to do in `range`.
     pub fn dense(&self, range: DisparityRange) -> DenseConfig {
         DenseConfig {
-            window: self.window,
+            aggregation: self.aggregation,
+            brightness: Brightness::SAME,
             range,
             reference: self.reference,
             interpolation: self.interpolation,
@@ -98,7 +107,7 @@ impl Preset {
             least: None,
             strongest: None,
             reference: View::Left,
-            window: 11,
+            aggregation: Aggregation::Window(11),
             interpolation: Interpolation::Equiangular,
             uniqueness: 10,
             consistency: Some(256),
@@ -111,7 +120,7 @@ impl Preset {
                 least: Some(0),
                 strongest: Some(10),
                 reference: View::Right,
-                window: 7,
+                aggregation: Aggregation::Window(7),
                 interpolation: Interpolation::Parabola,
                 uniqueness: 0,
                 consistency: None,
@@ -132,7 +141,7 @@ mod tests {
         }
         let standard = || Preset::Standard.config();
         let bad = [
-            (Config { window: 8, ..standard() }, "window is 8"),
+            (Config { aggregation: Aggregation::Window(8), ..standard() }, "window is 8"),
             (Config { strongest: Some(0), ..standard() }, "strongest is 0"),
             (Config { uniqueness: 101, ..standard() }, "uniqueness is 101"),
             (Config { least: Some(i32::MIN), ..standard() }, "the disparity range"),

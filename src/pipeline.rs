@@ -156,13 +156,13 @@ fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange
 }
 
 fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
-    if width.min(height) >= config.window {
+    if width.min(height) >= config.window() {
         return Ok(());
     }
     Err(Error::TooSmall {
         width,
         height,
-        what: format!("a window of {0}x{0}", config.window),
+        what: format!("a window of {0}x{0}", config.window()),
         way_out: "use a larger picture or a smaller --window".into(),
     })
 }

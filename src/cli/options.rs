@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
     config::{Config, Preset},
-    dense::{Interpolation, View},
+    dense::{Aggregation, Interpolation, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -141,7 +141,9 @@ impl MatchOptions {
         }
         config.strongest = self.strongest.or(config.strongest);
         config.reference = self.reference.map_or(config.reference, View::from);
-        config.window = self.window.unwrap_or(config.window);
+        if let Some(side) = self.window {
+            config.aggregation = Aggregation::Window(side);
+        }
         config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);
         config.uniqueness = self.uniqueness.unwrap_or(config.uniqueness);
         if let Some(pixels) = self.max_lr_difference {

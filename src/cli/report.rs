@@ -2,7 +2,7 @@
 
 use hsad::{
     config::Config,
-    dense::{Interpolation, View},
+    dense::{Aggregation, Interpolation, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     pipeline::RangeSource,
@@ -54,7 +54,7 @@ fn parameters(config: &Config) -> Value {
         least,
         strongest,
         reference,
-        window,
+        aggregation,
         interpolation,
         uniqueness,
         consistency,
@@ -63,7 +63,7 @@ fn parameters(config: &Config) -> Value {
     let matching = &seeding.matching;
     json!({
         "reference": match reference { View::Left => "left", View::Right => "right" },
-        "window": window,
+        "window": match aggregation { Aggregation::Window(side) => Some(side), Aggregation::Paths(_) => None },
         "range": range.map(ends),
         "min_disparity": least,
         "interpolation": match interpolation {

@@ -3,7 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::pad::PadParams;
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::{
+    error::{Error, Result},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
@@ -19,6 +22,20 @@ pub struct Brightness {
 impl Brightness {
     /// No change.
     pub const SAME: Self = Self { gain: 256, offset: 0 };
+
+    /// Refuses what 32 bits do not hold.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the rule.
+    pub fn validate(&self) -> Result<()> {
+        for (name, value) in [("the gain", self.gain), ("the offset", self.offset)] {
+            if value.unsigned_abs() > 1 << 20 {
+                let expected = "it must be -2^20 to 2^20, in 1/256".into();
+                return Err(Error::Parameter { name, value: value.to_string(), expected });
+            }
+        }
+        Ok(())
+    }
 }
 
 #[repr(C)]

@@ -1,5 +1,6 @@
 //! What the dense half is asked to do.
 
+use super::{Brightness, SemiGlobal};
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
@@ -49,11 +50,23 @@ impl Interpolation {
     }
 }
 
-/// Block matching and its checks.
+/// How the costs of single pixels become those by which disparities are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aggregation {
+    /// Block matching: the sum of absolute differences over a square window of this side, odd, 3 to 31
+    /// pixels.
+    Window(u32),
+    /// Semi-global matching.
+    Paths(SemiGlobal),
+}
+
+/// Dense matching and its checks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DenseConfig {
-    /// Side of the square window in pixels, odd, 3 to 31.
-    pub window: u32,
+    /// How costs are put together.
+    pub aggregation: Aggregation,
+    /// What makes the right view as bright as the left one, before lumas are compared.
+    pub brightness: Brightness,
     /// The disparities to search.
     pub range: DisparityRange,
     /// The view whose pixels get a disparity.
@@ -72,7 +85,8 @@ impl DenseConfig {
     /// Plain block matching over `range`: a 7x7 window, the left view, no checks.
     pub fn new(range: DisparityRange) -> Self {
         Self {
-            window: 7,
+            aggregation: Aggregation::Window(7),
+            brightness: Brightness::SAME,
             range,
             reference: View::Left,
             interpolation: Interpolation::Equiangular,
@@ -81,9 +95,23 @@ impl DenseConfig {
         }
     }
 
+    /// The same with windows of this side.
+    #[must_use]
+    pub fn with_window(self, side: u32) -> Self {
+        Self { aggregation: Aggregation::Window(side), ..self }
+    }
+
+    /// The side of the window over which costs are summed up: one pixel, where paths do it.
+    pub fn window(&self) -> u32 {
+        match self.aggregation {
+            Aggregation::Window(side) => side,
+            Aggregation::Paths(_) => 1,
+        }
+    }
+
     /// Half the window without its centre.
     pub fn radius(&self) -> u32 {
-        self.window / 2
+        self.window() / 2
     }
 
     /// The disparities that are searched in a picture of this width: those of the range that give at
@@ -104,14 +132,17 @@ impl DenseConfig {
         let range = DisparityRange::inclusive(first, last)?;
         let limit = (1 << self.index_bits()) - 1;
         if range.count > limit {
-            return refuse(format!("at most {limit} disparities fit beside the cost of a window of {}", self.window));
+            return refuse(format!("at most {limit} disparities fit beside the cost of a window of {}", self.window()));
         }
         Ok(range)
     }
 
     /// The bits of a 32-bit key that the largest cost of the window leaves for the disparity's index.
     pub(crate) fn index_bits(&self) -> u32 {
-        (255 * self.window * self.window).leading_zeros()
+        match self.aggregation {
+            Aggregation::Window(side) => (255 * side * side).leading_zeros(),
+            Aggregation::Paths(_) => SemiGlobal::INDEX_BITS,
+        }
     }
 
     /// Refuses what no kernel could work with.
@@ -127,8 +158,14 @@ impl DenseConfig {
                 Err(Error::Parameter { name, value: value.to_string(), expected: expected.into() })
             }
         };
-        let odd = self.window % 2 == 1 && (3..=31).contains(&self.window);
-        check(odd, "window", self.window, "it must be odd and 3 to 31")?;
+        match &self.aggregation {
+            Aggregation::Window(side) => {
+                let odd = side % 2 == 1 && (3..=31).contains(side);
+                check(odd, "window", *side, "it must be odd and 3 to 31")?;
+            }
+            Aggregation::Paths(semi_global) => semi_global.validate()?,
+        }
+        self.brightness.validate()?;
         check(self.uniqueness <= 100, "uniqueness", self.uniqueness, "it must be 0 to 100 per cent")?;
         check(
             self.consistency.is_none_or(|d| d <= 1 << 16),

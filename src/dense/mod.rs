@@ -5,6 +5,7 @@
 
 mod band;
 mod block_match;
+mod blocks;
 mod census;
 mod config;
 mod consistency;
@@ -12,20 +13,23 @@ mod cost;
 mod matcher;
 mod pad;
 mod path;
+mod plan;
 mod select;
+mod semi_global;
 
 use crate::{disparity::DisparityRange, gpu::Stage};
 
 pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
 pub use census::{Brightness, Census};
-pub use config::{DenseConfig, Interpolation, View};
+pub use config::{Aggregation, DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 pub use path::{Direction, Path, Penalties};
 pub use select::Select;
+pub use semi_global::{Paths, SemiGlobal};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, for what each view is asked for.
@@ -33,7 +37,7 @@ pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Consistency::stage(), Census::stage()];
     for window in (3..=31).step_by(2) {
         let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
-        let config = DenseConfig { window, ..DenseConfig::new(DisparityRange { min: 0, count: 1 }) };
+        let config = DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
         let asked = [(View::Left, Wanted::Matches), (View::Right, Wanted::Winners)];
         stages.extend(asked.map(|(view, wanted)| BlockMatch::stage(&config, view, wanted, tile)));
     }

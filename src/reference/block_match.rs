@@ -65,7 +65,7 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
         // The pixels whose partner lies in the picture.
         let (first, last) = ((-shift).max(0), width - 1 - shift.max(0));
         let columns: Vec<u32> = (first - radius..=last + radius).map(column).collect();
-        for (x, window) in (first..).zip(columns.windows(config.window as usize)) {
+        for (x, window) in (first..).zip(columns.windows(config.window() as usize)) {
             costs[x as usize][index as usize] = Some(window.iter().sum());
         }
     }

@@ -1,8 +1,8 @@
 //! The dense half in one call.
 
-use super::{block_match, check_consistency, winners};
+use super::{block_match, census, check_consistency, cost_volume, path, select};
 use crate::{
-    dense::{Dense, DenseConfig},
+    dense::{Aggregation, Brightness, Dense, DenseConfig, Interpolation, SemiGlobal, View},
     error::{Error, Result},
     image::Luma,
 };
@@ -17,10 +17,31 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
     config.validate()?;
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
-    let mut dense = block_match(left, right, config.reference, &config);
+    let seen_from = |view: View, config: &DenseConfig| match &config.aggregation {
+        Aggregation::Window(_) => block_match(left, right, view, config),
+        Aggregation::Paths(semi_global) => match_semi_globally(left, right, view, config, semi_global),
+    };
+    let mut dense = seen_from(config.reference, &config);
     if let Some(max_difference) = config.consistency {
-        let others = winners(left, right, config.reference.other(), &config);
+        let whole = DenseConfig { interpolation: Interpolation::None, uniqueness: 0, ..config.clone() };
+        let others = seen_from(config.reference.other(), &whole).disparity;
         check_consistency(&mut dense, config.reference, &others, max_difference);
     }
     Ok(dense)
+}
+
+/// Semi-global matching of one view, without any check from the other.
+fn match_semi_globally(
+    left: &Luma,
+    right: &Luma,
+    view: View,
+    config: &DenseConfig,
+    SemiGlobal { cost, penalties, paths }: &SemiGlobal,
+) -> Dense {
+    let (left, right) = (census(left, Brightness::SAME), census(right, config.brightness));
+    let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
+    let costs = cost_volume([reference, other], view, cost, config.range);
+    let paths: Vec<_> =
+        paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect();
+    select(&paths, reference.size(), config)
 }

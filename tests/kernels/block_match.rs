@@ -44,7 +44,7 @@ fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
 }
 
 fn config(window: u32, min: i32, count: u32) -> DenseConfig {
-    DenseConfig { window, ..DenseConfig::new(DisparityRange::new(min, count).unwrap()) }
+    DenseConfig::new(DisparityRange::new(min, count).unwrap()).with_window(window)
 }
 
 fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) {

@@ -1,7 +1,9 @@
 //! The dense half as a whole, in step with the twins.
 
 use hsad::{
-    dense::{self, DenseConfig, Matcher, View},
+    dense::{
+        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, Paths, Penalties, SemiGlobal, View,
+    },
     disparity::{DisparityRange, coverage},
     error::Error,
     gpu::Gpu,
@@ -24,12 +26,27 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { uniqueness: 10, consistency: Some(256), reference, ..DenseConfig::new(range) }
 }
 
+fn semi_global(reference: View, paths: Paths) -> DenseConfig {
+    let part = |weight, limit| Difference { weight, limit };
+    let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
+    let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
+    DenseConfig {
+        aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths }),
+        brightness: Brightness { gain: 280, offset: -700 },
+        ..config(reference)
+    }
+}
+
 #[test]
 fn the_twins_end_with_the_same_bytes() {
     for (width, height) in SIZES {
         let (left, right) = pair(width, height);
-        for reference in [View::Left, View::Right] {
-            let config = config(reference);
+        for (reference, config) in [
+            (View::Left, config(View::Left)),
+            (View::Right, config(View::Right)),
+            (View::Left, semi_global(View::Left, Paths::Four)),
+            (View::Right, semi_global(View::Right, Paths::Eight)),
+        ] {
             let actual = dense::compute(gpu(), &left, &right, &config);
             let expected = compute_dense(&left, &right, &config);
             let (actual, expected) = match (actual, expected) {
@@ -46,12 +63,17 @@ fn the_twins_end_with_the_same_bytes() {
 #[test]
 fn bands_leave_no_trace() {
     let (left, right) = pair(130, 131);
-    let config = config(View::Left);
-    let whole = dense::compute(gpu(), &left, &right, &config).unwrap();
+    for config in [config(View::Left), semi_global(View::Right, Paths::Four), semi_global(View::Left, Paths::Eight)] {
+        in_bands(&left, &right, &config);
+    }
+}
+
+fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
+    let whole = dense::compute(gpu(), left, right, config).unwrap();
     assert!(coverage(&whole.disparity) > 0.3);
-    let (left, right) = (upload_luma(&left), upload_luma(&right));
+    let (left, right) = (upload_luma(left), upload_luma(right));
     for rows in [1, 7, 64, 130] {
-        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), &config, &left, &right, rows).unwrap();
+        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, &left, &right, rows).unwrap();
         assert_eq!(banded.bands(), 131_usize.div_ceil(rows as usize));
         let banded = banded.run(gpu()).unwrap();
         assert_same(&format!("bands of {rows}"), banded.disparity.data(), whole.disparity.data());
@@ -79,7 +101,7 @@ fn twice_in_one_encoder_and_after_garbage() {
 fn what_cannot_be_is_refused_by_both_alike() {
     let (left, right) = pair(40, 30);
     let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
-    let even = DenseConfig { window: 8, ..config(View::Left) };
+    let even = config(View::Left).with_window(8);
     let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
     for config in [far, even, unsure] {
         let device = dense::compute(gpu(), &left, &right, &config).unwrap_err();
@@ -108,7 +130,7 @@ fn a_pair_too_large_for_one_buffer() {
     let tile = picture(300, 200, 17);
     let right = Luma::from_fn(width, height, |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
     let left = Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
-    let config = DenseConfig { window: 3, ..DenseConfig::new(DisparityRange::new(0, 5).unwrap()) };
+    let config = DenseConfig::new(DisparityRange::new(0, 5).unwrap()).with_window(3);
     let dense = dense::compute(&strict(), &left, &right, &config).unwrap();
     // The twin on cuts of it, without the rows whose windows see the cut; the second has the border
     // between two bands in its middle.

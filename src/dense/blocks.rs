@@ -1,0 +1,97 @@
+//! Block matching: the plan.
+//!
+//! padding -> block matching of the reference view -> the other view's winners -> consistency, in bands
+//! of rows where the padded planes do not fit in a buffer; no result depends on where they are cut.
+
+use super::{
+    block_match::{BlockMatch, Layout, Tile, Wanted},
+    config::DenseConfig,
+    consistency::Consistency,
+    pad::Pad,
+    plan::{Plan, match_words},
+};
+use crate::error::{Error, Result};
+
+/// More rows than this are never matched at once, to stay below 65,535 workgroups.
+const MAX_BAND_ROWS: u32 = 8192;
+
+/// Nor are more pixel-disparities: a device that also draws the desktop is taken away from a dispatch
+/// that takes seconds, and slow ones do 10^9 of them in about one.
+const MAX_BAND_WORK: u64 = 1 << 30;
+
+/// The plan for packed `left` and `right` of `size`, in bands for which no buffer needs more than `limit` bytes, nor more
+/// than `band_rows` rows.
+pub(super) fn plan(
+    device: &wgpu::Device,
+    size: (u32, u32),
+    config: &DenseConfig,
+    [left, right]: [&wgpu::Buffer; 2],
+    (limit, band_rows): (u64, u32),
+) -> Result<Plan> {
+    let (width, height) = size;
+    let tiles = tiles(device, config);
+    let band_rows = band_rows_within(limit, size, config, &tiles, band_rows)?;
+    let view = config.reference;
+    let pad = Pad::new(device);
+    let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
+
+    let mut plan = Plan::new(height.div_ceil(band_rows) as usize);
+    let (match_words, confidence_offset) = match_words(width, band_rows);
+    let planes = plan.buffer(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
+    let matches = plan.buffer(device, "matches", match_words)?;
+    let check = match config.consistency {
+        None => None,
+        Some(max_difference) => {
+            let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tiles[1]);
+            let winners = plan.buffer(device, "winners of the other view", confidence_offset.into())?;
+            Some((find_winners, winners, Consistency::new(device), max_difference))
+        }
+    };
+
+    for first_row in (0..height).step_by(band_rows as usize) {
+        let rows = band_rows.min(height - first_row);
+        let layout = Layout::new(size, first_row, rows, config, &tiles)?;
+        let [pad_left, pad_right] = layout.padding();
+        plan.run(pad.prepare(device, pad_left, left, &planes));
+        plan.run(pad.prepare(device, pad_right, right, &planes));
+        plan.run(block_match.prepare(device, &layout, &planes, &matches, confidence_offset));
+        if let Some((find_winners, winners, consistency, limit)) = &check {
+            plan.run(find_winners.prepare(device, &layout, &planes, winners, 0));
+            let size = (width, rows);
+            plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, winners, &matches));
+        }
+        plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
+    }
+    Ok(plan)
+}
+
+/// The tiles for matches, and for the other view's winners if they are wanted.
+fn tiles(device: &wgpu::Device, config: &DenseConfig) -> Vec<Tile> {
+    let winners = config.consistency.map(|_| Wanted::Winners);
+    [Some(Wanted::Matches), winners].into_iter().flatten().map(|wanted| Tile::of(device, wanted)).collect()
+}
+
+/// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes and its
+/// work within a second or so.
+fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tiles: &[Tile], wanted: u32) -> Result<u32> {
+    let (width, height) = size;
+    let work = u64::from(width) * u64::from(config.searched(width)?.count);
+    let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
+    let mut rows = wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS));
+    loop {
+        let planes = Layout::new(size, 0, rows, config, tiles)?.words();
+        let needed = 4 * planes.max(match_words(width, rows).0);
+        if needed <= limit {
+            return Ok(rows);
+        }
+        if rows == 1 {
+            return Err(Error::TooLarge {
+                what: format!("one row of a picture {width} px wide with {} disparities", config.range.count),
+                needed,
+                limit,
+                way_out: "search fewer disparities or scale the pictures down".into(),
+            });
+        }
+        rows = rows.div_ceil(2);
+    }
+}

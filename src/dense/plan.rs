@@ -1,0 +1,102 @@
+//! What a matcher does, in order, and the memory that it does it in.
+
+use crate::{
+    error::Result,
+    gpu::{Dispatch, storage_buffer},
+};
+
+/// One thing to do.
+pub(super) enum Step {
+    /// Runs a kernel.
+    Run(Dispatch),
+    /// Copies words.
+    Copy(Copy),
+}
+
+/// Words of a buffer that go elsewhere.
+pub(super) struct Copy {
+    pub(super) from: wgpu::Buffer,
+    pub(super) from_word: u64,
+    pub(super) to: Target,
+    pub(super) to_word: u64,
+    pub(super) words: u64,
+}
+
+/// Where words go.
+pub(super) enum Target {
+    /// To a buffer of the plan.
+    Buffer(wgpu::Buffer),
+    /// To the caller's disparities, a word a pixel.
+    Disparities,
+    /// To the caller's confidences, four a word.
+    Confidences,
+}
+
+/// The steps, and how much memory they share.
+pub(super) struct Plan {
+    steps: Vec<Step>,
+    pub(super) bytes: u64,
+    /// In how many bands of rows the pair is matched.
+    pub(super) bands: usize,
+}
+
+impl Plan {
+    /// No steps yet, for so many bands.
+    pub(super) fn new(bands: usize) -> Self {
+        Self { steps: Vec::new(), bytes: 0, bands }
+    }
+
+    /// Memory for so many words, for the plan's lifetime.
+    pub(super) fn buffer(&mut self, device: &wgpu::Device, label: &'static str, words: u64) -> Result<wgpu::Buffer> {
+        self.bytes += 4 * words;
+        storage_buffer(device, label, 4 * words)
+    }
+
+    pub(super) fn run(&mut self, dispatch: Dispatch) {
+        self.steps.push(Step::Run(dispatch));
+    }
+
+    pub(super) fn copy(&mut self, copy: Copy) {
+        self.steps.push(Step::Copy(copy));
+    }
+
+    /// The answers for a band of rows that stand in `matches`, on their way to the caller.
+    pub(super) fn hand_out(&mut self, matches: &wgpu::Buffer, confidence_offset: u32, width: u32, rows: (u32, u32)) {
+        let (first_row, count) = (u64::from(rows.0), u64::from(rows.1));
+        let parts = [
+            (Target::Disparities, 0, u64::from(width)),
+            (Target::Confidences, u64::from(confidence_offset), u64::from(width.div_ceil(4))),
+        ];
+        for (to, from_word, row) in parts {
+            self.copy(Copy { from: matches.clone(), from_word, to, to_word: row * first_row, words: row * count });
+        }
+    }
+
+    /// Records all steps.
+    pub(super) fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        disparities: &wgpu::Buffer,
+        confidences: &wgpu::Buffer,
+    ) {
+        for step in &self.steps {
+            match step {
+                Step::Run(dispatch) => dispatch.record(encoder),
+                Step::Copy(Copy { from, from_word, to, to_word, words }) => {
+                    let to = match to {
+                        Target::Buffer(buffer) => buffer,
+                        Target::Disparities => disparities,
+                        Target::Confidences => confidences,
+                    };
+                    encoder.copy_buffer_to_buffer(from, 4 * from_word, to, 4 * to_word, Some(4 * words));
+                }
+            }
+        }
+    }
+}
+
+/// Words of a band's disparities and confidences, and where among them the latter begin.
+pub(super) fn match_words(width: u32, rows: u32) -> (u64, u32) {
+    let pixels = width * rows;
+    (u64::from(pixels) + u64::from(rows) * u64::from(width.div_ceil(4)), pixels)
+}
