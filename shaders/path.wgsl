@@ -20,6 +20,9 @@ struct Params {
     path_start: u32,
     // Whether the row before the band's first one holds where the lines come from.
     goes_on: u32,
+    // To the next pixel of a line, each -1, 0 or 1.
+    dx: i32,
+    dy: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -62,7 +65,7 @@ fn least(state: State) -> u32 {
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var lines = params.width;
     var pixels = params.rows;
-    if DY == 0 {
+    if params.dy == 0 {
         lines = params.rows;
         pixels = params.width;
     }
@@ -70,9 +73,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     var x = i32(id.x);
-    var y = select(0, i32(params.rows) - 1, DY < 0);
-    if DY == 0 {
-        x = select(0, i32(params.width) - 1, DX < 0);
+    var y = select(0, i32(params.rows) - 1, params.dy < 0);
+    if params.dy == 0 {
+        x = select(0, i32(params.width) - 1, params.dx < 0);
         y = i32(id.x);
     }
     let width = i32(params.width);
@@ -83,10 +86,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     // Where a line begins, all costs before it are 0.
     var luma = 0u;
     var fresh = true;
-    if DY != 0 && params.goes_on != 0u {
-        let came_from = x - DX;
+    if params.dy != 0 && params.goes_on != 0u {
+        let came_from = x - params.dx;
         if came_from >= 0 && came_from < width {
-            let pixel = (y - DY) * width + came_from;
+            let pixel = (y - params.dy) * width + came_from;
             luma = reference[u32(i32(params.first_row) * width + pixel)] & 255u;
             for (var k = 0; k < WORDS; k++) { // unroll
                 state[k + 1] = unpack(paths[params.path_start + u32(pixel) * WORDS + k]);
@@ -113,12 +116,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         state = next;
         luma = here;
-        x += DX;
-        y += DY;
+        x += params.dx;
+        y += params.dy;
         fresh = false;
-        if DX != 0 && DY != 0 {
+        if params.dx != 0 && params.dy != 0 {
             if x < 0 || x >= width {
-                x -= DX * width;
+                x -= params.dx * width;
                 fresh = true;
             }
         }

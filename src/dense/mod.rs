@@ -45,7 +45,7 @@ pub fn stages() -> Vec<Stage> {
     let cost = Cost { census: 1, difference: part, gradient: part };
     stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
-    stages.extend(Direction::ALL.map(|direction| Path::stage(&penalties, direction, 2)));
+    stages.push(Path::stage(&penalties, 2));
     stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| Select::stage(4, Interpolation::Parabola, wanted)));
     stages
 }

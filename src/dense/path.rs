@@ -77,17 +77,16 @@ struct Params {
     cost_start: u32,
     path_start: u32,
     goes_on: u32,
+    dx: i32,
+    dy: i32,
 }
 
-/// The kernel of a path in one direction, for one number of disparities.
-pub struct Path {
-    kernel: Kernel,
-    direction: Direction,
-}
+/// The kernel of a path, for one number of disparities.
+pub struct Path(Kernel);
 
 impl Path {
     /// What the kernel is made of, for `words` words a pixel.
-    pub fn stage(penalties: &Penalties, direction: Direction, words: u32) -> Stage {
+    pub fn stage(penalties: &Penalties, words: u32) -> Stage {
         Stage {
             name: "path",
             source: concat!(
@@ -98,8 +97,6 @@ impl Path {
             constants: vec![
                 ("WORKGROUP", WORKGROUP.into()),
                 ("WORDS", words.into()),
-                ("DX", direction.dx.into()),
-                ("DY", direction.dy.into()),
                 ("P1", penalties.p1.into()),
                 ("P2", penalties.p2.into()),
                 ("LEAST_P2", penalties.least_p2.into()),
@@ -109,17 +106,18 @@ impl Path {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, penalties: &Penalties, direction: Direction, words: u32) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(penalties, direction, words)), direction }
+    pub fn new(device: &wgpu::Device, penalties: &Penalties, words: u32) -> Self {
+        Self(Kernel::new(device, &Self::stage(penalties, words)))
     }
 
-    /// Follows all lines through a band of `costs`. The path's costs stand from word `start` of `paths` on;
+    /// Follows all lines of a direction through a band of `costs`. The path's costs stand from word `start` of `paths` on;
     /// with `goes_on` the row before it in the path's direction holds where lines come from.
-    #[expect(clippy::too_many_arguments, reason = "three buffers, each of one kind, and a place in one")]
+    #[expect(clippy::too_many_arguments, reason = "three buffers, each of one kind, and places in them")]
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         band: &VolumeBand,
+        direction: Direction,
         reference: &wgpu::Buffer,
         costs: &wgpu::Buffer,
         paths: &wgpu::Buffer,
@@ -133,9 +131,11 @@ impl Path {
             cost_start: 0,
             path_start: start,
             goes_on: goes_on.into(),
+            dx: direction.dx,
+            dy: direction.dy,
         };
-        let lines = if self.direction.dy == 0 { band.rows } else { band.width };
+        let lines = if direction.dy == 0 { band.rows } else { band.width };
         let params = uniform_buffer(device, "path", &params);
-        self.kernel.dispatch(device, &[&params, reference, costs, paths], [lines.div_ceil(WORKGROUP), 1, 1])
+        self.0.dispatch(device, &[&params, reference, costs, paths], [lines.div_ceil(WORKGROUP), 1, 1])
     }
 }

@@ -71,27 +71,32 @@ impl SemiGlobal {
             ("the limit of the gradient", gradient.limit),
         ] {
             if value > 1 << 12 {
-                return Err(Error::Parameter { name, value: value.to_string(), expected: "it must be 0 to 4096".into() });
+                return Err(Error::Parameter {
+                    name,
+                    value: value.to_string(),
+                    expected: "it must be 0 to 4096".into(),
+                });
             }
         }
         self.penalties.validate()
     }
 }
 
-/// What both views share: where their transforms stand, and memory for a band of volumes.
-struct Memory {
+/// What both views share: where their transforms stand, memory for a band of volumes, and a kernel.
+struct Shared {
     census: [wgpu::Buffer; 2],
     costs: wgpu::Buffer,
     /// A volume for each path, each with a row in front of it and one behind.
     paths: wgpu::Buffer,
     path_words: u64,
+    path: Path,
 }
 
 /// One view's kernels, and what it keeps from one band to the next.
 struct Side {
     view: View,
     cost: CostVolume,
-    paths: Vec<(Direction, Path)>,
+    directions: &'static [Direction],
     select: Select,
     /// The last row of each path so far; and for each band, the row below it of each path from there.
     carried: Option<wgpu::Buffer>,
@@ -122,35 +127,33 @@ pub(super) fn plan(
     let padded = plan.buffer(device, "padded plane", u64::from(padding.rows) * u64::from(padding.stride))?;
     let (pad, census) = (Pad::new(device), Census::new(device));
     let pixels = u64::from(width) * u64::from(height);
-    let transformed =
-        [plan.buffer(device, "census, left", pixels)?, plan.buffer(device, "census, right", pixels)?];
+    let transformed = [plan.buffer(device, "census, left", pixels)?, plan.buffer(device, "census, right", pixels)?];
     for ((view, out), brightness) in views.iter().zip(&transformed).zip([Brightness::SAME, config.brightness]) {
         plan.run(pad.prepare(device, padding, view, &padded));
         plan.run(census.prepare(device, size, brightness, &padded, out));
     }
 
     let path_words = row_words * (u64::from(band_rows) + 2);
-    let memory = Memory {
+    let shared = Shared {
         census: transformed,
         costs: plan.buffer(device, "costs", row_words * u64::from(band_rows))?,
         paths: plan.buffer(device, "paths", path_words * directions.len() as u64)?,
         path_words,
+        path: Path::new(device, &semi_global.penalties, bands[0].words()),
     };
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let mut side = |view: View, wanted: Wanted| -> Result<Side> {
-        let words = bands[0].words();
         let kept = (bands.len() > 1).then_some(row_words * directions.len() as u64 * (bands.len() as u64 + 1));
         let matches = match wanted {
             Wanted::Matches => plan.buffer(device, "matches", match_words)?,
             Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
         };
-        let path = |&direction| (direction, Path::new(device, &semi_global.penalties, direction, words));
         let paths = directions.len() as u32;
         let interpolation = config.interpolation;
         Ok(Side {
             view,
             cost: CostVolume::new(device, &semi_global.cost, view),
-            paths: directions.iter().map(path).collect(),
+            directions,
             select: Select::new(device, paths, interpolation, wanted, config.uniqueness),
             carried: kept.map(|words| plan.buffer(device, "paths between bands", words)).transpose()?,
             matches,
@@ -162,12 +165,12 @@ pub(super) fn plan(
     }
 
     for side in &sides {
-        side.follow_from_below(device, &mut plan, &memory, &bands);
+        side.follow_from_below(device, &mut plan, &shared, &bands);
     }
     let consistency = Consistency::new(device);
     for (index, band) in bands.iter().enumerate() {
         for side in &sides {
-            side.match_band(device, &mut plan, &memory, &bands, index, confidence_offset);
+            side.match_band(device, &mut plan, &shared, &bands, index, confidence_offset);
         }
         let matches = &sides[0].matches;
         if let (Some(limit), Some(other)) = (config.consistency, sides.get(1)) {
@@ -182,8 +185,8 @@ pub(super) fn plan(
 
 impl Side {
     /// The transforms of this view and of the other.
-    fn census<'m>(&self, memory: &'m Memory) -> [&'m wgpu::Buffer; 2] {
-        let [left, right] = &memory.census;
+    fn census<'m>(&self, shared: &'m Shared) -> [&'m wgpu::Buffer; 2] {
+        let [left, right] = &shared.census;
         match self.view {
             View::Left => [left, right],
             View::Right => [right, left],
@@ -191,23 +194,23 @@ impl Side {
     }
 
     /// Follows the paths from below from the last band to the second, and keeps the row below each band.
-    fn follow_from_below(&self, device: &wgpu::Device, plan: &mut Plan, memory: &Memory, bands: &[VolumeBand]) {
+    fn follow_from_below(&self, device: &wgpu::Device, plan: &mut Plan, shared: &Shared, bands: &[VolumeBand]) {
         let Some(carried) = &self.carried else { return };
-        let [reference, other] = self.census(memory);
+        let [reference, other] = self.census(shared);
         for (index, band) in bands.iter().enumerate().skip(1).rev() {
-            plan.run(self.cost.prepare(device, band, [reference, other], &memory.costs));
-            for (number, (direction, path)) in self.paths.iter().enumerate() {
+            plan.run(self.cost.prepare(device, band, [reference, other], &shared.costs));
+            for (number, &direction) in self.directions.iter().enumerate() {
                 if direction.dy >= 0 {
                     continue;
                 }
                 let goes_on = index + 1 < bands.len();
                 if goes_on {
-                    self.bring(plan, memory, band, number, index + 1, carried);
+                    self.bring(plan, shared, band, number, index + 1, carried);
                 }
                 let row = u64::from(band.row_words());
-                let start = number as u64 * memory.path_words + row;
-                let (costs, paths) = (&memory.costs, &memory.paths);
-                plan.run(path.prepare(device, band, reference, costs, paths, start as u32, goes_on));
+                let start = number as u64 * shared.path_words + row;
+                let (costs, paths) = (&shared.costs, &shared.paths);
+                plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start as u32, goes_on));
                 plan.copy(Copy {
                     from: paths.clone(),
                     from_word: start,
@@ -221,26 +224,26 @@ impl Side {
 
     /// Where the row is kept that a path of number `number` enters the band in front of, or behind, band `index` with.
     fn kept(&self, band: &VolumeBand, number: usize, index: usize) -> u64 {
-        u64::from(band.row_words()) * (index * self.paths.len() + number) as u64
+        u64::from(band.row_words()) * (index * self.directions.len() + number) as u64
     }
 
     /// Copies a kept row to where a path goes on from it: in front of the band, or behind it.
     fn bring(
         &self,
         plan: &mut Plan,
-        memory: &Memory,
+        shared: &Shared,
         band: &VolumeBand,
         number: usize,
         kept: usize,
         carried: &wgpu::Buffer,
     ) {
         let row = u64::from(band.row_words());
-        let before = if self.paths[number].0.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
+        let before = if self.directions[number].dy > 0 { 0 } else { u64::from(band.rows) + 1 };
         plan.copy(Copy {
             from: carried.clone(),
             from_word: self.kept(band, number, kept),
-            to: Target::Buffer(memory.paths.clone()),
-            to_word: number as u64 * memory.path_words + before * row,
+            to: Target::Buffer(shared.paths.clone()),
+            to_word: number as u64 * shared.path_words + before * row,
             words: row,
         });
     }
@@ -250,28 +253,28 @@ impl Side {
         &self,
         device: &wgpu::Device,
         plan: &mut Plan,
-        memory: &Memory,
+        shared: &Shared,
         bands: &[VolumeBand],
         index: usize,
         confidence_offset: u32,
     ) {
         let band = &bands[index];
-        let [reference, other] = self.census(memory);
-        let (costs, paths) = (&memory.costs, &memory.paths);
+        let [reference, other] = self.census(shared);
+        let (costs, paths) = (&shared.costs, &shared.paths);
         let row = u64::from(band.row_words());
         plan.run(self.cost.prepare(device, band, [reference, other], costs));
-        for (number, (direction, path)) in self.paths.iter().enumerate() {
+        for (number, &direction) in self.directions.iter().enumerate() {
             let goes_on = match direction.dy {
                 0 => false,
                 1.. => index > 0,
                 _ => index + 1 < bands.len(),
             };
-            let start = number as u64 * memory.path_words + row;
+            let start = number as u64 * shared.path_words + row;
             if let (Some(carried), true) = (&self.carried, goes_on) {
                 // Rows from above are kept in front of all others, in the place of band 0.
-                self.bring(plan, memory, band, number, if direction.dy > 0 { 0 } else { index + 1 }, carried);
+                self.bring(plan, shared, band, number, if direction.dy > 0 { 0 } else { index + 1 }, carried);
             }
-            plan.run(path.prepare(device, band, reference, costs, paths, start as u32, goes_on));
+            plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start as u32, goes_on));
             if let (Some(carried), 1) = (&self.carried, direction.dy) {
                 plan.copy(Copy {
                     from: paths.clone(),
@@ -282,7 +285,7 @@ impl Side {
                 });
             }
         }
-        let volume = memory.path_words as u32;
+        let volume = shared.path_words as u32;
         plan.run(self.select.prepare(device, band, paths, row as u32, volume, &self.matches, confidence_offset));
     }
 }

@@ -17,7 +17,7 @@ fn on_device(reference: &Plane<u32>, costs: &[u8], direction: Direction, band_ro
     let (width, height) = reference.size();
     let count = costs.len() as u32 / (width * height);
     let range = DisparityRange::new(0, count).unwrap();
-    let kernel = Path::new(device, &PENALTIES, direction, count.div_ceil(4));
+    let kernel = Path::new(device, &PENALTIES, count.div_ceil(4));
     let view = upload(reference.data());
     let mut out = vec![0; costs.len()];
     let mut firsts: Vec<u32> = (0..height).step_by(band_rows as usize).collect();
@@ -39,7 +39,7 @@ fn on_device(reference: &Plane<u32>, costs: &[u8], direction: Direction, band_ro
         }
         let (costs, paths) = (upload(&costs), upload(&paths));
         let goes_on = carried.is_some() && direction.dy != 0;
-        let dispatch = kernel.prepare(device, &band, &view, &costs, &paths, row as u32, goes_on);
+        let dispatch = kernel.prepare(device, &band, direction, &view, &costs, &paths, row as u32, goes_on);
         run(|encoder| dispatch.record(encoder));
         let paths = download::<u32>(&paths);
         out[bytes].copy_from_slice(bytemuck::cast_slice(&paths[row..row * (rows as usize + 1)]));
