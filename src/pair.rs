@@ -175,19 +175,30 @@ impl<'b> Pair<'b> {
     }
 }
 
-/// The luma of a picture, on the device and here.
+/// The luma of a picture, on the device and here. The colours of a large one get there in bands of rows:
+/// they take four times the memory of its luma.
 fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
     let (device, (width, height)) = (&gpu.device, picture.size());
+    let row_bytes = 4 * u64::from(width);
+    let rows = (device.limits().max_storage_buffer_binding_size / row_bytes).clamp(1, height.into()) as u32;
     let (luma, readback) = guarded(device, "the picture", || {
-        let rgba = storage_buffer(device, "picture", picture.rgba().len() as u64)?;
-        gpu.queue.write_buffer(&rgba, 0, picture.rgba());
-        let to_luma = RgbaToLuma::new(device, &rgba, width, height)?;
+        let luma = storage_buffer(device, "luma", packed_bytes(width, height))?;
+        let bands =
+            (0..height).step_by(rows as usize).zip(picture.rgba().chunks((row_bytes * u64::from(rows)) as usize));
+        for (first_row, pixels) in bands {
+            let rgba = storage_buffer(device, "rows of the picture", pixels.len() as u64)?;
+            gpu.queue.write_buffer(&rgba, 0, pixels);
+            let band = RgbaToLuma::new(device, &rgba, width, rows.min(height - first_row))?;
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
+            band.record(&mut encoder);
+            encoder.copy_buffer_to_buffer(band.luma(), 0, &luma, packed_bytes(width, first_row), None);
+            gpu.queue.submit([encoder.finish()]);
+        }
         let readback = Readback::new(device, "luma", packed_bytes(width, height));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
-        to_luma.record(&mut encoder);
-        readback.record(&mut encoder, to_luma.luma());
+        readback.record(&mut encoder, &luma);
         gpu.queue.submit([encoder.finish()]);
-        Ok((to_luma.luma().clone(), readback))
+        Ok((luma, readback))
     })?;
     let words = readback.read(device, (packed_bytes(width, height) / 4) as usize)?;
     Ok((luma, unpack(width, height, &words)))

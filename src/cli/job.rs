@@ -60,6 +60,10 @@ fn warnings(job: &Job, outcome: &Outcome) -> Vec<String> {
     if let RangeSource::Fallback(thin) = outcome.range_source {
         warnings.push(format!("{}; {} were searched instead", Error::from(thin), span(outcome.range)));
     }
+    if let Some(asked) = job.config.range.filter(|&asked| asked != outcome.range) {
+        let reason = "no pixel has a partner further away than the picture is wide";
+        warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
+    }
     // Without a range of their own, matches say nothing about trust.
     if outcome.seeding.range.is_ok() && outcome.seeding.trust < LITTLE_TRUST {
         warnings.push(format!(

@@ -194,13 +194,17 @@ impl DepthOptions {
     /// belongs to other pictures.
     pub fn calibration(&self, size: (u32, u32)) -> Result<Option<Calibration>> {
         let calibration = match (&self.calib, self.focal, self.baseline) {
-            (Some(path), ..) => Calibration::read(path)?,
+            (Some(path), ..) => {
+                let calibration = Calibration::read(path)?;
+                let misfit = |error: Error| Error::Format { path: path.clone(), reason: error.to_string() };
+                calibration.check_size(size).map_err(misfit)?;
+                calibration
+            }
             (None, Some(focal), Some(baseline)) => {
                 Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), size)?
             }
             _ => return Ok(None),
         };
-        calibration.check_size(size)?;
         Ok(Some(calibration))
     }
 }

@@ -4,7 +4,7 @@ use std::{
     fs::{self, File},
     io::{self, BufWriter},
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use hsad::{
@@ -12,23 +12,70 @@ use hsad::{
     io::atomic::{self, Staged, temporary_in},
 };
 
-/// Folders that were created for a run, the deepest first.
+/// Folders that were created for a run, the deepest first. Whoever holds it is not interrupted.
 static CREATED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Leaves nothing half done behind when the process is interrupted: the handler runs in a thread of
-/// its own, and the process ends without dropping anything.
+fn created() -> MutexGuard<'static, Vec<PathBuf>> {
+    CREATED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Leaves nothing half done behind when the process is interrupted, by Ctrl-C, SIGTERM or SIGHUP. The
+/// handler runs in a thread of its own, and the process ends without dropping anything.
 ///
 /// # Errors
 /// Where the system has no such signals.
 pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
+    let ignored = ignored_signals();
     ctrlc::set_handler(|| {
+        let created = created();
         atomic::abandon();
-        remove_empty(&CREATED.lock().unwrap_or_else(PoisonError::into_inner));
-        // What a shell reports for a program that ended by SIGINT.
-        std::process::exit(130);
+        remove_empty(&created);
+        exit_at_once();
     })?;
+    keep_ignoring(&ignored);
     Ok(())
 }
+
+/// What a shell reports for a program that ended by SIGINT. Without the destructors of drivers, which would
+/// run under the feet of the threads that still use them.
+fn exit_at_once() -> ! {
+    #[cfg(unix)]
+    // SAFETY: it only ends the process.
+    unsafe {
+        libc::_exit(130)
+    }
+    #[cfg(not(unix))]
+    std::process::exit(130)
+}
+
+/// The signals that whoever started this wants to be ignored: nohup, or a shell for what runs in the background.
+#[cfg(unix)]
+fn ignored_signals() -> Vec<libc::c_int> {
+    let is_ignored = |&signal: &libc::c_int| {
+        // SAFETY: it only asks, and zeros are a valid action to be overwritten.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            libc::sigaction(signal, std::ptr::null(), &mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
+        }
+    };
+    [libc::SIGINT, libc::SIGTERM, libc::SIGHUP].into_iter().filter(is_ignored).collect()
+}
+
+#[cfg(unix)]
+fn keep_ignoring(signals: &[libc::c_int]) {
+    for &signal in signals {
+        // SAFETY: ignoring a signal runs no code.
+        unsafe {
+            libc::signal(signal, libc::SIG_IGN);
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn ignored_signals() {}
+
+#[cfg(not(unix))]
+fn keep_ignoring(_: &()) {}
 
 /// Only an empty folder can be removed, so results are safe.
 fn remove_empty(folders: &[PathBuf]) {
@@ -62,7 +109,7 @@ impl Output {
         }
         let missing = |path: &&Path| *path != Path::new("") && !path.exists();
         let created: Vec<_> = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        CREATED.lock().unwrap_or_else(PoisonError::into_inner).extend(created.iter().cloned());
+        self::created().extend(created.iter().cloned());
         // From here on what was created is removed again, whatever fails.
         let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
         fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
@@ -95,11 +142,12 @@ impl Output {
         &self.names
     }
 
-    /// Lets all files appear.
+    /// Lets all files appear. An interruption waits until they have.
     ///
     /// # Errors
     /// [`Error::Io`] with the path of the first that cannot.
     pub fn finish(&mut self) -> Result<()> {
+        let _uninterrupted = created();
         self.staged.drain(..).try_for_each(Staged::put)
     }
 }

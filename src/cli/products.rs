@@ -3,6 +3,7 @@
 use hsad::{
     Result,
     dense::View,
+    disparity::NONE,
     features::Feature,
     image::Plane,
     io::{Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
@@ -37,6 +38,12 @@ impl Done {
                 View::Right => (&self.job.right, calibration.seen_from_right()),
             };
             let depth = depth_map(&dense.disparity, &calibration);
+            if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
+                self.warnings.push(format!(
+                    "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond, see the calibration",
+                    calibration.doffs
+                ));
+            }
             let points = ply::points(&depth, picture, &calibration)?;
             output.add("depth.pfm", |out| pfm::write(out, &depth))?;
             output.add("cloud.ply", |out| ply::write(out, &points))?;

@@ -120,7 +120,7 @@ impl DenseConfig {
     /// # Errors
     /// [`Error::Parameter`] where there are none, or more than the kernel's keys can tell apart.
     pub fn searched(&self, width: u32) -> Result<DisparityRange> {
-        let reach = i32::try_from(width - 1).unwrap_or(i32::MAX);
+        let reach = i32::try_from(width.saturating_sub(1)).unwrap_or(i32::MAX);
         let (first, last) = (self.range.min.max(-reach), self.range.last().min(reach));
         let refuse = |expected| {
             let value = format!("{} to {}", self.range.min, self.range.last());

@@ -32,14 +32,17 @@ pub use select::Select;
 pub use semi_global::{Paths, SemiGlobal};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
-/// window, for what each view is asked for.
+/// window, either view and what it may be asked for.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Consistency::stage(), Census::stage()];
     for window in (3..=31).step_by(2) {
-        let tile = if window % 4 == 1 { Tile::HARDWARE } else { Tile::SOFTWARE };
+        let hardware = [Tile::HARDWARE; 2];
+        let [tile, winners] = if window % 4 == 1 { hardware } else { [Tile::SOFTWARE, Tile::SOFTWARE_WINNERS] };
         let config = DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
-        let asked = [(View::Left, Wanted::Matches), (View::Right, Wanted::Winners)];
-        stages.extend(asked.map(|(view, wanted)| BlockMatch::stage(&config, view, wanted, tile)));
+        for view in [View::Left, View::Right] {
+            stages.push(BlockMatch::stage(&config, view, Wanted::Matches, tile));
+            stages.push(BlockMatch::stage(&config, view, Wanted::Winners, winners));
+        }
     }
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part };

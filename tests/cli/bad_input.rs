@@ -94,11 +94,14 @@ fn calibrations_that_are_none() {
         ("nonsense", 1, "line 1: 'nonsense' is not of the form key=value"),
         ("cam0=[1 2 3]\ndoffs=0\nbaseline=1\n", 1, "line 1: cam0"),
         ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=NaN\nbaseline=1\n", 1, "line 2: doffs is 'NaN'"),
-        ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=0\nbaseline=1\nwidth=9\nheight=9\n", 2, "for pictures of 9x9 pixels"),
+        ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=0\nbaseline=1\nwidth=9\nheight=9\n", 1, "for pictures of 9x9 pixels"),
     ] {
         fs::write(&calib, content).unwrap();
         pair_fails(&left, &right, &["--calib", calib_text], code, expected);
     }
+    fs::write(&calib, "cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=-1000\nbaseline=1\n").unwrap();
+    let mut command = match_on_cpu(&left, &right, &temporary.path().join("out"));
+    command.args(["--calib", calib_text]).assert().success().stderr(contains("no pixel has a depth"));
 }
 
 #[test]
