@@ -1,7 +1,7 @@
 //! Everything that can be chosen for a pair, and presets of it.
 
 use crate::{
-    dense::{Aggregation, Brightness, DenseConfig, Interpolation, View},
+    dense::{Aggregation, Brightness, DenseConfig, Interpolation, Refinement, View},
     disparity::DisparityRange,
     error::{Error, Result},
     features::FeatureConfig,
@@ -33,6 +33,8 @@ pub struct Config {
     pub uniqueness: u32,
     /// See [`crate::dense::DenseConfig::consistency`].
     pub consistency: Option<u32>,
+    /// See [`crate::dense::DenseConfig::refinement`].
+    pub refinement: Option<Refinement>,
     /// Go on with a pair that is visibly not rectified.
     pub force: bool,
 }
@@ -75,6 +77,7 @@ impl Config {
             interpolation: self.interpolation,
             uniqueness: self.uniqueness,
             consistency: self.consistency,
+            refinement: self.refinement,
         }
     }
 }
@@ -111,6 +114,7 @@ impl Preset {
             interpolation: Interpolation::Equiangular,
             uniqueness: 10,
             consistency: Some(256),
+            refinement: None,
             force: false,
         };
         match self {

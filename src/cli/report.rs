@@ -2,7 +2,7 @@
 
 use hsad::{
     config::Config,
-    dense::{Aggregation, Interpolation, View},
+    dense::{Aggregation, Difference, Interpolation, Refinement, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     pipeline::RangeSource,
@@ -58,11 +58,13 @@ fn parameters(config: &Config) -> Value {
         interpolation,
         uniqueness,
         consistency,
+        refinement,
         force,
     } = config;
     let matching = &seeding.matching;
     json!({
         "reference": match reference { View::Left => "left", View::Right => "right" },
+        "aggregation": aggregation_of(aggregation),
         "window": match aggregation { Aggregation::Window(side) => Some(side), Aggregation::Paths(_) => None },
         "range": range.map(ends),
         "min_disparity": least,
@@ -73,6 +75,12 @@ fn parameters(config: &Config) -> Value {
         },
         "uniqueness_percent": uniqueness,
         "max_lr_difference_px": consistency.map(|difference| f64::from(difference) / f64::from(SCALE)),
+        "refinement": refinement.map(|Refinement { support, medians_before, fill, medians_after }| json!({
+            "support": support,
+            "medians_before": medians_before,
+            "fill": fill,
+            "medians_after": medians_after,
+        })),
         "force": force,
         "features": {
             "octaves": features.octaves,
@@ -89,6 +97,23 @@ fn parameters(config: &Config) -> Value {
             "tile_px": seeding.tile,
         },
         "strongest": strongest,
+    })
+}
+
+fn aggregation_of(aggregation: &Aggregation) -> Value {
+    let Aggregation::Paths(SemiGlobal { cost, penalties, paths }) = aggregation else {
+        return "window".into();
+    };
+    let part = |Difference { weight, limit }: Difference| json!({ "weight": weight, "limit": limit });
+    json!({
+        "paths": paths.directions().len(),
+        "census_weight": cost.census,
+        "difference": part(cost.difference),
+        "gradient": part(cost.gradient),
+        "p1": penalties.p1,
+        "p2": penalties.p2,
+        "least_p2": penalties.least_p2,
+        "p2_scale": penalties.p2_scale,
     })
 }
 

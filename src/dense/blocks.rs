@@ -5,10 +5,11 @@
 
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
-    config::DenseConfig,
+    config::{DenseConfig, View},
     consistency::Consistency,
     pad::Pad,
     plan::{Plan, match_words},
+    refine::plan_refinement,
 };
 use crate::error::{Error, Result};
 
@@ -36,6 +37,7 @@ pub(super) fn plan(
     let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
 
     let mut plan = Plan::new(height.div_ceil(band_rows) as usize);
+    let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let planes = plan.buffer(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
     let matches = plan.buffer(device, "matches", match_words)?;
@@ -61,6 +63,10 @@ pub(super) fn plan(
             plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, winners, &matches));
         }
         plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
+    }
+    if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
+        let luma = if view == View::Left { left } else { right };
+        plan_refinement(device, &mut plan, size, refinement, config.searched(width)?, luma, &whole)?;
     }
     Ok(plan)
 }

@@ -1,6 +1,6 @@
 //! What the dense half is asked to do.
 
-use super::{Brightness, SemiGlobal};
+use super::{Brightness, Refinement, SemiGlobal};
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
@@ -79,6 +79,8 @@ pub struct DenseConfig {
     /// The largest difference, in 1/256 px, between a pixel's disparity and that of its partner in
     /// the other view; `None` accepts every winner.
     pub consistency: Option<u32>,
+    /// What becomes of the map after that; `None`: it stays as it is.
+    pub refinement: Option<Refinement>,
 }
 
 impl DenseConfig {
@@ -92,6 +94,7 @@ impl DenseConfig {
             interpolation: Interpolation::Equiangular,
             uniqueness: 0,
             consistency: None,
+            refinement: None,
         }
     }
 
@@ -166,6 +169,8 @@ impl DenseConfig {
             Aggregation::Paths(semi_global) => semi_global.validate()?,
         }
         self.brightness.validate()?;
+        let support = self.refinement.map_or(0, |refinement| refinement.support);
+        check(support <= 49, "support", support, "it must be 0 to 49 pixels")?;
         check(self.uniqueness <= 100, "uniqueness", self.uniqueness, "it must be 0 to 100 per cent")?;
         check(
             self.consistency.is_none_or(|d| d <= 1 << 16),

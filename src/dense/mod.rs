@@ -10,12 +10,16 @@ mod census;
 mod config;
 mod consistency;
 mod cost;
+mod fill;
 mod matcher;
 mod pad;
 mod path;
 mod plan;
+mod refine;
 mod select;
 mod semi_global;
+mod support;
+mod weighted_median;
 
 use crate::{disparity::DisparityRange, gpu::Stage};
 
@@ -25,11 +29,15 @@ pub use census::{Brightness, Census};
 pub use config::{Aggregation, DenseConfig, Interpolation, View};
 pub use consistency::Consistency;
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
+pub use fill::{Fill, surface};
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 pub use path::{Direction, Path, Penalties};
+pub use refine::Refinement;
 pub use select::Select;
 pub use semi_global::{Paths, SemiGlobal};
+pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
+pub use weighted_median::{Median, WeightedMedian};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, either view and what it may be asked for.
@@ -50,5 +58,8 @@ pub fn stages() -> Vec<Stage> {
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
     stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| Select::stage(4, Interpolation::Parabola, wanted)));
+    stages.extend([Support::stage(5), Fill::stage()]);
+    let refinement = Refinement { support: 5, medians_before: 1, fill: true, medians_after: 1 };
+    stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));
     stages
 }

@@ -35,6 +35,9 @@ pub(super) enum Target {
 /// The steps, and how much memory they share.
 pub(super) struct Plan {
     steps: Vec<Step>,
+    /// Where the answers of all bands come together, if something is done with them then, and where
+    /// among them the confidences begin.
+    whole: Option<(wgpu::Buffer, u32)>,
     pub(super) bytes: u64,
     /// In how many bands of rows the pair is matched.
     pub(super) bands: usize,
@@ -43,7 +46,7 @@ pub(super) struct Plan {
 impl Plan {
     /// No steps yet, for so many bands.
     pub(super) fn new(bands: usize) -> Self {
-        Self { steps: Vec::new(), bytes: 0, bands }
+        Self { steps: Vec::new(), whole: None, bytes: 0, bands }
     }
 
     /// Memory for so many words, for the plan's lifetime.
@@ -60,15 +63,28 @@ impl Plan {
         self.steps.push(Step::Copy(copy));
     }
 
-    /// The answers for a band of rows that stand in `matches`, on their way to the caller.
+    /// Brings the answers of all bands together in one map of `size` before anyone gets them.
+    pub(super) fn collect(&mut self, device: &wgpu::Device, (width, height): (u32, u32)) -> Result<wgpu::Buffer> {
+        let (words, confidence_offset) = match_words(width, height);
+        let map = self.buffer(device, "the whole map", words)?;
+        self.whole = Some((map.clone(), confidence_offset));
+        Ok(map)
+    }
+
+    /// The answers for a band of rows that stand in `matches`, on their way to the caller or to the whole map.
     pub(super) fn hand_out(&mut self, matches: &wgpu::Buffer, confidence_offset: u32, width: u32, rows: (u32, u32)) {
         let (first_row, count) = (u64::from(rows.0), u64::from(rows.1));
+        let [disparities, confidences] = match &self.whole {
+            None => [(Target::Disparities, 0), (Target::Confidences, 0)],
+            Some((map, offset)) => [(Target::Buffer(map.clone()), 0), (Target::Buffer(map.clone()), (*offset).into())],
+        };
         let parts = [
-            (Target::Disparities, 0, u64::from(width)),
-            (Target::Confidences, u64::from(confidence_offset), u64::from(width.div_ceil(4))),
+            (disparities, 0, u64::from(width)),
+            (confidences, u64::from(confidence_offset), u64::from(width.div_ceil(4))),
         ];
-        for (to, from_word, row) in parts {
-            self.copy(Copy { from: matches.clone(), from_word, to, to_word: row * first_row, words: row * count });
+        for ((to, start), from_word, row) in parts {
+            let to_word = start + row * first_row;
+            self.copy(Copy { from: matches.clone(), from_word, to, to_word, words: row * count });
         }
     }
 

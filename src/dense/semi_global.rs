@@ -16,6 +16,7 @@ use super::{
     pad::Pad,
     path::{Direction, Path, Penalties},
     plan::{Copy, Plan, Target, match_words},
+    refine::plan_refinement,
     select::Select,
 };
 use crate::{
@@ -123,6 +124,7 @@ pub(super) fn plan(
     let row_words = u64::from(bands[0].row_words());
 
     let mut plan = Plan::new(bands.len());
+    let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let padding = Census::padding(size);
     let padded = plan.buffer(device, "padded plane", u64::from(padding.rows) * u64::from(padding.stride))?;
     let (pad, census) = (Pad::new(device), Census::new(device));
@@ -179,6 +181,10 @@ pub(super) fn plan(
             plan.run(consistency.prepare(device, size, confidence_offset, view, limit, others, matches));
         }
         plan.hand_out(matches, confidence_offset, width, (band.first_row, band.rows));
+    }
+    if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
+        let luma = if config.reference == View::Left { views[0] } else { views[1] };
+        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole)?;
     }
     Ok(plan)
 }

@@ -1,8 +1,9 @@
 //! The dense half in one call.
 
-use super::{block_match, census, check_consistency, cost_volume, path, select};
+use super::{block_match, census, check_consistency, cost_volume, filled, path, select, supported, weighted_median};
 use crate::{
-    dense::{Aggregation, Brightness, Dense, DenseConfig, Interpolation, SemiGlobal, View},
+    dense::{Aggregation, Brightness, Dense, DenseConfig, Interpolation, Refinement, SemiGlobal, View},
+    disparity::DisparityRange,
     error::{Error, Result},
     image::Luma,
 };
@@ -27,7 +28,29 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
         let others = seen_from(config.reference.other(), &whole).disparity;
         check_consistency(&mut dense, config.reference, &others, max_difference);
     }
-    Ok(dense)
+    match &config.refinement {
+        Some(refinement) => {
+            let luma = if config.reference == View::Left { left } else { right };
+            Ok(refined(&dense, luma, refinement, config.range))
+        }
+        None => Ok(dense),
+    }
+}
+
+/// A map after all that `refinement` asks for.
+fn refined(dense: &Dense, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
+    let Dense { disparity: mut map, confidence } = supported(dense, refinement.support);
+    for median in refinement.before() {
+        map = weighted_median(luma, &map, &map, median);
+    }
+    let before = map.clone();
+    if refinement.fill {
+        map = filled(&map, range);
+    }
+    for median in refinement.after() {
+        map = weighted_median(luma, &map, &before, median);
+    }
+    Dense { disparity: map, confidence }
 }
 
 /// Semi-global matching of one view, without any check from the other.

@@ -1,0 +1,69 @@
+//! Disparities that their neighbours share. `shaders/support.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{
+    disparity::{NONE, SCALE},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// Half the window without its centre.
+pub const SUPPORT_RADIUS: u32 = 3;
+
+/// By how much disparities may differ that support each other.
+pub const SUPPORT_TOLERANCE: i32 = SCALE;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    width: u32,
+    height: u32,
+    confidence_offset: u32,
+}
+
+/// The kernel that takes speckles away.
+pub struct Support(Kernel);
+
+impl Support {
+    /// What the kernel is made of, where `least` pixels of the window must agree.
+    pub fn stage(least: u32) -> Stage {
+        let side = 2 * SUPPORT_RADIUS + 1;
+        Stage {
+            name: "support",
+            source: include_str!("../../shaders/support.wgsl"),
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RADIUS", SUPPORT_RADIUS.into()),
+                ("SIDE", side.into()),
+                ("SPAN", (side + 3).into()),
+                ("TOLERANCE", SUPPORT_TOLERANCE.into()),
+                ("LEAST", least.into()),
+                ("NONE", NONE.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &wgpu::Device, least: u32) -> Self {
+        Self(Kernel::new(device, &Self::stage(least)))
+    }
+
+    /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
+    /// each row in words of its own) to `supported` without what too few neighbours share.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        confidence_offset: u32,
+        matches: &wgpu::Buffer,
+        supported: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&params, matches, supported], groups)
+    }
+}

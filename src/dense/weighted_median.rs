@@ -1,0 +1,83 @@
+//! The weighted median of a map. `shaders/weighted_median.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{
+    disparity::NONE,
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// More than any disparity.
+const FARTHEST: i64 = 1 << 30;
+
+/// A weighted median filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Median {
+    /// Half its window without the centre.
+    pub radius: u32,
+    /// A neighbour whose luma differs by 2 to the power of this weighs half; 31: all weigh the same.
+    pub halving_bits: u32,
+    /// Whether only pixels that were filled change.
+    pub holes_only: bool,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+/// The kernel of a weighted median.
+pub struct WeightedMedian(Kernel);
+
+impl WeightedMedian {
+    /// What the kernel is made of.
+    pub fn stage(median: Median) -> Stage {
+        let side = 2 * median.radius + 1;
+        Stage {
+            name: "weighted_median",
+            source: include_str!("../../shaders/weighted_median.wgsl"),
+            bindings: &[
+                Binding::Uniform(size_of::<Params>() as u64),
+                Binding::Read,
+                Binding::Read,
+                Binding::Read,
+                Binding::Write,
+            ],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RADIUS", median.radius.into()),
+                ("SIDE", side.into()),
+                ("SPAN", (side + 3).into()),
+                ("HALVING_BITS", median.halving_bits.into()),
+                ("HOLES_ONLY", median.holes_only.into()),
+                ("FARTHEST", FARTHEST),
+                ("NONE", NONE.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &wgpu::Device, median: Median) -> Self {
+        Self(Kernel::new(device, &Self::stage(median)))
+    }
+
+    /// Filters `disparities` into `filtered`, by the packed `luma` of their view; `before` is the map before its
+    /// holes were filled.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        luma: &wgpu::Buffer,
+        [disparities, before]: [&wgpu::Buffer; 2],
+        filtered: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = uniform_buffer(device, "weighted median", &Params { width, height });
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
+    }
+}

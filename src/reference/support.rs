@@ -1,0 +1,31 @@
+//! Disparities that their neighbours share, from the definition.
+
+use crate::{
+    dense::{Dense, SUPPORT_RADIUS, SUPPORT_TOLERANCE},
+    disparity::NONE,
+};
+
+/// The disparities, with their confidences, that at least `least` pixels of the window around them share, themselves
+/// included.
+pub fn supported(dense: &Dense, least: u32) -> Dense {
+    let (width, height) = dense.disparity.size();
+    let radius = SUPPORT_RADIUS as i64;
+    let mut out = dense.clone();
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let disparity = dense.disparity.get(x, y);
+        let shares = |(i, j): (i64, i64)| {
+            let (column, row) = (i64::from(x) + i, i64::from(y) + j);
+            let inside = (0..i64::from(width)).contains(&column) && (0..i64::from(height)).contains(&row);
+            inside && {
+                let other = dense.disparity.get(column as u32, row as u32);
+                other != NONE && (i64::from(other) - i64::from(disparity)).abs() <= SUPPORT_TOLERANCE.into()
+            }
+        };
+        let window = (-radius..=radius).flat_map(|j| (-radius..=radius).map(move |i| (i, j)));
+        if disparity == NONE || window.filter(|&at| shares(at)).count() < least as usize {
+            out.disparity.set(x, y, NONE);
+            out.confidence.set(x, y, 0);
+        }
+    }
+    out
+}
