@@ -102,7 +102,7 @@ fn features(gpu: &Gpu, luma: &[Luma; 2]) -> hsad::Result<()> {
     };
     time("features of both views", || detect().map(|found| drop(black_box(found))))?;
     let found = detect()?;
-    let seeding = Preset::Standard.config().seeding;
+    let seeding = Preset::Balanced.config().seeding;
     time("matching", || {
         match_features(&found[0], &found[1], &seeding.matching).map(|matches| drop(black_box(matches)))
     })?;

@@ -2,7 +2,7 @@
 //
 // Zabih and Woodfill: 'Non-parametric local transforms for computing visual correspondence', ECCV
 // 1994. The 24 bits, the neighbour above and to the left the highest, stand above the pixel's own
-// luma, brightened as asked: one word holds all that the matching cost wants to know.
+// luma: one word holds all that the matching cost wants to know.
 
 struct Params {
     width: u32,
@@ -11,9 +11,6 @@ struct Params {
     // and where it begins.
     stride: u32,
     start: u32,
-    // What the luma is multiplied with, and what is added to it, in 1/256.
-    gain: i32,
-    offset: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -51,8 +48,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
     }
-    let brightened = clamp((params.gain * vec4<i32>(centre) + params.offset + 128) >> vec4<u32>(8u), vec4<i32>(0), vec4<i32>(255));
-    let words = (bits << vec4<u32>(8u)) | vec4<u32>(brightened);
+    let words = (bits << vec4<u32>(8u)) | centre;
     for (var t = 0; t < 4; t++) { // unroll
         if x + t < params.width {
             census[id.y * params.width + x + t] = words[t];

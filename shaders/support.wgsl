@@ -1,6 +1,7 @@
 // Takes away the disparities that hardly any of their neighbours share: speckles, without having to
 // follow their outlines. A disparity stays if at least LEAST pixels of the window around it, itself
-// included, have one that differs by at most TOLERANCE.
+// included, have one that differs by at most TOLERANCE. Their number becomes the better part of its
+// confidence: 1 + 5 (number - 1), and up to 4 more for what its confidence was.
 
 struct Params {
     width: u32,
@@ -44,14 +45,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             count += select(vec4<u32>(0u), vec4<u32>(1u), shares);
         }
     }
-    var kept = 0u;
+    let word = params.confidence_offset + id.y * ((params.width + 3u) / 4u) + id.x;
+    let confidences = u32(matches[word]);
+    var confident = 0u;
     for (var t = 0; t < 4; t++) { // unroll
         if x + t < width {
             let stays = centre[t] != NONE && count[t] >= LEAST;
             supported[y * width + x + t] = select(NONE, centre[t], stays);
-            kept |= select(0u, 255u << (8u * t), stays);
+            let margin = (5u * ((confidences >> (8u * t)) & 255u)) >> 8u;
+            confident |= select(0u, 5u * count[t] - 4u + margin, stays) << (8u * t);
         }
     }
-    let word = params.confidence_offset + id.y * ((params.width + 3u) / 4u) + id.x;
-    supported[word] = matches[word] & i32(kept);
+    supported[word] = i32(confident);
 }

@@ -1,7 +1,10 @@
 //! Everything that can be chosen for a pair, and presets of it.
 
 use crate::{
-    dense::{Aggregation, Brightness, DenseConfig, Interpolation, Refinement, View},
+    dense::{
+        Aggregation, Brightness, Cost, DenseConfig, Difference, Interpolation, Paths, Penalties, Refinement,
+        SemiGlobal, View,
+    },
     disparity::DisparityRange,
     error::{Error, Result},
     features::FeatureConfig,
@@ -35,6 +38,8 @@ pub struct Config {
     pub consistency: Option<u32>,
     /// See [`crate::dense::DenseConfig::refinement`].
     pub refinement: Option<Refinement>,
+    /// Whether the right view is made as bright as the left one, as far as the seeds tell.
+    pub equalise: bool,
     /// Go on with a pair that is visibly not rectified.
     pub force: bool,
 }
@@ -56,22 +61,22 @@ impl Config {
         }
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
-        self.dense(range).validate()
+        self.dense(range, Brightness::SAME).validate()
     }
 
-    /// The side of the matching window: one pixel, where paths put the costs together.
+    /// The side of the matching window, or of the census transform's where paths put the costs together.
     pub fn window(&self) -> u32 {
         match self.aggregation {
             Aggregation::Window(side) => side,
-            Aggregation::Paths(_) => 1,
+            Aggregation::Paths(_) => 5,
         }
     }
 
-    /// What the dense half is asked to do in `range`.
-    pub fn dense(&self, range: DisparityRange) -> DenseConfig {
+    /// What the dense half is asked to do in `range`, with the right view's brightness changed first.
+    pub fn dense(&self, range: DisparityRange, brightness: Brightness) -> DenseConfig {
         DenseConfig {
             aggregation: self.aggregation,
-            brightness: Brightness::SAME,
+            brightness,
             range,
             reference: self.reference,
             interpolation: self.interpolation,
@@ -88,10 +93,13 @@ const OPENSURF_THRESHOLD: f32 = 0.0004;
 /// A set of parameters that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// What measures best on real pairs: an 11x11 window, checked for uniqueness and from the other
-    /// view.
+    /// Block matching in windows of 11x11, checked for uniqueness and from the other view, with holes.
+    Fast,
+    /// Semi-global matching along four paths, checked from the other view and filled.
     #[default]
-    Standard,
+    Balanced,
+    /// The same, with more refinement.
+    Quality,
     /// The paper to the letter: the right view is the reference and is searched for in the left to
     /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
     /// neighbours and no check; orientations are computed, and the ten strongest points and matches
@@ -100,27 +108,47 @@ pub enum Preset {
     Paper,
 }
 
+/// Measured on real pairs: see the README.
+const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
+    cost: Cost {
+        census: 20,
+        difference: Difference { weight: 4, limit: 24 },
+        gradient: Difference { weight: 12, limit: 16 },
+    },
+    penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
+    paths: Paths::Four,
+};
+
 impl Preset {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Fast, Self::Balanced, Self::Quality, Self::Paper];
+
     /// The preset's parameters.
     pub fn config(self) -> Config {
-        let standard = Config {
+        let balanced = Config {
             features: FeatureConfig::default(),
             seeding: SeedingConfig::default(),
             range: None,
             least: None,
             strongest: None,
             reference: View::Left,
-            aggregation: Aggregation::Window(11),
+            aggregation: Aggregation::Paths(SEMI_GLOBAL),
             interpolation: Interpolation::Equiangular,
-            uniqueness: 10,
+            uniqueness: 1,
             consistency: Some(256),
-            refinement: None,
+            refinement: Some(Refinement { support: 10, medians_before: 0, fill: true, medians_after: 1 }),
+            equalise: true,
             force: false,
         };
         match self {
-            Self::Standard => standard,
+            Self::Balanced => balanced,
+            Self::Quality => Config {
+                refinement: Some(Refinement { support: 10, medians_before: 1, fill: true, medians_after: 2 }),
+                ..balanced
+            },
+            Self::Fast => Config { aggregation: Aggregation::Window(11), uniqueness: 10, refinement: None, ..balanced },
             Self::Paper => Config {
-                features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..standard.features },
+                features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..balanced.features },
                 least: Some(0),
                 strongest: Some(10),
                 reference: View::Right,
@@ -128,7 +156,9 @@ impl Preset {
                 interpolation: Interpolation::Parabola,
                 uniqueness: 0,
                 consistency: None,
-                ..standard
+                refinement: None,
+                equalise: false,
+                ..balanced
             },
         }
     }
@@ -140,20 +170,20 @@ mod tests {
 
     #[test]
     fn presets_are_valid_and_nonsense_is_named() {
-        for preset in [Preset::Standard, Preset::Paper] {
+        for preset in Preset::ALL {
             preset.config().validate().unwrap();
         }
-        let standard = || Preset::Standard.config();
+        let balanced = || Preset::Balanced.config();
         let bad = [
-            (Config { aggregation: Aggregation::Window(8), ..standard() }, "window is 8"),
-            (Config { strongest: Some(0), ..standard() }, "strongest is 0"),
-            (Config { uniqueness: 101, ..standard() }, "uniqueness is 101"),
-            (Config { least: Some(i32::MIN), ..standard() }, "the disparity range"),
+            (Config { aggregation: Aggregation::Window(8), ..balanced() }, "window is 8"),
+            (Config { strongest: Some(0), ..balanced() }, "strongest is 0"),
+            (Config { uniqueness: 101, ..balanced() }, "uniqueness is 101"),
+            (Config { least: Some(i32::MIN), ..balanced() }, "the disparity range"),
             (
-                Config { range: Some(DisparityRange { min: 0, count: 0 }), ..standard() },
+                Config { range: Some(DisparityRange { min: 0, count: 0 }), ..balanced() },
                 "the number of disparities is 0",
             ),
-            (Config { features: FeatureConfig { octaves: 6, ..Default::default() }, ..standard() }, "octaves is 6"),
+            (Config { features: FeatureConfig { octaves: 6, ..Default::default() }, ..balanced() }, "octaves is 6"),
         ];
         for (config, expected) in bad {
             let error = config.validate().unwrap_err().to_string();

@@ -30,7 +30,7 @@
 //!
 //! fn disparity(left: &Picture, right: &Picture) -> hsad::Result<hsad::disparity::DisparityMap> {
 //!     let backend = Backend::open(&DeviceChoice::Best)?;
-//!     let outcome = pipeline::run(&backend, (left, right), &Preset::Standard.config(), |_| ())?;
+//!     let outcome = pipeline::run(&backend, (left, right), &Preset::Balanced.config(), |_| ())?;
 //!     Ok(outcome.dense.disparity)
 //! }
 //! ```

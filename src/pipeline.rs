@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use crate::{
     config::Config,
-    dense::Dense,
+    dense::{Brightness, Dense},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
     io::Picture,
     pair::{Backend, Pair},
-    seeding::{Seeding, ThinSupport, Verdict, enlarged_feature},
+    seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
 
 /// Points are looked for in pictures of at most this many pixels; larger ones are reduced first.
@@ -128,11 +128,24 @@ pub fn run(
             (range, RangeSource::Fallback(thin))
         }
     };
-    let range = config.dense(range).searched(left.width())?;
+    let brightness = match seeding.brightness {
+        Some(found) if config.equalise => equalising(&found),
+        _ => Brightness::SAME,
+    };
+    let range = config.dense(range, brightness).searched(left.width())?;
     enter(Some(Step::Dense));
-    let dense = pair.dense(&config.dense(range))?;
+    let dense = pair.dense(&config.dense(range, brightness))?;
     enter(None);
     Ok(Outcome { features, seeding, range, range_source, dense, times })
+}
+
+/// The change that makes the right view as bright as the left one; none where what was found is not likely.
+fn equalising(found: &seeding::Brightness) -> Brightness {
+    if !(0.1..=10.0).contains(&found.gain) || found.offset.abs() > 255.0 {
+        return Brightness::SAME;
+    }
+    let fixed_point = |value: f32| (256.0 * value).round() as i32;
+    Brightness { gain: fixed_point(1.0 / found.gain), offset: fixed_point(-found.offset / found.gain) }
 }
 
 /// The whole number by which a pair is reduced before points are looked for. A few thousand points tell

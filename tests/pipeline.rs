@@ -32,7 +32,7 @@ fn a_large_pair_is_seen_at_its_own_size() {
     let views = (&enlarged(&left, factor), &enlarged(&right, factor));
     assert!(views.0.data().len() > 1 << 21, "not large enough to be reduced");
     let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
-    let outcome = pipeline::run(&backend, views, &Preset::Standard.config(), |_| ()).unwrap();
+    let outcome = pipeline::run(&backend, views, &Preset::Fast.config(), |_| ()).unwrap();
 
     assert_eq!(outcome.range_source, RangeSource::Seeds);
     let truth = pfm::read(&folder.join("disp_left.pfm")).unwrap();

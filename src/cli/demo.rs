@@ -60,7 +60,7 @@ impl Demo {
             names,
             left: scene.left.clone(),
             right: scene.right.clone(),
-            config: Preset::Standard.config(),
+            config: Preset::Balanced.config(),
             calibration: Some(scene.calibration),
         };
         let mut done = job.run(&self.run)?;

@@ -86,9 +86,10 @@ fn with_default(help: &str, value: impl Display) -> String {
 #[command(next_help_heading = "Matching")]
 pub struct MatchOptions {
     /// Where parameters come from that no option names
-    #[arg(long, value_enum, default_value = "standard")]
+    #[arg(long, value_enum, default_value = "balanced")]
     preset: PresetName,
-    /// Side of the square window in pixels, odd, 3 to 31 [standard: 11, paper: 7]
+    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 11, paper: 7; balanced and quality
+    /// match semi-globally instead]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
     /// Smallest disparity: with --disparities where the range begins [default: 0], without it a
@@ -98,26 +99,32 @@ pub struct MatchOptions {
     /// How many disparities are searched [default: found from matching interest points]
     #[arg(long, value_name = "N")]
     disparities: Option<u32>,
-    /// The view whose pixels get a disparity [standard: left, paper: right]
+    /// The view whose pixels get a disparity [default: left, paper: right]
     #[arg(long, value_enum)]
     reference: Option<ViewName>,
-    /// Per cent by which the best rival must cost more than the winner, 0 to 100 [standard: 10,
-    /// paper: 0]
+    /// Per cent by which the best rival must cost more than the winner, 0 to 100 [default: 1,
+    /// fast: 10, paper: 0]
     #[arg(long, value_name = "PERCENT")]
     uniqueness: Option<u32>,
-    /// Largest difference of the disparities that the two views find [standard: 1, paper: no check]
+    /// Largest difference of the disparities that the two views find [default: 1, paper: no check]
     #[arg(long, value_name = "PX", conflicts_with = "no_lr_check", allow_negative_numbers = true)]
     max_lr_difference: Option<f32>,
     /// Do not ask the other view
     #[arg(long)]
     no_lr_check: bool,
-    /// How disparities between whole pixels are found [standard: equiangular, paper: parabola]
+    /// Leave holes where the two views disagree or hardly any neighbour agrees
+    #[arg(long)]
+    no_fill: bool,
+    /// Take the views' brightness as it is, even where the seeds tell that it differs
+    #[arg(long)]
+    no_equalise: bool,
+    /// How disparities between whole pixels are found [default: equiangular, paper: parabola]
     #[arg(long, value_enum)]
     interpolation: Option<InterpolationName>,
     #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
         descriptor, up to 1", MatchConfig::default().ratio))]
     ratio: Option<f32>,
-    /// Show only the N strongest interest points and matches in the figures [standard: all, paper:
+    /// Show only the N strongest interest points and matches in the figures [default: all, paper:
     /// 10]
     #[arg(long, value_name = "N")]
     strongest: Option<usize>,
@@ -151,6 +158,10 @@ impl MatchOptions {
         } else if self.no_lr_check {
             config.consistency = None;
         }
+        if let (true, Some(refinement)) = (self.no_fill, &mut config.refinement) {
+            refinement.fill = false;
+        }
+        config.equalise &= !self.no_equalise;
         config.force = self.force;
         config.validate()?;
         Ok(config)
@@ -211,8 +222,12 @@ impl DepthOptions {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PresetName {
-    /// What measures best on real pairs
-    Standard,
+    /// Block matching, checked, with holes where the check fails
+    Fast,
+    /// Semi-global matching, checked and filled
+    Balanced,
+    /// The same, refined further
+    Quality,
     /// The paper to the letter
     Paper,
 }
@@ -220,7 +235,9 @@ enum PresetName {
 impl From<PresetName> for Preset {
     fn from(name: PresetName) -> Self {
         match name {
-            PresetName::Standard => Self::Standard,
+            PresetName::Fast => Self::Fast,
+            PresetName::Balanced => Self::Balanced,
+            PresetName::Quality => Self::Quality,
             PresetName::Paper => Self::Paper,
         }
     }

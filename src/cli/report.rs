@@ -35,6 +35,7 @@ impl Done {
             "brightness": outcome.seeding.brightness.as_ref().map(brightness),
             "trust": number(outcome.seeding.trust),
             "coverage": coverage(&outcome.dense.disparity),
+            "measured": outcome.dense.measured(),
             "seconds": seconds,
             "warnings": warnings,
         })
@@ -59,6 +60,7 @@ fn parameters(config: &Config) -> Value {
         uniqueness,
         consistency,
         refinement,
+        equalise,
         force,
     } = config;
     let matching = &seeding.matching;
@@ -81,6 +83,7 @@ fn parameters(config: &Config) -> Value {
             "fill": fill,
             "medians_after": medians_after,
         })),
+        "equalise": equalise,
         "force": force,
         "features": {
             "octaves": features.octaves,

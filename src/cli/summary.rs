@@ -40,7 +40,10 @@ impl Done {
         line(&mut text, "rectified", rectified);
         line(&mut text, "trust", format!("{:.2} of 1", seeding.trust));
         let share = 100.0 * coverage(&outcome.dense.disparity);
-        line(&mut text, "coverage", format!("{share:.1} % of {width}x{height} pixels"));
+        let measured = 100.0 * outcome.dense.measured();
+        let filled =
+            if measured < share { format!(", {measured:.1} % measured and the rest filled") } else { "".into() };
+        line(&mut text, "coverage", format!("{share:.1} % of {width}x{height} pixels{filled}"));
         line(&mut text, "time", format!("{:.2} s ({})", total.as_secs_f64(), steps.join(", ")));
         text
     }

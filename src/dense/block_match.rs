@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{
+    census::Brightness,
     config::{DenseConfig, View},
     pad::PadParams,
 };
@@ -214,8 +215,8 @@ impl Layout {
         2 * u64::from(self.padded_rows()) * u64::from(self.stride())
     }
 
-    /// How the left and the right picture are padded.
-    pub fn padding(&self) -> [PadParams; 2] {
+    /// How the left and the right picture are padded, the right one after a change of its brightness.
+    pub fn padding(&self, brightness: Brightness) -> [PadParams; 2] {
         [View::Left, View::Right].map(|view| PadParams {
             width: self.width,
             height: self.height,
@@ -224,6 +225,7 @@ impl Layout {
             rows: self.padded_rows(),
             stride: self.stride(),
             offset: self.offset(view),
+            brightness: if view == View::Left { Brightness::SAME } else { brightness },
         })
     }
 

@@ -53,7 +53,7 @@ pub(super) fn plan(
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, &tiles)?;
-        let [pad_left, pad_right] = layout.padding();
+        let [pad_left, pad_right] = layout.padding(config.brightness);
         plan.run(pad.prepare(device, pad_left, left, &planes));
         plan.run(pad.prepare(device, pad_right, right, &planes));
         plan.run(block_match.prepare(device, &layout, &planes, &matches, confidence_offset));

@@ -11,7 +11,8 @@ use crate::{
 const WORKGROUP: [u32; 2] = [16, 4];
 
 /// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Brightness {
     /// In 1/256, up to 2^20 either way.
     pub gain: i32,
@@ -45,8 +46,6 @@ struct Params {
     rows: u32,
     stride: u32,
     start: u32,
-    gain: i32,
-    offset: i32,
 }
 
 /// The census kernel.
@@ -68,8 +67,8 @@ impl Census {
         Self(Kernel::new(device, &Self::stage()))
     }
 
-    /// How a picture is padded for it, the plane beginning at the buffer's first word.
-    pub fn padding((width, height): (u32, u32)) -> PadParams {
+    /// How a picture is padded for it, after a change of brightness, the plane beginning at the buffer's first word.
+    pub fn padding((width, height): (u32, u32), brightness: Brightness) -> PadParams {
         PadParams {
             width,
             height,
@@ -78,22 +77,21 @@ impl Census {
             rows: height + 4,
             stride: width.div_ceil(4) + 2,
             offset: 0,
+            brightness,
         }
     }
 
     /// Transforms the picture that stands in `padded` as [`Self::padding`] says: a word a pixel, the 24
-    /// bits of its window above its brightened luma.
+    /// bits of its window above its luma.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         (width, height): (u32, u32),
-        brightness: Brightness,
         padded: &wgpu::Buffer,
         census: &wgpu::Buffer,
     ) -> Dispatch {
-        let Brightness { gain, offset } = brightness;
-        let padding = Self::padding((width, height));
-        let params = Params { width, rows: height, stride: padding.stride, start: padding.offset, gain, offset };
+        let padding = Self::padding((width, height), Brightness::SAME);
+        let params = Params { width, rows: height, stride: padding.stride, start: padding.offset };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
     }

@@ -19,9 +19,18 @@ use crate::{
 pub struct Dense {
     /// Fixed-point disparities; see [`crate::disparity`].
     pub disparity: DisparityMap,
-    /// 0 where there is no disparity, otherwise 1 to 255: the margin by which the winner's cost is
-    /// below its best rival's, as a share of the rival's.
+    /// How far a disparity can be trusted, 1 to 255; 0 where there is none, or only what was filled in. Without
+    /// refinement it is the margin by which the winner's cost is below its best rival's, as a share of the
+    /// rival's; with it, 1 to 245, mostly how many of the pixels around share it.
     pub confidence: Plane<u8>,
+}
+
+impl Dense {
+    /// The share of pixels, 0 to 1, whose disparity was measured and not filled in.
+    pub fn measured(&self) -> f64 {
+        let confidences = self.confidence.data();
+        confidences.iter().filter(|&&confidence| confidence > 0).count() as f64 / confidences.len() as f64
+    }
 }
 
 /// Dense matching of pairs of one size on a borrowed device.

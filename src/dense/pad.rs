@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::census::Brightness;
 use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [64, 4];
@@ -25,6 +26,8 @@ pub struct PadParams {
     pub stride: u32,
     /// Word of the buffer at which the plane begins.
     pub offset: u32,
+    /// The change of brightness on the way.
+    pub brightness: Brightness,
 }
 
 /// The padding kernel.

@@ -99,8 +99,10 @@ struct Side {
     cost: CostVolume,
     directions: &'static [Direction],
     select: Select,
-    /// The last row of each path so far; and for each band, the row below it of each path from there.
-    carried: Option<wgpu::Buffer>,
+    /// The last rows so far of the paths from above; and for each band but the first, the first rows of the
+    /// paths from below. None where there is one band.
+    above: Option<wgpu::Buffer>,
+    below: Vec<wgpu::Buffer>,
     /// In which buffer its answers stand.
     matches: wgpu::Buffer,
 }
@@ -125,14 +127,14 @@ pub(super) fn plan(
 
     let mut plan = Plan::new(bands.len());
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
-    let padding = Census::padding(size);
+    let padding = Census::padding(size, Brightness::SAME);
     let padded = plan.buffer(device, "padded plane", u64::from(padding.rows) * u64::from(padding.stride))?;
     let (pad, census) = (Pad::new(device), Census::new(device));
     let pixels = u64::from(width) * u64::from(height);
     let transformed = [plan.buffer(device, "census, left", pixels)?, plan.buffer(device, "census, right", pixels)?];
     for ((view, out), brightness) in views.iter().zip(&transformed).zip([Brightness::SAME, config.brightness]) {
-        plan.run(pad.prepare(device, padding, view, &padded));
-        plan.run(census.prepare(device, size, brightness, &padded, out));
+        plan.run(pad.prepare(device, Census::padding(size, brightness), view, &padded));
+        plan.run(census.prepare(device, size, &padded, out));
     }
 
     let path_words = row_words * (u64::from(band_rows) + 2);
@@ -145,7 +147,12 @@ pub(super) fn plan(
     };
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let mut side = |view: View, wanted: Wanted| -> Result<Side> {
-        let kept = (bands.len() > 1).then_some(row_words * directions.len() as u64 * (bands.len() as u64 + 1));
+        let mut rows = |label, dy| {
+            let paths = directions.iter().filter(|direction| direction.dy == dy).count();
+            plan.buffer(device, label, row_words * paths as u64)
+        };
+        let above = (bands.len() > 1).then(|| rows("paths from above", 1)).transpose()?;
+        let below = (1..bands.len()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
         let matches = match wanted {
             Wanted::Matches => plan.buffer(device, "matches", match_words)?,
             Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
@@ -157,7 +164,8 @@ pub(super) fn plan(
             cost: CostVolume::new(device, &semi_global.cost, view),
             directions,
             select: Select::new(device, paths, interpolation, wanted, config.uniqueness),
-            carried: kept.map(|words| plan.buffer(device, "paths between bands", words)).transpose()?,
+            above,
+            below,
             matches,
         })
     };
@@ -199,59 +207,57 @@ impl Side {
         }
     }
 
-    /// Follows the paths from below from the last band to the second, and keeps the row below each band.
+    /// The paths with this step from row to row: their number, and their place among themselves.
+    fn paths(&self, dy: i32) -> impl Iterator<Item = (usize, u64)> {
+        let numbers = (0..self.directions.len()).filter(move |&number| self.directions[number].dy == dy);
+        numbers.zip(0..)
+    }
+
+    /// Follows the paths from below from the last band to the second, and keeps the first row of each band.
     fn follow_from_below(&self, device: &wgpu::Device, plan: &mut Plan, shared: &Shared, bands: &[VolumeBand]) {
-        let Some(carried) = &self.carried else { return };
         let [reference, other] = self.census(shared);
         for (index, band) in bands.iter().enumerate().skip(1).rev() {
             plan.run(self.cost.prepare(device, band, [reference, other], &shared.costs));
-            for (number, &direction) in self.directions.iter().enumerate() {
-                if direction.dy >= 0 {
-                    continue;
-                }
-                let goes_on = index + 1 < bands.len();
-                if goes_on {
-                    self.bring(plan, shared, band, number, index + 1, carried);
-                }
+            for (number, place) in self.paths(-1) {
+                self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
                 let row = u64::from(band.row_words());
-                let start = number as u64 * shared.path_words + row;
-                let (costs, paths) = (&shared.costs, &shared.paths);
-                plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start as u32, goes_on));
                 plan.copy(Copy {
-                    from: paths.clone(),
-                    from_word: start,
-                    to: Target::Buffer(carried.clone()),
-                    to_word: self.kept(band, number, index),
+                    from: shared.paths.clone(),
+                    from_word: number as u64 * shared.path_words + row,
+                    to: Target::Buffer(self.below[index - 1].clone()),
+                    to_word: place * row,
                     words: row,
                 });
             }
         }
     }
 
-    /// Where the row is kept that a path of number `number` enters the band in front of, or behind, band `index` with.
-    fn kept(&self, band: &VolumeBand, number: usize, index: usize) -> u64 {
-        u64::from(band.row_words()) * (index * self.directions.len() + number) as u64
-    }
-
-    /// Copies a kept row to where a path goes on from it: in front of the band, or behind it.
-    fn bring(
+    /// Follows a path through a band, from where it enters it if it does not begin there.
+    fn follow(
         &self,
+        device: &wgpu::Device,
         plan: &mut Plan,
         shared: &Shared,
         band: &VolumeBand,
         number: usize,
-        kept: usize,
-        carried: &wgpu::Buffer,
+        from: Option<(&wgpu::Buffer, u64)>,
     ) {
         let row = u64::from(band.row_words());
-        let before = if self.directions[number].dy > 0 { 0 } else { u64::from(band.rows) + 1 };
-        plan.copy(Copy {
-            from: carried.clone(),
-            from_word: self.kept(band, number, kept),
-            to: Target::Buffer(shared.paths.clone()),
-            to_word: number as u64 * shared.path_words + before * row,
-            words: row,
-        });
+        let direction = self.directions[number];
+        let start = number as u64 * shared.path_words;
+        if let Some((rows, place)) = from {
+            let before = if direction.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
+            plan.copy(Copy {
+                from: rows.clone(),
+                from_word: place * row,
+                to: Target::Buffer(shared.paths.clone()),
+                to_word: start + before * row,
+                words: row,
+            });
+        }
+        let [reference, _] = self.census(shared);
+        let (costs, paths, start) = (&shared.costs, &shared.paths, (start + row) as u32);
+        plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start, from.is_some()));
     }
 
     /// Costs, paths and answers of a band.
@@ -265,34 +271,29 @@ impl Side {
         confidence_offset: u32,
     ) {
         let band = &bands[index];
-        let [reference, other] = self.census(shared);
-        let (costs, paths) = (&shared.costs, &shared.paths);
         let row = u64::from(band.row_words());
-        plan.run(self.cost.prepare(device, band, [reference, other], costs));
-        for (number, &direction) in self.directions.iter().enumerate() {
-            let goes_on = match direction.dy {
-                0 => false,
-                1.. => index > 0,
-                _ => index + 1 < bands.len(),
-            };
-            let start = number as u64 * shared.path_words + row;
-            if let (Some(carried), true) = (&self.carried, goes_on) {
-                // Rows from above are kept in front of all others, in the place of band 0.
-                self.bring(plan, shared, band, number, if direction.dy > 0 { 0 } else { index + 1 }, carried);
-            }
-            plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start as u32, goes_on));
-            if let (Some(carried), 1) = (&self.carried, direction.dy) {
+        plan.run(self.cost.prepare(device, band, self.census(shared), &shared.costs));
+        for (number, _) in self.paths(0) {
+            self.follow(device, plan, shared, band, number, None);
+        }
+        for (number, place) in self.paths(-1) {
+            self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
+        }
+        for (number, place) in self.paths(1) {
+            let above = self.above.as_ref().filter(|_| index > 0);
+            self.follow(device, plan, shared, band, number, above.map(|rows| (rows, place)));
+            if let Some(above) = &self.above {
                 plan.copy(Copy {
-                    from: paths.clone(),
-                    from_word: start + row * u64::from(band.rows - 1),
-                    to: Target::Buffer(carried.clone()),
-                    to_word: self.kept(band, number, 0),
+                    from: shared.paths.clone(),
+                    from_word: number as u64 * shared.path_words + row * u64::from(band.rows),
+                    to: Target::Buffer(above.clone()),
+                    to_word: place * row,
                     words: row,
                 });
             }
         }
-        let volume = shared.path_words as u32;
-        plan.run(self.select.prepare(device, band, paths, row as u32, volume, &self.matches, confidence_offset));
+        let (paths, matches, volume) = (&shared.paths, &self.matches, shared.path_words as u32);
+        plan.run(self.select.prepare(device, band, paths, row as u32, volume, matches, confidence_offset));
     }
 }
 

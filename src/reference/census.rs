@@ -1,13 +1,10 @@
 //! The census transform, from the definition.
 
-use crate::{
-    dense::Brightness,
-    image::{Luma, Plane},
-};
+use crate::image::{Luma, Plane};
 
 /// For each pixel 24 bits that say which of the others in its 5x5 window are darker, row by row, the first the highest,
-/// above the eight of its brightened luma; beyond an edge, the picture goes on with its last pixel.
-pub fn census(luma: &Luma, brightness: Brightness) -> Plane<u32> {
+/// above the eight of its luma; beyond an edge, the picture goes on with its last pixel.
+pub fn census(luma: &Luma) -> Plane<u32> {
     let (width, height) = luma.size();
     Plane::from_fn(width, height, |x, y| {
         let centre = luma.get(x, y);
@@ -17,11 +14,6 @@ pub fn census(luma: &Luma, brightness: Brightness) -> Plane<u32> {
                 bits = bits << 1 | u32::from(luma.get_clamped(i64::from(x) + i, i64::from(y) + j) < centre);
             }
         }
-        bits << 8 | u32::from(brightened(centre, brightness))
+        bits << 8 | u32::from(centre)
     })
-}
-
-/// A luma after a change of brightness.
-pub fn brightened(luma: u8, Brightness { gain, offset }: Brightness) -> u8 {
-    ((gain * i32::from(luma) + offset + 128) >> 8).clamp(0, 255) as u8
 }

@@ -1,8 +1,10 @@
 //! The dense half in one call.
 
-use super::{block_match, census, check_consistency, cost_volume, filled, path, select, supported, weighted_median};
+use super::{
+    block_match, brightened, census, check_consistency, cost_volume, filled, path, select, supported, weighted_median,
+};
 use crate::{
-    dense::{Aggregation, Brightness, Dense, DenseConfig, Interpolation, Refinement, SemiGlobal, View},
+    dense::{Aggregation, Dense, DenseConfig, Interpolation, Refinement, SemiGlobal, View},
     disparity::DisparityRange,
     error::{Error, Result},
     image::Luma,
@@ -18,6 +20,8 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
     config.validate()?;
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
+    let unchanged = [left, right];
+    let right = &right.map(|&luma| brightened(luma, config.brightness));
     let seen_from = |view: View, config: &DenseConfig| match &config.aggregation {
         Aggregation::Window(_) => block_match(left, right, view, config),
         Aggregation::Paths(semi_global) => match_semi_globally(left, right, view, config, semi_global),
@@ -30,7 +34,7 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
     match &config.refinement {
         Some(refinement) => {
-            let luma = if config.reference == View::Left { left } else { right };
+            let luma = unchanged[usize::from(config.reference == View::Right)];
             Ok(refined(&dense, luma, refinement, config.range))
         }
         None => Ok(dense),
@@ -61,7 +65,7 @@ fn match_semi_globally(
     config: &DenseConfig,
     SemiGlobal { cost, penalties, paths }: &SemiGlobal,
 ) -> Dense {
-    let (left, right) = (census(left, Brightness::SAME), census(right, config.brightness));
+    let (left, right) = (census(left), census(right));
     let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
     let costs = cost_volume([reference, other], view, cost, config.range);
     let paths: Vec<_> =

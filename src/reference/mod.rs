@@ -27,12 +27,12 @@ mod weighted_median;
 pub mod workgroups;
 
 pub use block_match::{block_match, cost, winners};
-pub use census::{brightened, census};
+pub use census::census;
 pub use consistency::check_consistency;
 pub use cost::cost_volume;
 pub use dense::compute_dense;
 pub use fill::filled;
-pub use pad::padded;
+pub use pad::{brightened, padded};
 pub use path::path;
 pub use select::select;
 pub use support::supported;

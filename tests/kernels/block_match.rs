@@ -1,7 +1,7 @@
 //! Block matching.
 
 use hsad::{
-    dense::{BlockMatch, DenseConfig, Interpolation, Layout, Pad, Tile, View, Wanted},
+    dense::{BlockMatch, Brightness, DenseConfig, Interpolation, Layout, Pad, Tile, View, Wanted},
     disparity::{DisparityRange, SCALE},
     image::Luma,
     luma::pack,
@@ -19,7 +19,7 @@ fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig, wanted
     let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
     let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
     let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
-    let [left_padding, right_padding] = layout.padding();
+    let [left_padding, right_padding] = layout.padding(Brightness::SAME);
     let dispatches = [
         pad.prepare(device, left_padding, &upload_luma(left), &planes),
         pad.prepare(device, right_padding, &upload_luma(right), &planes),

@@ -1,7 +1,7 @@
 //! The matching cost.
 
 use hsad::{
-    dense::{Brightness, Cost, CostVolume, Difference, View, VolumeBand},
+    dense::{Cost, CostVolume, Difference, View, VolumeBand},
     disparity::DisparityRange,
     image::Plane,
     reference::{census, cost_volume},
@@ -28,7 +28,7 @@ fn on_device(views: [&Plane<u32>; 2], view: View, cost: &Cost, band: &VolumeBand
 fn compare(size: (u32, u32), view: View, cost: &Cost, (min, count): (i32, u32)) {
     let (width, height) = size;
     let range = DisparityRange::new(min, count).unwrap();
-    let [a, b] = [1, 2].map(|seed| census(&picture(width, height, seed), Brightness::SAME));
+    let [a, b] = [1, 2].map(|seed| census(&picture(width, height, seed)));
     let expected = cost_volume([&a, &b], view, cost, range);
     let what = format!("{width}x{height} {view:?} {count} from {min}");
     let band = VolumeBand { width, first_row: 0, rows: height, range };

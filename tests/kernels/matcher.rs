@@ -2,7 +2,8 @@
 
 use hsad::{
     dense::{
-        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, Paths, Penalties, SemiGlobal, View,
+        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, Paths, Penalties, Refinement,
+        SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
     error::Error,
@@ -23,7 +24,8 @@ fn pair(width: u32, height: u32) -> (Luma, Luma) {
 
 fn config(reference: View) -> DenseConfig {
     let range = DisparityRange::new(-2, 30).unwrap();
-    DenseConfig { uniqueness: 10, consistency: Some(256), reference, ..DenseConfig::new(range) }
+    let brightness = Brightness { gain: 280, offset: -700 };
+    DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
 }
 
 fn semi_global(reference: View, paths: Paths) -> DenseConfig {
@@ -32,7 +34,7 @@ fn semi_global(reference: View, paths: Paths) -> DenseConfig {
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
         aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths }),
-        brightness: Brightness { gain: 280, offset: -700 },
+        refinement: Some(Refinement { support: 9, medians_before: 1, fill: true, medians_after: 1 }),
         ..config(reference)
     }
 }

@@ -1,7 +1,7 @@
 //! Padding.
 
 use hsad::{
-    dense::{Pad, PadParams},
+    dense::{Brightness, Pad, PadParams},
     reference::padded,
 };
 
@@ -18,14 +18,16 @@ fn on_device(width: u32, height: u32, seed: u32, params: PadParams) -> Vec<u32> 
 
 #[test]
 fn by_hand() {
-    // Of the row 10 20 30 the columns -4 to 7, twice.
+    // Of the row 10 20 30 the columns -4 to 7, twice, each pixel half as bright and one more.
+    let brightness = Brightness { gain: 128, offset: 256 };
     let luma = upload(&[0x001e_140a_u32]);
-    let params = PadParams { width: 3, height: 1, first_word: -1, first_row: -1, rows: 2, stride: 3, offset: 1 };
+    let params =
+        PadParams { width: 3, height: 1, first_word: -1, first_row: -1, rows: 2, stride: 3, offset: 1, brightness };
     let out = upload(&[0_u32; 7]);
     poison(&out);
     let pad = Pad::new(&gpu().device).prepare(&gpu().device, params, &luma, &out);
     run(|encoder| pad.record(encoder));
-    let row = [0x0a0a_0a0a, 0x1e1e_140a, 0x1e1e_1e1e];
+    let row = [0x0606_0606, 0x1010_0b06, 0x1010_1010];
     assert_eq!(download::<u32>(&out), [u32::MAX, row[0], row[1], row[2], row[0], row[1], row[2]]);
 }
 
@@ -41,6 +43,7 @@ fn the_twin_pads_the_same() {
                 rows: height + 7,
                 stride: width.div_ceil(4) + 12,
                 offset: 0,
+                brightness: Brightness { gain: 300, offset: -9000 },
             };
             let what = format!("{width}x{height} from word {first_word}");
             assert_same(&what, &on_device(width, height, 5, params), &padded(&picture(width, height, 5), &params));

@@ -40,7 +40,7 @@ fn the_twin_keeps_the_same() {
     for (width, height) in SIZES {
         for least in [0, 1, 9, 49] {
             let disparity = map(width, height, 81);
-            let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE) * 99), disparity };
+            let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE) * (d % 200) as u8), disparity };
             let (actual, expected) = (on_device(&dense, least), supported(&dense, least));
             let what = format!("{width}x{height}, {least}");
             assert_same(&what, actual.disparity.data(), expected.disparity.data());
@@ -53,8 +53,8 @@ fn the_twin_keeps_the_same() {
 fn by_hand() {
     // Three that differ by a pixel each from the next: only the middle one has two that share it.
     let disparity = Plane::new(4, 1, vec![0, 256, 512, NONE]).unwrap();
-    let dense = Dense { confidence: Plane::new(4, 1, vec![5, 6, 7, 0]).unwrap(), disparity };
+    let dense = Dense { confidence: Plane::new(4, 1, vec![5, 200, 7, 0]).unwrap(), disparity };
     let kept = on_device(&dense, 3);
     assert_eq!(kept.disparity.data(), [NONE, 256, NONE, NONE]);
-    assert_eq!(kept.confidence.data(), [0, 6, 0, 0]);
+    assert_eq!(kept.confidence.data(), [0, 1 + 5 * 2 + 3, 0, 0]);
 }
