@@ -12,10 +12,12 @@ struct Params {
     max_difference: u32,
     // Where the confidences begin, four a word.
     confidence_offset: u32,
+    // Of index 0, where the others are claims.
+    min_disparity: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// A fixed-point disparity a pixel of the other view.
+// A fixed-point disparity a pixel of the other view; or, with CLAIMS, the inverted key of a disparity, or 0.
 @group(0) @binding(1) var<storage, read> others: array<i32>;
 // A fixed-point disparity a pixel of the reference view, then a confidence a pixel, four a word.
 @group(0) @binding(2) var<storage, read_write> matches: array<i32>;
@@ -43,8 +45,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 
 fn is_consistent(row: u32, x: i32, disparity: i32) -> bool {
     let partner = x + params.direction * ((disparity + SCALE / 2) >> SCALE_BITS);
-    let other = others[row + u32(clamp(partner, 0, i32(params.width) - 1))];
+    let other = disparity_of(others[row + u32(clamp(partner, 0, i32(params.width) - 1))]);
     let exists = disparity != NONE && partner >= 0 && partner < i32(params.width) && other != NONE;
     // Only where both exist is their difference sure to be one.
     return exists && u32(abs(disparity - other)) <= params.max_difference;
+}
+
+fn disparity_of(word: i32) -> i32 {
+    if CLAIMS == 0 {
+        return word;
+    }
+    let index = ~word & ((1 << INDEX_BITS) - 1);
+    return select((params.min_disparity + index) * SCALE, NONE, word == 0);
 }

@@ -15,11 +15,14 @@ struct Params {
     uniqueness: u32,
     // Where the confidences begin, four a word.
     confidence_offset: u32,
+    // Where the winners' keys begin, a word a pixel.
+    key_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> volumes: array<u32>;
-// A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
+// A fixed-point disparity a pixel; if FULL, a confidence a pixel, 0 to 255, four a word; if KEYS, the
+// winner's key a pixel.
 @group(0) @binding(2) var<storage, read_write> matches: array<i32>;
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
@@ -68,6 +71,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if x + t < params.width {
             matches[row + x + t] = i32(answers[t].x);
             word |= answers[t].y << (8u * t);
+            if KEYS != 0 {
+                matches[params.key_offset + row + x + t] = i32(best[t]);
+            }
         }
     }
     if FULL != 0 {

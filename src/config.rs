@@ -2,7 +2,7 @@
 
 use crate::{
     dense::{
-        Aggregation, Brightness, Cost, DenseConfig, Difference, Interpolation, Paths, Penalties, Refinement,
+        Aggregation, Brightness, Cost, DenseConfig, Difference, Interpolation, OtherView, Paths, Penalties, Refinement,
         SemiGlobal, View,
     },
     disparity::DisparityRange,
@@ -95,10 +95,10 @@ const OPENSURF_THRESHOLD: f32 = 0.0004;
 pub enum Preset {
     /// Block matching in windows of 11x11, checked for uniqueness and from the other view, with holes.
     Fast,
-    /// Semi-global matching along four paths, checked from the other view and filled.
+    /// Semi-global matching along three paths, checked and filled.
     #[default]
     Balanced,
-    /// The same, with more refinement.
+    /// Semi-global matching of both views along four paths, checked against each other, filled and refined.
     Quality,
     /// The paper to the letter: the right view is the reference and is searched for in the left to
     /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
@@ -116,7 +116,8 @@ const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
         gradient: Difference { weight: 12, limit: 16 },
     },
     penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
-    paths: Paths::Four,
+    paths: Paths::Three,
+    other_view: OtherView::Claimed,
 };
 
 impl Preset {
@@ -143,6 +144,11 @@ impl Preset {
         match self {
             Self::Balanced => balanced,
             Self::Quality => Config {
+                aggregation: Aggregation::Paths(SemiGlobal {
+                    paths: Paths::Four,
+                    other_view: OtherView::Searched,
+                    ..SEMI_GLOBAL
+                }),
                 refinement: Some(Refinement { support: 10, medians_before: 1, fill: true, medians_after: 2 }),
                 ..balanced
             },

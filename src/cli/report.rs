@@ -2,7 +2,7 @@
 
 use hsad::{
     config::Config,
-    dense::{Aggregation, Difference, Interpolation, Refinement, SemiGlobal, View},
+    dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     pipeline::RangeSource,
@@ -104,12 +104,13 @@ fn parameters(config: &Config) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Paths(SemiGlobal { cost, penalties, paths }) = aggregation else {
+    let Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }) = aggregation else {
         return "window".into();
     };
     let part = |Difference { weight, limit }: Difference| json!({ "weight": weight, "limit": limit });
     json!({
         "paths": paths.directions().len(),
+        "other_view": match other_view { OtherView::Searched => "searched", OtherView::Claimed => "claimed" },
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),

@@ -6,7 +6,7 @@
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
     config::{DenseConfig, View},
-    consistency::Consistency,
+    consistency::{Consistency, Others},
     pad::Pad,
     plan::{Plan, match_words},
     refine::plan_refinement,
@@ -46,7 +46,7 @@ pub(super) fn plan(
         Some(max_difference) => {
             let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tiles[1]);
             let winners = plan.buffer(device, "winners of the other view", confidence_offset.into())?;
-            Some((find_winners, winners, Consistency::new(device), max_difference))
+            Some((find_winners, winners, Consistency::new(device, Others::Disparities), max_difference))
         }
     };
 

@@ -23,6 +23,14 @@ impl View {
             Self::Right => Self::Left,
         }
     }
+
+    /// The sign of the way from a pixel of this view to its partner in the other.
+    pub(crate) fn direction(self) -> i32 {
+        match self {
+            Self::Left => -1,
+            Self::Right => 1,
+        }
+    }
 }
 
 /// How a disparity is placed between whole pixels, from the costs of the winner and its two

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::config::View;
+use super::{config::View, select::INDEX_BITS};
 use crate::{
     disparity::{NONE, SCALE},
     gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
@@ -18,14 +18,27 @@ struct Params {
     direction: i32,
     max_difference: u32,
     confidence_offset: u32,
+    min_disparity: i32,
+}
+
+/// What is known of the other view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Others {
+    /// A fixed-point disparity a pixel.
+    Disparities,
+    /// The claims of [`super::Claim`], where index 0 is this disparity.
+    Claims(i32),
 }
 
 /// The left-right consistency kernel.
-pub struct Consistency(Kernel);
+pub struct Consistency {
+    kernel: Kernel,
+    others: Others,
+}
 
 impl Consistency {
     /// What the kernel is made of.
-    pub fn stage() -> Stage {
+    pub fn stage(others: Others) -> Stage {
         Stage {
             name: "consistency",
             source: include_str!("../../shaders/consistency.wgsl"),
@@ -36,13 +49,15 @@ impl Consistency {
                 ("SCALE", SCALE.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
                 ("NONE", NONE.into()),
+                ("CLAIMS", (others != Others::Disparities).into()),
+                ("INDEX_BITS", INDEX_BITS.into()),
             ],
         }
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(device: &wgpu::Device, others: Others) -> Self {
+        Self { kernel: Kernel::new(device, &Self::stage(others)), others }
     }
 
     /// Takes away from `matches` of `view` (`width` x `rows` disparities, and from word
@@ -59,13 +74,14 @@ impl Consistency {
         others: &wgpu::Buffer,
         matches: &wgpu::Buffer,
     ) -> Dispatch {
-        let direction = match view {
-            View::Left => -1,
-            View::Right => 1,
+        let min_disparity = match self.others {
+            Others::Disparities => 0,
+            Others::Claims(min_disparity) => min_disparity,
         };
-        let params = Params { width, rows, direction, max_difference, confidence_offset };
+        let direction = view.direction();
+        let params = Params { width, rows, direction, max_difference, confidence_offset, min_disparity };
         let params = uniform_buffer(device, "consistency", &params);
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, others, matches], groups)
+        self.kernel.dispatch(device, &[&params, others, matches], groups)
     }
 }

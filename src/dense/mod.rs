@@ -7,6 +7,7 @@ mod band;
 mod block_match;
 mod blocks;
 mod census;
+mod claim;
 mod config;
 mod consistency;
 mod cost;
@@ -26,8 +27,9 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
 pub use census::{Brightness, Census};
+pub use claim::Claim;
 pub use config::{Aggregation, DenseConfig, Interpolation, View};
-pub use consistency::Consistency;
+pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
 pub use matcher::{Dense, Matcher, compute};
@@ -35,14 +37,15 @@ pub use pad::{Pad, PadParams};
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
 pub use select::Select;
-pub use semi_global::{Paths, SemiGlobal};
+pub use semi_global::{OtherView, Paths, SemiGlobal};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use weighted_median::{Median, WeightedMedian};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, either view and what it may be asked for.
 pub fn stages() -> Vec<Stage> {
-    let mut stages = vec![Pad::stage(), Consistency::stage(), Census::stage()];
+    let mut stages = vec![Pad::stage(), Claim::stage(), Census::stage()];
+    stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
     for window in (3..=31).step_by(2) {
         let hardware = [Tile::HARDWARE; 2];
         let [tile, winners] = if window % 4 == 1 { hardware } else { [Tile::SOFTWARE, Tile::SOFTWARE_WINNERS] };
@@ -57,7 +60,10 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
-    stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| Select::stage(4, Interpolation::Parabola, wanted)));
+    stages.extend(
+        [Wanted::Matches, Wanted::Winners]
+            .map(|wanted| Select::stage(4, Interpolation::Parabola, wanted, wanted == Wanted::Matches)),
+    );
     stages.extend([Support::stage(5), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));

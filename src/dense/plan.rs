@@ -11,6 +11,8 @@ pub(super) enum Step {
     Run(Dispatch),
     /// Copies words.
     Copy(Copy),
+    /// Sets a whole buffer to 0.
+    Clear(wgpu::Buffer),
 }
 
 /// Words of a buffer that go elsewhere.
@@ -59,6 +61,10 @@ impl Plan {
         self.steps.push(Step::Run(dispatch));
     }
 
+    pub(super) fn clear(&mut self, buffer: &wgpu::Buffer) {
+        self.steps.push(Step::Clear(buffer.clone()));
+    }
+
     pub(super) fn copy(&mut self, copy: Copy) {
         self.steps.push(Step::Copy(copy));
     }
@@ -98,6 +104,7 @@ impl Plan {
         for step in &self.steps {
             match step {
                 Step::Run(dispatch) => dispatch.record(encoder),
+                Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
                 Step::Copy(Copy { from, from_word, to, to_word, words }) => {
                     let to = match to {
                         Target::Buffer(buffer) => buffer,

@@ -11,7 +11,7 @@ use crate::{
 const WORKGROUP: [u32; 2] = [16, 4];
 
 /// The bits of a key that hold the disparity's index.
-const INDEX_BITS: i64 = 16;
+pub(super) const INDEX_BITS: u32 = 16;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -25,6 +25,7 @@ struct Params {
     disparities: u32,
     uniqueness: u32,
     confidence_offset: u32,
+    key_offset: u32,
 }
 
 /// The kernel that sums the costs of all paths up and decides.
@@ -34,8 +35,8 @@ pub struct Select {
 }
 
 impl Select {
-    /// What the kernel is made of, for so many paths.
-    pub fn stage(paths: u32, interpolation: Interpolation, wanted: Wanted) -> Stage {
+    /// What the kernel is made of, for so many paths; `keys`: the winners' keys are wanted as well.
+    pub fn stage(paths: u32, interpolation: Interpolation, wanted: Wanted, keys: bool) -> Stage {
         Stage {
             name: "select",
             source: concat!(
@@ -48,10 +49,11 @@ impl Select {
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("PATHS", paths.into()),
-                ("SHIFT", INDEX_BITS),
+                ("SHIFT", INDEX_BITS.into()),
                 ("SCALE", SCALE.into()),
                 ("NONE", NONE.into()),
                 ("FULL", (wanted == Wanted::Matches).into()),
+                ("KEYS", keys.into()),
                 ("PARABOLA", 1),
                 ("EQUIANGULAR", 2),
                 ("INTERPOLATION", interpolation.code()),
@@ -65,13 +67,15 @@ impl Select {
         paths: u32,
         interpolation: Interpolation,
         wanted: Wanted,
+        keys: bool,
         uniqueness: u32,
     ) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(paths, interpolation, wanted)), uniqueness }
+        Self { kernel: Kernel::new(device, &Self::stage(paths, interpolation, wanted, keys)), uniqueness }
     }
 
     /// Decides a band, whose first volume begins at word `start` of `volumes` and each further one
-    /// `volume_words` words later; the results as [`super::BlockMatch::prepare`] leaves them.
+    /// `volume_words` words later; the results as [`super::BlockMatch::prepare`] leaves them, with the
+    /// winners' keys from word `key_offset` on if they are wanted.
     #[expect(clippy::too_many_arguments, reason = "two buffers, and places in them")]
     pub fn prepare(
         &self,
@@ -81,7 +85,7 @@ impl Select {
         start: u32,
         volume_words: u32,
         matches: &wgpu::Buffer,
-        confidence_offset: u32,
+        [confidence_offset, key_offset]: [u32; 2],
     ) -> Dispatch {
         let params = Params {
             width: band.width,
@@ -93,6 +97,7 @@ impl Select {
             disparities: band.range.count,
             uniqueness: self.uniqueness,
             confidence_offset,
+            key_offset,
         };
         let groups = [band.width.div_ceil(4 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "select", &params);

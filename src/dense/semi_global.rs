@@ -10,8 +10,9 @@ use super::{
     band::VolumeBand,
     block_match::Wanted,
     census::{Brightness, Census},
+    claim::Claim,
     config::{DenseConfig, View},
-    consistency::Consistency,
+    consistency::{Consistency, Others},
     cost::{Cost, CostVolume},
     pad::Pad,
     path::{Direction, Path, Penalties},
@@ -33,11 +34,24 @@ pub struct SemiGlobal {
     pub penalties: Penalties,
     /// From how many sides a pixel is reached.
     pub paths: Paths,
+    /// Where the disparities of the other view come from, that a check compares with.
+    pub other_view: OtherView,
+}
+
+/// Where the disparities of the other view come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OtherView {
+    /// From a search of its own, for as much work again.
+    Searched,
+    /// From the winners of the reference view: see [`super::Claim`].
+    Claimed,
 }
 
 /// From how many sides a pixel is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paths {
+    /// Along its row from both ends and along its column from above: no row has to wait for those below it.
+    Three,
     /// Along its row and its column.
     Four,
     /// From those and along both diagonals.
@@ -48,6 +62,7 @@ impl Paths {
     /// Their directions.
     pub fn directions(self) -> &'static [Direction] {
         match self {
+            Self::Three => &Direction::ALL[..3],
             Self::Four => &Direction::ALL[..4],
             Self::Eight => &Direction::ALL,
         }
@@ -146,6 +161,9 @@ pub(super) fn plan(
         path: Path::new(device, &semi_global.penalties, bands[0].words()),
     };
     let (match_words, confidence_offset) = match_words(width, band_rows);
+    let claimed = config.consistency.is_some() && semi_global.other_view == OtherView::Claimed;
+    let key_words = if claimed { u64::from(confidence_offset) } else { 0 };
+    let offsets = [confidence_offset, match_words as u32];
     let mut side = |view: View, wanted: Wanted| -> Result<Side> {
         let mut rows = |label, dy| {
             let paths = directions.iter().filter(|direction| direction.dy == dy).count();
@@ -154,7 +172,7 @@ pub(super) fn plan(
         let above = (bands.len() > 1).then(|| rows("paths from above", 1)).transpose()?;
         let below = (1..bands.len()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
         let matches = match wanted {
-            Wanted::Matches => plan.buffer(device, "matches", match_words)?,
+            Wanted::Matches => plan.buffer(device, "matches", match_words + key_words)?,
             Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
         };
         let paths = directions.len() as u32;
@@ -163,29 +181,35 @@ pub(super) fn plan(
             view,
             cost: CostVolume::new(device, &semi_global.cost, view),
             directions,
-            select: Select::new(device, paths, interpolation, wanted, config.uniqueness),
+            select: Select::new(device, paths, interpolation, wanted, claimed, config.uniqueness),
             above,
             below,
             matches,
         })
     };
     let mut sides = vec![side(config.reference, Wanted::Matches)?];
-    if config.consistency.is_some() {
+    if config.consistency.is_some() && !claimed {
         sides.push(side(config.reference.other(), Wanted::Winners)?);
     }
 
     for side in &sides {
         side.follow_from_below(device, &mut plan, &shared, &bands);
     }
-    let consistency = Consistency::new(device);
+    let others = if claimed { Others::Claims(range.min) } else { Others::Disparities };
+    let (consistency, claim) = (Consistency::new(device, others), Claim::new(device));
+    let claims = claimed.then(|| plan.buffer(device, "claims", confidence_offset.into())).transpose()?;
     for (index, band) in bands.iter().enumerate() {
         for side in &sides {
-            side.match_band(device, &mut plan, &shared, &bands, index, confidence_offset);
+            side.match_band(device, &mut plan, &shared, &bands, index, offsets);
         }
-        let matches = &sides[0].matches;
-        if let (Some(limit), Some(other)) = (config.consistency, sides.get(1)) {
-            let (size, view) = ((width, band.rows), config.reference);
-            let others = &other.matches;
+        let (matches, view) = (&sides[0].matches, config.reference);
+        if let Some(claims) = &claims {
+            plan.clear(claims);
+            plan.run(claim.prepare(device, band, view, offsets[1], matches, claims));
+        }
+        let others = claims.as_ref().or(sides.get(1).map(|other| &other.matches));
+        if let (Some(limit), Some(others)) = (config.consistency, others) {
+            let size = (width, band.rows);
             plan.run(consistency.prepare(device, size, confidence_offset, view, limit, others, matches));
         }
         plan.hand_out(matches, confidence_offset, width, (band.first_row, band.rows));
@@ -268,7 +292,7 @@ impl Side {
         shared: &Shared,
         bands: &[VolumeBand],
         index: usize,
-        confidence_offset: u32,
+        offsets: [u32; 2],
     ) {
         let band = &bands[index];
         let row = u64::from(band.row_words());
@@ -293,7 +317,7 @@ impl Side {
             }
         }
         let (paths, matches, volume) = (&shared.paths, &self.matches, shared.path_words as u32);
-        plan.run(self.select.prepare(device, band, paths, row as u32, volume, matches, confidence_offset));
+        plan.run(self.select.prepare(device, band, paths, row as u32, volume, matches, offsets));
     }
 }
 

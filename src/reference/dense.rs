@@ -1,11 +1,12 @@
 //! The dense half in one call.
 
 use super::{
-    block_match, brightened, census, check_consistency, cost_volume, filled, path, select, supported, weighted_median,
+    block_match, brightened, census, check_consistency, claimed, cost_volume, filled, path, path_winners, select,
+    supported, weighted_median, winners,
 };
 use crate::{
-    dense::{Aggregation, Dense, DenseConfig, Interpolation, Refinement, SemiGlobal, View},
-    disparity::DisparityRange,
+    dense::{Aggregation, Dense, DenseConfig, OtherView, Refinement, SemiGlobal, View},
+    disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
     image::Luma,
 };
@@ -22,15 +23,29 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
     let unchanged = [left, right];
     let right = &right.map(|&luma| brightened(luma, config.brightness));
-    let seen_from = |view: View, config: &DenseConfig| match &config.aggregation {
-        Aggregation::Window(_) => block_match(left, right, view, config),
-        Aggregation::Paths(semi_global) => match_semi_globally(left, right, view, config, semi_global),
-    };
-    let mut dense = seen_from(config.reference, &config);
-    if let Some(max_difference) = config.consistency {
-        let whole = DenseConfig { interpolation: Interpolation::None, uniqueness: 0, ..config.clone() };
-        let others = seen_from(config.reference.other(), &whole).disparity;
-        check_consistency(&mut dense, config.reference, &others, max_difference);
+    let view = config.reference;
+    let mut dense;
+    let others;
+    match &config.aggregation {
+        Aggregation::Window(_) => {
+            dense = block_match(left, right, view, &config);
+            others = config.consistency.map(|_| winners(left, right, view.other(), &config));
+        }
+        Aggregation::Paths(semi_global) => {
+            let paths = all_paths(left, right, view, &config, semi_global);
+            dense = select(&paths, left.size(), &config);
+            others = config.consistency.map(|_| match semi_global.other_view {
+                OtherView::Claimed => claimed(&path_winners(&paths, left.size(), &config), view),
+                OtherView::Searched => {
+                    let paths = all_paths(left, right, view.other(), &config, semi_global);
+                    path_winners(&paths, left.size(), &config)
+                        .map(|winner| winner.map_or(NONE, |(_, disparity)| disparity * SCALE))
+                }
+            });
+        }
+    }
+    if let (Some(max_difference), Some(others)) = (config.consistency, others) {
+        check_consistency(&mut dense, view, &others, max_difference);
     }
     match &config.refinement {
         Some(refinement) => {
@@ -57,18 +72,16 @@ fn refined(dense: &Dense, luma: &Luma, refinement: &Refinement, range: Disparity
     Dense { disparity: map, confidence }
 }
 
-/// Semi-global matching of one view, without any check from the other.
-fn match_semi_globally(
+/// The costs along all paths through one view.
+fn all_paths(
     left: &Luma,
     right: &Luma,
     view: View,
     config: &DenseConfig,
-    SemiGlobal { cost, penalties, paths }: &SemiGlobal,
-) -> Dense {
+    SemiGlobal { cost, penalties, paths, .. }: &SemiGlobal,
+) -> Vec<Vec<u8>> {
     let (left, right) = (census(left), census(right));
     let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
     let costs = cost_volume([reference, other], view, cost, config.range);
-    let paths: Vec<_> =
-        paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect();
-    select(&paths, reference.size(), config)
+    paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
 }

@@ -5,6 +5,7 @@
 
 mod block_match;
 mod census;
+mod claim;
 mod consistency;
 mod cost;
 mod dense;
@@ -28,12 +29,13 @@ pub mod workgroups;
 
 pub use block_match::{block_match, cost, winners};
 pub use census::census;
+pub use claim::claimed;
 pub use consistency::check_consistency;
 pub use cost::cost_volume;
 pub use dense::compute_dense;
 pub use fill::filled;
 pub use pad::{brightened, padded};
 pub use path::path;
-pub use select::select;
+pub use select::{path_winners, select};
 pub use support::supported;
 pub use weighted_median::weighted_median;

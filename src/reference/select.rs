@@ -6,6 +6,17 @@ use crate::{
     image::Plane,
 };
 
+/// For each of `size` pixels the least sum of the costs on all `paths`, and its disparity in pixels; ties go to the smaller
+/// one.
+pub fn path_winners(paths: &[Vec<u8>], (width, height): (u32, u32), config: &DenseConfig) -> Plane<Option<(u32, i32)>> {
+    let count = config.range.count.next_multiple_of(4) as usize;
+    Plane::from_fn(width, height, |x, y| {
+        let pixel = (y * width + x) as usize * count;
+        let sum = |d: usize| paths.iter().map(|path| u32::from(path[pixel + d])).sum();
+        (0..config.range.count as usize).map(|d| (sum(d), config.range.min + d as i32)).min()
+    })
+}
+
 /// For each of `size` pixels the disparity whose costs on all `paths` add up to the least, unless its best rival is too
 /// close. Ties go to the smaller disparity.
 pub fn select(paths: &[Vec<u8>], (width, height): (u32, u32), config: &DenseConfig) -> Dense {

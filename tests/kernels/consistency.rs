@@ -1,7 +1,7 @@
 //! Left-right consistency.
 
 use hsad::{
-    dense::{Consistency, Dense, View},
+    dense::{Consistency, Dense, Others, View},
     disparity::{DisparityMap, NONE},
     image::Plane,
     luma::{pack, unpack},
@@ -19,7 +19,15 @@ fn on_device(dense: &Dense, view: View, others: &DisparityMap, max_difference: u
     let both: Vec<i32> = dense.disparity.data().iter().copied().chain(confidence).collect();
     let matches = upload(&both);
     let size = (width, height);
-    let check = Consistency::new(device).prepare(device, size, width * height, view, max_difference, &others, &matches);
+    let check = Consistency::new(device, Others::Disparities).prepare(
+        device,
+        size,
+        width * height,
+        view,
+        max_difference,
+        &others,
+        &matches,
+    );
     run(|encoder| check.record(encoder));
     let both = download::<i32>(&matches);
     Dense {

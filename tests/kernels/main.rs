@@ -6,6 +6,7 @@
 
 mod block_match;
 mod census;
+mod claim;
 mod common;
 mod consistency;
 mod cost;

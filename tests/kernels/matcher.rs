@@ -2,7 +2,7 @@
 
 use hsad::{
     dense::{
-        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, Paths, Penalties, Refinement,
+        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, OtherView, Paths, Penalties, Refinement,
         SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
@@ -28,12 +28,12 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
 }
 
-fn semi_global(reference: View, paths: Paths) -> DenseConfig {
+fn semi_global(reference: View, paths: Paths, other_view: OtherView) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
-        aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths }),
+        aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }),
         refinement: Some(Refinement { support: 9, medians_before: 1, fill: true, medians_after: 1 }),
         ..config(reference)
     }
@@ -46,8 +46,8 @@ fn the_twins_end_with_the_same_bytes() {
         for (reference, config) in [
             (View::Left, config(View::Left)),
             (View::Right, config(View::Right)),
-            (View::Left, semi_global(View::Left, Paths::Four)),
-            (View::Right, semi_global(View::Right, Paths::Eight)),
+            (View::Left, semi_global(View::Left, Paths::Three, OtherView::Claimed)),
+            (View::Right, semi_global(View::Right, Paths::Four, OtherView::Searched)),
         ] {
             let actual = dense::compute(gpu(), &left, &right, &config);
             let expected = compute_dense(&left, &right, &config);
@@ -65,7 +65,11 @@ fn the_twins_end_with_the_same_bytes() {
 #[test]
 fn bands_leave_no_trace() {
     let (left, right) = pair(130, 131);
-    for config in [config(View::Left), semi_global(View::Right, Paths::Four), semi_global(View::Left, Paths::Eight)] {
+    for config in [
+        config(View::Left),
+        semi_global(View::Right, Paths::Three, OtherView::Claimed),
+        semi_global(View::Left, Paths::Eight, OtherView::Searched),
+    ] {
         in_bands(&left, &right, &config);
     }
 }

@@ -4,7 +4,7 @@ use hsad::{
     dense::{DenseConfig, Interpolation, Select, VolumeBand, Wanted},
     disparity::{DisparityRange, SCALE},
     luma::pack,
-    reference::select,
+    reference::{path_winners, select},
 };
 
 use crate::common::*;
@@ -16,9 +16,18 @@ fn on_device(paths: &[Vec<u8>], size: (u32, u32), config: &DenseConfig) -> Vec<i
     let volume_words = band.row_words() * rows;
     let all: Vec<u32> = paths.iter().flat_map(|path| bytemuck::pod_collect_to_vec::<u8, u32>(path)).collect();
     let volumes = upload(&all);
-    let matches = upload(&vec![0_u32; (width * rows + width.div_ceil(4) * rows) as usize]);
-    let kernel = Select::new(device, paths.len() as u32, config.interpolation, Wanted::Matches, config.uniqueness);
-    let dispatch = kernel.prepare(device, &band, &volumes, 0, volume_words, &matches, width * rows);
+    let matches = upload(&vec![0_u32; (2 * width * rows + width.div_ceil(4) * rows) as usize]);
+    let kernel =
+        Select::new(device, paths.len() as u32, config.interpolation, Wanted::Matches, true, config.uniqueness);
+    let dispatch = kernel.prepare(
+        device,
+        &band,
+        &volumes,
+        0,
+        volume_words,
+        &matches,
+        [width * rows, width * rows + width.div_ceil(4) * rows],
+    );
     poison(&matches);
     run(|encoder| dispatch.record(encoder));
     download(&matches)
@@ -35,7 +44,12 @@ fn the_twin_selects_the_same() {
                 let volumes: Vec<_> = (0..paths).map(volume).collect();
                 let expected = select(&volumes, (width, height), &config);
                 let actual = on_device(&volumes, (width, height), &config);
-                let (disparities, confidences) = actual.split_at((width * height) as usize);
+                let pixels = (width * height) as usize;
+                let (disparities, rest) = actual.split_at(pixels);
+                let (confidences, keys) = rest.split_at(rest.len() - pixels);
+                let winners = path_winners(&volumes, (width, height), &config);
+                let key = |winner: &Option<(u32, i32)>| winner.map_or(-1, |(cost, d)| (cost << 16) as i32 | (d + 3));
+                assert_same("keys", keys, winners.map(key).data());
                 let what = format!("{width}x{height}, {count} disparities, {paths} paths, {interpolation:?}");
                 assert_same(&what, disparities, expected.disparity.data());
                 let expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
@@ -52,5 +66,5 @@ fn by_hand() {
     let range = DisparityRange::new(0, 4).unwrap();
     let config = DenseConfig { interpolation: Interpolation::Parabola, ..DenseConfig::new(range) };
     let matches = on_device(&[vec![50, 15, 10, 40], vec![10, 5, 20, 40]], (1, 1), &config);
-    assert_eq!(matches, [SCALE + 77, 1 + 254 * 60 / 80]);
+    assert_eq!(matches, [SCALE + 77, 1 + 254 * 60 / 80, 20 << 16 | 1]);
 }
