@@ -111,8 +111,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var next = state;
         for (var k = 0; k < WORDS; k++) { // unroll
             let cost = unpack(costs[cost_word + k]);
-            next[k + 1] = advance(state[k], state[k + 1], state[k + 2], jump, cost) - minimum;
-            paths[path_word + k] = pack(next[k + 1]);
+            let word = pack(advance(state[k], state[k + 1], state[k + 2], jump, cost) - minimum);
+            paths[path_word + k] = word;
+            // Unpacked again, so that software drivers pack vectors and not lane by lane.
+            next[k + 1] = unpack(word);
         }
         state = next;
         luma = here;

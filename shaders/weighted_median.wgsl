@@ -25,10 +25,6 @@ fn weight(difference: vec4<u32>) -> vec4<u32> {
     return ((32u - fraction) * 8u) >> min(sixteenths >> vec4<u32>(4u), vec4<u32>(31u));
 }
 
-fn luma_at(row: u32, column: i32) -> u32 {
-    return (luma[row + u32(column >> 2u)] >> (8u * u32(column & 3))) & 255u;
-}
-
 // A thread filters four pixels of a row.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -52,13 +48,20 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let row = y + j - RADIUS;
         let nearest_row = clamp(row, 0, height - 1);
         var neighbours: array<i32, SPAN>;
+        // The words of the thread's pixels and of those left and right of them, which hold at least four more
+        // each. Lumas of columns outside are anything: their disparities do not count.
+        var words: array<u32, 3>;
+        for (var i = 0; i < 3; i++) { // unroll
+            let word = clamp(i32(id.x) + i - 1, 0, i32(luma_stride) - 1);
+            words[i] = luma[u32(nearest_row) * luma_stride + u32(word)];
+        }
         var lumas: array<u32, SPAN>;
         for (var i = 0; i < SPAN; i++) { // unroll
             let column = x + i - RADIUS;
             let nearest = clamp(column, 0, width - 1);
             let disparity = disparities[nearest_row * width + nearest];
             neighbours[i] = select(NONE, disparity, row == nearest_row && column == nearest);
-            lumas[i] = luma_at(u32(nearest_row) * luma_stride, nearest);
+            lumas[i] = (words[(i + 4 - RADIUS) / 4] >> (8u * ((i + 4 - RADIUS) % 4))) & 255u;
         }
         for (var i = 0; i < SIDE; i++) { // unroll
             let value = vec4<i32>(neighbours[i], neighbours[i + 1], neighbours[i + 2], neighbours[i + 3]);

@@ -137,7 +137,13 @@ impl Preset {
             interpolation: Interpolation::Equiangular,
             uniqueness: 1,
             consistency: Some(256),
-            refinement: Some(Refinement { support: 10, medians_before: 0, fill: true, medians_after: 1 }),
+            refinement: Some(Refinement {
+                support: 10,
+                medians_before: 0,
+                fill: true,
+                median_of_filled: false,
+                medians_after: 1,
+            }),
             equalise: true,
             force: false,
         };
@@ -149,7 +155,13 @@ impl Preset {
                     other_view: OtherView::Searched,
                     ..SEMI_GLOBAL
                 }),
-                refinement: Some(Refinement { support: 10, medians_before: 1, fill: true, medians_after: 2 }),
+                refinement: Some(Refinement {
+                    support: 10,
+                    medians_before: 1,
+                    fill: true,
+                    median_of_filled: true,
+                    medians_after: 2,
+                }),
                 ..balanced
             },
             Self::Fast => Config { aggregation: Aggregation::Window(11), uniqueness: 10, refinement: None, ..balanced },

@@ -77,10 +77,11 @@ fn parameters(config: &Config) -> Value {
         },
         "uniqueness_percent": uniqueness,
         "max_lr_difference_px": consistency.map(|difference| f64::from(difference) / f64::from(SCALE)),
-        "refinement": refinement.map(|Refinement { support, medians_before, fill, medians_after }| json!({
+        "refinement": refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| json!({
             "support": support,
             "medians_before": medians_before,
             "fill": fill,
+            "median_of_filled": median_of_filled,
             "medians_after": medians_after,
         })),
         "equalise": equalise,

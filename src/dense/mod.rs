@@ -65,7 +65,7 @@ pub fn stages() -> Vec<Stage> {
             .map(|wanted| Select::stage(4, Interpolation::Parabola, wanted, wanted == Wanted::Matches)),
     );
     stages.extend([Support::stage(5), Fill::stage()]);
-    let refinement = Refinement { support: 5, medians_before: 1, fill: true, medians_after: 1 };
+    let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));
     stages
 }

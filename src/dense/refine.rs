@@ -19,8 +19,10 @@ pub struct Refinement {
     pub support: u32,
     /// How often what stays is filtered by a 5x5 weighted median.
     pub medians_before: u32,
-    /// Whether holes are filled, and what was filled is filtered by a weighted median of its own.
+    /// Whether holes are filled.
     pub fill: bool,
+    /// Whether what was filled is filtered by a 9x9 weighted median of its own.
+    pub median_of_filled: bool,
     /// How often all is filtered by a 5x5 weighted median, before a plain one of 3x3.
     pub medians_after: u32,
 }
@@ -37,7 +39,7 @@ impl Refinement {
         let all = Median { radius: 2, halving_bits: 3, holes_only: false };
         let plain = Median { radius: 1, halving_bits: 31, holes_only: false };
         let medians_after = (0..self.medians_after).map(move |_| all);
-        self.fill.then_some(filled).into_iter().chain(medians_after).chain([plain])
+        (self.fill && self.median_of_filled).then_some(filled).into_iter().chain(medians_after).chain([plain])
     }
 }
 

@@ -15,7 +15,7 @@ const FARTHEST: i64 = 1 << 30;
 /// A weighted median filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Median {
-    /// Half its window without the centre.
+    /// Half its window without the centre, 1 to 4.
     pub radius: u32,
     /// A neighbour whose luma differs by 2 to the power of this weighs half; 31: all weigh the same.
     pub halving_bits: u32,

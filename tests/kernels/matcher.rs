@@ -34,7 +34,13 @@ fn semi_global(reference: View, paths: Paths, other_view: OtherView) -> DenseCon
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
         aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }),
-        refinement: Some(Refinement { support: 9, medians_before: 1, fill: true, medians_after: 1 }),
+        refinement: Some(Refinement {
+            support: 9,
+            medians_before: 1,
+            fill: true,
+            median_of_filled: true,
+            medians_after: 1,
+        }),
         ..config(reference)
     }
 }
