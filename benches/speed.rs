@@ -8,7 +8,7 @@ use std::{hint::black_box, path::Path, time::Instant};
 
 use hsad::{
     config::Preset,
-    dense::{DenseConfig, Matcher},
+    dense::{Brightness, DenseConfig, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{DeviceChoice, Gpu},
@@ -65,15 +65,14 @@ fn submit(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
 }
 
-/// Block matching with a 7x7 window: both views, uniqueness, consistency and sub-pixel.
+/// Block matching with a 7x7 window (both views, uniqueness, consistency and sub-pixel), then the presets.
 fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result<()> {
     let range = DisparityRange::new(0, disparities)?;
-    let config = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
+    let blocks = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
+    let preset =
+        |preset: Preset| (format!("dense {preset:?}").to_lowercase(), preset.config().dense(range, Brightness::SAME));
+    let presets = [Preset::Fast, Preset::Balanced, Preset::Quality].map(preset);
     let (left_luma, right_luma) = (upload(gpu, left), upload(gpu, right));
-    let build = || Matcher::new(&gpu.device, left.size(), &config, &left_luma, &right_luma);
-    let start = Instant::now();
-    let matcher = build()?;
-    println!("dense, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
     let bytes = 4 * left.data().len() as u64;
     let [map, confidence] = ["disparities", "confidences"].map(|label| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -83,10 +82,16 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
             mapped_at_creation: false,
         })
     });
-    time("dense 7x7", || {
-        submit(gpu, |encoder| matcher.record(encoder, &map, &confidence));
-        Ok(())
-    })
+    for (name, config) in [("dense 7x7".into(), blocks)].into_iter().chain(presets) {
+        let start = Instant::now();
+        let matcher = Matcher::new(&gpu.device, left.size(), &config, &left_luma, &right_luma)?;
+        println!("{name}, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
+        time(&name, || {
+            submit(gpu, |encoder| matcher.record(encoder, &map, &confidence));
+            Ok(())
+        })?;
+    }
+    Ok(())
 }
 
 /// Both views detected and described, then matched.

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Times hsad's block matching beside OpenCV's StereoBM, in turn, on the same pair.
+"""Times hsad beside OpenCV, in turn, on the same pair: block matching beside StereoBM, presets beside StereoSGBM.
 
     pip install opencv-python-headless
     cargo build --release --benches
     scripts/compare-opencv.py LEFT RIGHT [--size 768x512] [--disparities 64] [--rounds 5]
 
 StereoBM runs with its window of 7 and two threads, with its texture, uniqueness (15 %) and
-left-right checks; hsad with a window of 7, uniqueness (15 %), left-right check and sub-pixel. Both
-are given as the minimum of 20 runs in a round; machines drift, so only the ratio of a round counts.
+left-right checks; hsad with a window of 7, uniqueness (15 %), left-right check and sub-pixel. StereoSGBM
+runs along eight paths (MODE_HH, block size 3, two threads), beside the presets balanced and quality. All
+are given as the minimum of some runs in a round; machines drift, so only the ratio of a round counts.
 """
 
 import argparse
@@ -22,21 +23,35 @@ import time
 import cv2
 
 
-def stereo_bm(left, right, disparities):
-    matcher = cv2.StereoBM_create(disparities, 7)
-    matcher.setDisp12MaxDiff(1)
+def milliseconds(matcher, left, right, runs):
     times = []
-    for _ in range(20):
+    for _ in range(runs):
         start = time.perf_counter()
         matcher.compute(left, right)
         times.append(1e3 * (time.perf_counter() - start))
     return min(times)
 
 
+def opencv(left, right, disparities):
+    block_matcher = cv2.StereoBM_create(disparities, 7)
+    block_matcher.setDisp12MaxDiff(1)
+    semi_global = cv2.StereoSGBM_create(
+        0, disparities, 3, P1=72, P2=288, disp12MaxDiff=1, uniquenessRatio=5, mode=cv2.STEREO_SGBM_MODE_HH
+    )
+    return {
+        "StereoBM": milliseconds(block_matcher, left, right, 20),
+        "SGBM-HH": milliseconds(semi_global, left, right, 3),
+    }
+
+
 def hsad(binary, paths, disparities):
     environment = {"XDG_RUNTIME_DIR": "/tmp", **os.environ}
     run = subprocess.run([binary, *paths, str(disparities)], capture_output=True, text=True, check=True, env=environment)
-    return float(re.search(r"dense 7x7: .* minimum ([\d.]+) ms", run.stdout)[1]), run.stdout
+    times = re.findall(r"dense (\w+): .* minimum ([\d.]+) ms", run.stdout)
+    return {name: float(time) for name, time in times}, run.stdout
+
+
+PAIRS = [("7x7", "StereoBM"), ("fast", "StereoBM"), ("balanced", "SGBM-HH"), ("quality", "SGBM-HH")]
 
 
 def main():
@@ -67,17 +82,17 @@ def main():
             paths.append(os.path.join(folder, name + ".png"))
             cv2.imwrite(paths[-1], views[-1])
         work = size[0] * size[1] * arguments.disparities / 1e3
-        ratios = []
+        ratios = {pair: [] for pair in PAIRS}
         for _ in range(arguments.rounds):
-            peer = stereo_bm(*views, arguments.disparities)
+            theirs = opencv(*views, arguments.disparities)
             ours, output = hsad(binary, paths, arguments.disparities)
-            ratios.append(peer / ours)
-            print(
-                f"StereoBM {peer:.1f} ms ({work / peer:.0f} Mpd/s), hsad {ours:.1f} ms ({work / ours:.0f} Mpd/s), "
-                f"speed ratio {ratios[-1]:.2f}"
-            )
+            for preset, peer in PAIRS:
+                ratios[preset, peer].append(theirs[peer] / ours[preset])
+            both = [*theirs.items(), *ours.items()]
+            print(", ".join(f"{name} {ms:.1f} ms ({work / ms:.0f} Mpd/s)" for name, ms in both))
         print(output.splitlines()[0])
-        print(f"median ratio {statistics.median(ratios):.2f} of {arguments.rounds} rounds")
+        for (preset, peer), values in ratios.items():
+            print(f"{preset}: {statistics.median(values):.2f} of the speed of {peer}, median of {arguments.rounds} rounds")
 
 
 if __name__ == "__main__":

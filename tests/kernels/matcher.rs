@@ -1,6 +1,7 @@
 //! The dense half as a whole, in step with the twins.
 
 use hsad::{
+    config::Preset,
     dense::{
         self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, OtherView, Paths, Penalties, Refinement,
         SemiGlobal, View,
@@ -153,6 +154,31 @@ fn a_pair_too_large_for_one_buffer() {
         for y in 1..rows - 1 {
             let (actual, expected) = (dense.disparity.row(first + y), twin.disparity.row(y));
             assert_same(&format!("row {}", first + y), actual, expected);
+        }
+    }
+}
+
+#[test]
+fn no_preset_trusts_pairs_that_show_nothing() {
+    let noise = |seed| Luma::from_fn(41, 30, |x, y| picture(1, 1, seed + 41 * y + x).get(0, 0));
+    let pairs = [
+        ("black", Luma::filled(41, 30, 0), Luma::filled(41, 30, 0)),
+        ("grey and white", Luma::filled(41, 30, 90), Luma::filled(41, 30, 255)),
+        ("noise", noise(1), noise(5000)),
+    ];
+    for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
+        // One disparity, some of them negative, more than the picture has columns.
+        for (min, count) in [(3, 1), (-9, 17), (0, 500)] {
+            let config = preset.config().dense(DisparityRange::new(min, count).unwrap(), Brightness::SAME);
+            for (name, left, right) in &pairs {
+                let what = format!("{preset:?}, {name}, {count} from {min}");
+                let actual = dense::compute(gpu(), left, right, &config).unwrap();
+                let expected = compute_dense(left, right, &config).unwrap();
+                assert_same(&what, actual.disparity.data(), expected.disparity.data());
+                assert_same(&what, actual.confidence.data(), expected.confidence.data());
+                // With one disparity there is nothing to choose; and some columns of blocks have one only.
+                assert!(count == 1 || actual.measured() < 0.2, "{what}: {}", actual.measured());
+            }
         }
     }
 }
