@@ -38,7 +38,7 @@ fn writes_maps_that_agree_and_a_report() {
     assert_eq!([&report["width"], &report["height"]], [340, 255]);
     assert_eq!(report["device"], json!({ "name": "CPU twins", "backend": "none", "driver": "none" }));
     assert_eq!(report["left"], left.to_str().unwrap());
-    assert_eq!(report["parameters"]["aggregation"]["paths"], 4);
+    assert_eq!(report["parameters"]["aggregation"]["paths"], 3);
     assert_eq!(report["parameters"]["matching"]["ratio"], json!(0.85));
     assert_eq!(report["range"]["source"], "seeds");
     // data/README.md: 9.1 to 57.5 px.
@@ -183,8 +183,8 @@ fn pictures_without_depth_give_results_without_measured_disparities() {
     for seed in [1, 2] {
         grey_png(&path(&format!("noise{seed}.png")), &noise(90, 70, seed));
     }
-    // Black is ambiguous wherever there is a rival, which the first two columns have none of.
-    for (left, right, most) in [("black.png", "black.png", 2.0 / 90.0), ("noise1.png", "noise2.png", 0.1)] {
+    // Black is ambiguous everywhere; noise now and then looks as if it were not.
+    for (left, right, most) in [("black.png", "black.png", 0.0), ("noise1.png", "noise2.png", 0.15)] {
         let out = path("out");
         let mut command = match_on_cpu(&path(left), &path(right), &out);
         command.assert().success().stderr(contains("range could not be found").and(contains("were searched instead")));
