@@ -45,6 +45,41 @@ struct Params {
 // A number for each of a step's four disparities and each pixel of a row of the tile.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
 
+// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING. With
+// FULL = 0 only `before` is used, for the best of all.
+struct Search {
+    // The last key seen, and the best of those before it.
+    previous: vec4<u32>,
+    before: vec4<u32>,
+    // The best that is not a direct neighbour of the winner.
+    rival: vec4<u32>,
+    // The winner's two neighbours.
+    below: vec4<u32>,
+    above: vec4<u32>,
+}
+
+fn best_of(s: Search) -> vec4<u32> {
+    return select(min(s.previous, s.before), s.before, FULL == 0);
+}
+
+// `wins`: this key is the best so far; `last_won`: the previous one was, up to then.
+fn consider(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -> Search {
+    let nothing = vec4<u32>(NOTHING);
+    var next = s;
+    if FULL == 0 {
+        next.before = min(s.before, key);
+        return next;
+    }
+    next.previous = key;
+    next.before = best_of(s);
+    // Next to the winner so far a key is its neighbour, further on its rival; a new winner's rival is
+    // the best of what came before its neighbour.
+    next.rival = min(s.rival, select(select(key, nothing, last_won), s.before, wins));
+    next.below = select(s.below, s.previous, wins);
+    next.above = select(select(s.above, key, last_won), nothing, wins);
+    return next;
+}
+
 // What is ored to the costs of a step for pixels from column x on: the disparity's index; or, where
 // it leads out of the picture or the range, all ones.
 fn tags_of(x: i32, step: u32) -> Costs {

@@ -1,131 +1,17 @@
-// One path of semi-global matching: the cost of each pixel and disparity together with that of the
-// best way to it along a line, on which a step of one disparity costs P1 and a larger one P2.
-//
-//     L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + P1, L(q, d + 1) + P1, M + P2) - M,  M = min L(q, .)
-//
-// where q is the pixel before p. Hirschmueller: 'Stereo processing by semiglobal matching and mutual
-// information', PAMI 30(2), 2008, equations 12 and 13. P2 falls where the luma changes:
-// P2 = max(LEAST_P2, P2 K / (K + |luma(p) - luma(q)|)), rounded down.
-//
-// A thread owns a line and keeps the costs of its last pixel, of all disparities, in registers. A
-// slanted line goes on at the other side of the picture where it leaves it, and begins anew there.
-
-struct Params {
-    width: u32,
-    // Of the band, and the row of the picture where it begins.
-    rows: u32,
-    first_row: u32,
-    // Where the band begins in the volume of costs, and in that of this path.
-    cost_start: u32,
-    path_start: u32,
-    // Whether the row before the band's first one holds where the lines come from.
-    goes_on: u32,
-    // To the next pixel of a line, each -1, 0 or 1.
-    dx: i32,
-    dy: i32,
-}
-
-@group(0) @binding(0) var<uniform> params: Params;
-// A word a pixel: the luma in the lowest byte.
-@group(0) @binding(1) var<storage, read> reference: array<u32>;
-// Four disparities a word, WORDS words a pixel, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<u32>;
-@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
-
-// More than any cost; what no path comes from.
-const FAR = 0x10000u;
-
-// The costs at a pixel, four disparities each, between two that nothing is reached from.
-alias State = array<vec4<u32>, WORDS + 2>;
-
-fn unpack(word: u32) -> vec4<u32> {
-    return (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
-}
-
-fn pack(costs: vec4<u32>) -> u32 {
-    return costs.x | (costs.y << 8u) | (costs.z << 16u) | (costs.w << 24u);
-}
-
-// Four disparities of the next pixel from those of the last one and their neighbours.
-fn advance(before: vec4<u32>, here: vec4<u32>, after: vec4<u32>, jump: u32, cost: vec4<u32>) -> vec4<u32> {
-    let below = vec4<u32>(before.w, here.xyz);
-    let above = vec4<u32>(here.yzw, after.x);
-    return cost + min(min(here, min(below, above) + P1), vec4<u32>(jump));
-}
-
-fn least(state: State) -> u32 {
-    var least = state[1];
-    for (var k = 0; k < WORDS; k++) { // unroll
-        least = min(least, state[k + 1]);
-    }
-    return min(min(least.x, least.y), min(least.z, least.w));
-}
+// One path of semi-global matching: the costs along all its lines.
 
 @compute @workgroup_size(WORKGROUP, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    var lines = params.width;
-    var pixels = params.rows;
-    if params.dy == 0 {
-        lines = params.rows;
-        pixels = params.width;
-    }
-    if id.x >= lines {
+    if id.x >= line_count() {
         return;
     }
-    var x = i32(id.x);
-    var y = select(0, i32(params.rows) - 1, params.dy < 0);
-    if params.dy == 0 {
-        x = select(0, i32(params.width) - 1, params.dx < 0);
-        y = i32(id.x);
-    }
-    let width = i32(params.width);
-
-    var state: State;
-    state[0] = vec4<u32>(FAR);
-    state[WORDS + 1] = vec4<u32>(FAR);
-    // Where a line begins, all costs before it are 0.
-    var luma = 0u;
-    var fresh = true;
-    if params.dy != 0 && params.goes_on != 0u {
-        let came_from = x - params.dx;
-        if came_from >= 0 && came_from < width {
-            let pixel = (y - params.dy) * width + came_from;
-            luma = reference[u32(i32(params.first_row) * width + pixel)] & 255u;
-            for (var k = 0; k < WORDS; k++) { // unroll
-                state[k + 1] = unpack(paths[params.path_start + u32(pixel) * WORDS + k]);
-            }
-            fresh = false;
-        }
-    }
-    for (var i = 0u; i < pixels; i++) {
-        let pixel = u32(y) * params.width + u32(x);
-        let here = reference[params.first_row * params.width + pixel] & 255u;
-        let change = u32(abs(i32(here) - i32(luma)));
-        let p2 = max(LEAST_P2, quotient(P2 * P2_SCALE, P2_SCALE + change));
-        // A line that begins has no past: the same as one of zeros.
-        let scale = select(0xffffffffu, 0u, fresh);
-        let minimum = least(state) & scale;
-        let jump = (minimum + p2) & scale;
-        let cost_word = params.cost_start + pixel * WORDS;
-        let path_word = params.path_start + pixel * WORDS;
-        var next = state;
+    var line = begin(id.x);
+    for (var i = 0u; i < line_length(); i++) {
+        let words = follow(line);
+        let start = params.path_start + (u32(line.y) * params.width + u32(line.x)) * WORDS;
         for (var k = 0; k < WORDS; k++) { // unroll
-            let cost = unpack(costs[cost_word + k]);
-            let word = pack(advance(state[k], state[k + 1], state[k + 2], jump, cost) - minimum);
-            paths[path_word + k] = word;
-            // Unpacked again, so that software drivers pack vectors and not lane by lane.
-            next[k + 1] = unpack(word);
+            paths[start + k] = words[k];
         }
-        state = next;
-        luma = here;
-        x += params.dx;
-        y += params.dy;
-        fresh = false;
-        if params.dx != 0 && params.dy != 0 {
-            if x < 0 || x >= width {
-                x -= params.dx * width;
-                fresh = true;
-            }
-        }
+        line = next_of(line, words);
     }
 }

@@ -1,5 +1,5 @@
-// Winner-take-all, uniqueness and sub-pixel interpolation, for kernels that see the costs of a pixel's
-// disparities in rising order.
+// From the costs of a pixel's disparities that matter to its answer: uniqueness, sub-pixel interpolation,
+// confidence.
 //
 // A cost is carried shifted left by SHIFT, with the disparity's index in the free bits: that number
 // is the comparison key and the answer at once, and of equal costs the smaller disparity wins.
@@ -8,41 +8,6 @@
 
 const NOTHING = 0xffffffffu;
 const INDEX_MASK = (1u << SHIFT) - 1u;
-
-// What four neighbouring pixels know of the disparities seen so far. All are keys, or NOTHING. With
-// FULL = 0 only `before` is used, for the best of all.
-struct Search {
-    // The last key seen, and the best of those before it.
-    previous: vec4<u32>,
-    before: vec4<u32>,
-    // The best that is not a direct neighbour of the winner.
-    rival: vec4<u32>,
-    // The winner's two neighbours.
-    below: vec4<u32>,
-    above: vec4<u32>,
-}
-
-fn best_of(s: Search) -> vec4<u32> {
-    return select(min(s.previous, s.before), s.before, FULL == 0);
-}
-
-// `wins`: this key is the best so far; `last_won`: the previous one was, up to then.
-fn consider(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -> Search {
-    let nothing = vec4<u32>(NOTHING);
-    var next = s;
-    if FULL == 0 {
-        next.before = min(s.before, key);
-        return next;
-    }
-    next.previous = key;
-    next.before = best_of(s);
-    // Next to the winner so far a key is its neighbour, further on its rival; a new winner's rival is
-    // the best of what came before its neighbour.
-    next.rival = min(s.rival, select(select(key, nothing, last_won), s.before, wins));
-    next.below = select(s.below, s.previous, wins);
-    next.above = select(select(s.above, key, last_won), nothing, wins);
-    return next;
-}
 
 // The minimum's place between its neighbours' costs, in 1/256 px from the winner, -128 to 128: the
 // nearest integer to 128 (left - right) / divisor, halves up.

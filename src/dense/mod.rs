@@ -36,7 +36,7 @@ pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Pad, PadParams};
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
-pub use select::Select;
+pub use select::{Places, Select, Selection};
 pub use semi_global::{OtherView, Paths, SemiGlobal};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use weighted_median::{Median, WeightedMedian};
@@ -60,10 +60,12 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
-    stages.extend(
-        [Wanted::Matches, Wanted::Winners]
-            .map(|wanted| Select::stage(4, Interpolation::Parabola, wanted, wanted == Wanted::Matches)),
-    );
+    stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| {
+        let keys = wanted == Wanted::Matches;
+        let selection =
+            Selection { paths: 4, own: 2, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
+        Select::stage(&penalties, 2, selection)
+    }));
     stages.extend([Support::stage(5), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));

@@ -68,17 +68,62 @@ impl Direction {
     };
 }
 
+/// The uniforms of all kernels that follow lines: `shaders/shared/line.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    first_row: u32,
-    cost_start: u32,
-    path_start: u32,
-    goes_on: u32,
-    dx: i32,
-    dy: i32,
+pub(super) struct Params {
+    pub(super) width: u32,
+    pub(super) rows: u32,
+    pub(super) first_row: u32,
+    pub(super) cost_start: u32,
+    pub(super) path_start: u32,
+    pub(super) goes_on: u32,
+    pub(super) dx: i32,
+    pub(super) dy: i32,
+    pub(super) volumes_start: u32,
+    pub(super) volume_words: u32,
+    pub(super) min_disparity: i32,
+    pub(super) disparities: u32,
+    pub(super) uniqueness: u32,
+    pub(super) confidence_offset: u32,
+    pub(super) key_offset: u32,
+}
+
+impl Params {
+    /// For a path through `band`, whose costs stand from word `start` of the paths on; with `goes_on` the row
+    /// before the band in the path's direction holds where lines come from. What concerns a selection is 0.
+    pub(super) fn new(band: &VolumeBand, direction: Direction, start: u32, goes_on: bool) -> Self {
+        Self {
+            width: band.width,
+            rows: band.rows,
+            first_row: band.first_row,
+            path_start: start,
+            goes_on: goes_on.into(),
+            dx: direction.dx,
+            dy: direction.dy,
+            min_disparity: band.range.min,
+            disparities: band.range.count,
+            ..Self::zeroed()
+        }
+    }
+
+    /// Workgroups of a kernel with a line a thread.
+    pub(super) fn groups(&self) -> [u32; 3] {
+        let lines = if self.dy == 0 { self.rows } else { self.width };
+        [lines.div_ceil(WORKGROUP), 1, 1]
+    }
+}
+
+/// The constants of all kernels that follow lines.
+pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static str, i64)> {
+    vec![
+        ("WORKGROUP", WORKGROUP.into()),
+        ("WORDS", words.into()),
+        ("P1", penalties.p1.into()),
+        ("P2", penalties.p2.into()),
+        ("LEAST_P2", penalties.least_p2.into()),
+        ("P2_SCALE", penalties.p2_scale.into()),
+    ]
 }
 
 /// The kernel of a path, for one number of disparities.
@@ -91,17 +136,11 @@ impl Path {
             name: "path",
             source: concat!(
                 include_str!("../../shaders/shared/quotient.wgsl"),
+                include_str!("../../shaders/shared/line.wgsl"),
                 include_str!("../../shaders/path.wgsl")
             ),
             bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
-            constants: vec![
-                ("WORKGROUP", WORKGROUP.into()),
-                ("WORDS", words.into()),
-                ("P1", penalties.p1.into()),
-                ("P2", penalties.p2.into()),
-                ("LEAST_P2", penalties.least_p2.into()),
-                ("P2_SCALE", penalties.p2_scale.into()),
-            ],
+            constants: line_constants(penalties, words),
         }
     }
 
@@ -124,18 +163,8 @@ impl Path {
         start: u32,
         goes_on: bool,
     ) -> Dispatch {
-        let params = Params {
-            width: band.width,
-            rows: band.rows,
-            first_row: band.first_row,
-            cost_start: 0,
-            path_start: start,
-            goes_on: goes_on.into(),
-            dx: direction.dx,
-            dy: direction.dy,
-        };
-        let lines = if direction.dy == 0 { band.rows } else { band.width };
-        let params = uniform_buffer(device, "path", &params);
-        self.0.dispatch(device, &[&params, reference, costs, paths], [lines.div_ceil(WORKGROUP), 1, 1])
+        let params = Params::new(band, direction, start, goes_on);
+        let uniforms = uniform_buffer(device, "path", &params);
+        self.0.dispatch(device, &[&uniforms, reference, costs, paths], params.groups())
     }
 }

@@ -1,106 +1,121 @@
-//! From the costs of all paths to disparities. `shaders/select.wgsl`.
+//! The last path, and from the costs of all paths to disparities. `shaders/select.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
-use super::{band::VolumeBand, block_match::Wanted, config::Interpolation};
+use super::{
+    band::VolumeBand,
+    block_match::Wanted,
+    config::Interpolation,
+    path::{Direction, Params, Penalties, line_constants},
+};
 use crate::{
     disparity::{NONE, SCALE},
     gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
 };
 
-const WORKGROUP: [u32; 2] = [16, 4];
-
 /// The bits of a key that hold the disparity's index.
 pub(super) const INDEX_BITS: u32 = 16;
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    words: u32,
-    start: u32,
-    volume_words: u32,
-    min_disparity: i32,
-    disparities: u32,
-    uniqueness: u32,
-    confidence_offset: u32,
-    key_offset: u32,
+/// What is selected, and from what.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection {
+    /// How many paths there are.
+    pub paths: u32,
+    /// The number of the one that is followed on the way.
+    pub own: u32,
+    /// Sub-pixel interpolation.
+    pub interpolation: Interpolation,
+    /// Matches or winners.
+    pub wanted: Wanted,
+    /// Whether the winners' keys are wanted as well.
+    pub keys: bool,
+    /// Per cent by which the rival's cost must exceed the winner's.
+    pub uniqueness: u32,
 }
 
-/// The kernel that sums the costs of all paths up and decides.
+/// Where in their buffers things stand, in words.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// The band's first row in the first path's volume.
+    pub start: u32,
+    /// From one path's volume to the next.
+    pub volume_words: u32,
+    /// The confidences.
+    pub confidence_offset: u32,
+    /// The winners' keys.
+    pub key_offset: u32,
+}
+
+/// The kernel that follows the last path, sums the costs of all of them up, and decides.
 pub struct Select {
     kernel: Kernel,
-    uniqueness: u32,
+    selection: Selection,
 }
 
 impl Select {
-    /// What the kernel is made of, for so many paths; `keys`: the winners' keys are wanted as well.
-    pub fn stage(paths: u32, interpolation: Interpolation, wanted: Wanted, keys: bool) -> Stage {
+    /// What the kernel is made of, for `words` words a pixel.
+    pub fn stage(penalties: &Penalties, words: u32, selection: Selection) -> Stage {
+        let mut constants = line_constants(penalties, words);
+        constants.extend([
+            ("PATHS", selection.paths.into()),
+            ("OWN", selection.own.into()),
+            ("KEYS", selection.keys.into()),
+            ("SHIFT", INDEX_BITS.into()),
+            ("SCALE", SCALE.into()),
+            ("NONE", NONE.into()),
+            ("FULL", (selection.wanted == Wanted::Matches).into()),
+            ("PARABOLA", 1),
+            ("EQUIANGULAR", 2),
+            ("INTERPOLATION", selection.interpolation.code()),
+        ]);
         Stage {
             name: "select",
             source: concat!(
                 include_str!("../../shaders/shared/quotient.wgsl"),
                 include_str!("../../shaders/shared/selection.wgsl"),
+                include_str!("../../shaders/shared/line.wgsl"),
                 include_str!("../../shaders/select.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
-            constants: vec![
-                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-                ("PATHS", paths.into()),
-                ("SHIFT", INDEX_BITS.into()),
-                ("SCALE", SCALE.into()),
-                ("NONE", NONE.into()),
-                ("FULL", (wanted == Wanted::Matches).into()),
-                ("KEYS", keys.into()),
-                ("PARABOLA", 1),
-                ("EQUIANGULAR", 2),
-                ("INTERPOLATION", interpolation.code()),
+            bindings: &[
+                Binding::Uniform(size_of::<Params>() as u64),
+                Binding::Read,
+                Binding::Read,
+                Binding::Write,
+                Binding::Write,
             ],
+            constants,
         }
     }
 
     /// Compiles it.
-    pub fn new(
-        device: &wgpu::Device,
-        paths: u32,
-        interpolation: Interpolation,
-        wanted: Wanted,
-        keys: bool,
-        uniqueness: u32,
-    ) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(paths, interpolation, wanted, keys)), uniqueness }
+    pub fn new(device: &wgpu::Device, penalties: &Penalties, words: u32, selection: Selection) -> Self {
+        Self { kernel: Kernel::new(device, &Self::stage(penalties, words, selection)), selection }
     }
 
-    /// Decides a band, whose first volume begins at word `start` of `volumes` and each further one
-    /// `volume_words` words later; the results as [`super::BlockMatch::prepare`] leaves them, with the
-    /// winners' keys from word `key_offset` on if they are wanted.
-    #[expect(clippy::too_many_arguments, reason = "two buffers, and places in them")]
+    /// Follows the last path, in `direction`, through a band of `costs`, as [`super::Path::prepare`] does, and decides. Its
+    /// own costs are not stored. `matches` must be 0 before; the results stand there
+    /// as [`super::BlockMatch::prepare`] leaves them, then the winners' keys.
+    #[expect(clippy::too_many_arguments, reason = "four buffers, each of one kind")]
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         band: &VolumeBand,
-        volumes: &wgpu::Buffer,
-        start: u32,
-        volume_words: u32,
+        direction: Direction,
+        places: Places,
+        reference: &wgpu::Buffer,
+        costs: &wgpu::Buffer,
+        paths: &wgpu::Buffer,
         matches: &wgpu::Buffer,
-        [confidence_offset, key_offset]: [u32; 2],
     ) -> Dispatch {
+        let Places { start, volume_words, confidence_offset, key_offset } = places;
+        let own = start + self.selection.own * volume_words;
         let params = Params {
-            width: band.width,
-            rows: band.rows,
-            words: band.words(),
-            start,
+            volumes_start: start,
             volume_words,
-            min_disparity: band.range.min,
-            disparities: band.range.count,
-            uniqueness: self.uniqueness,
+            uniqueness: self.selection.uniqueness,
             confidence_offset,
             key_offset,
+            ..Params::new(band, direction, own, false)
         };
-        let groups = [band.width.div_ceil(4 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
-        let params = uniform_buffer(device, "select", &params);
-        self.kernel.dispatch(device, &[&params, volumes, matches], groups)
+        let uniforms = uniform_buffer(device, "select", &params);
+        self.kernel.dispatch(device, &[&uniforms, reference, costs, paths, matches], params.groups())
     }
 }

@@ -18,7 +18,7 @@ use super::{
     path::{Direction, Path, Penalties},
     plan::{Copy, Plan, Target, match_words},
     refine::plan_refinement,
-    select::Select,
+    select::{Places, Select, Selection},
 };
 use crate::{
     disparity::DisparityRange,
@@ -67,6 +67,12 @@ impl Paths {
             Self::Eight => &Direction::ALL,
         }
     }
+
+    /// The number of the one that is followed last, while disparities are selected: one along the rows, which
+    /// nothing has to be kept of from band to band, and which sees memory in order.
+    fn last(self) -> usize {
+        self.directions().iter().rposition(|direction| direction.dy == 0).unwrap_or(0)
+    }
 }
 
 impl SemiGlobal {
@@ -114,6 +120,8 @@ struct Side {
     cost: CostVolume,
     directions: &'static [Direction],
     select: Select,
+    /// The number of the path that is followed with the selection.
+    last: usize,
     /// The last rows so far of the paths from above; and for each band but the first, the first rows of the
     /// paths from below. None where there is one band.
     above: Option<wgpu::Buffer>,
@@ -175,13 +183,20 @@ pub(super) fn plan(
             Wanted::Matches => plan.buffer(device, "matches", match_words + key_words)?,
             Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
         };
-        let paths = directions.len() as u32;
-        let interpolation = config.interpolation;
+        let selection = Selection {
+            paths: directions.len() as u32,
+            own: semi_global.paths.last() as u32,
+            interpolation: config.interpolation,
+            wanted,
+            keys: claimed,
+            uniqueness: config.uniqueness,
+        };
         Ok(Side {
             view,
             cost: CostVolume::new(device, &semi_global.cost, view),
             directions,
-            select: Select::new(device, paths, interpolation, wanted, claimed, config.uniqueness),
+            select: Select::new(device, &semi_global.penalties, bands[0].words(), selection),
+            last: semi_global.paths.last(),
             above,
             below,
             matches,
@@ -256,6 +271,26 @@ impl Side {
         }
     }
 
+    /// Copies the row that a path enters a band from to its place in front of the band, or behind it.
+    fn enter(
+        &self,
+        plan: &mut Plan,
+        shared: &Shared,
+        band: &VolumeBand,
+        number: usize,
+        (rows, place): (&wgpu::Buffer, u64),
+    ) {
+        let row = u64::from(band.row_words());
+        let before = if self.directions[number].dy > 0 { 0 } else { u64::from(band.rows) + 1 };
+        plan.copy(Copy {
+            from: rows.clone(),
+            from_word: place * row,
+            to: Target::Buffer(shared.paths.clone()),
+            to_word: number as u64 * shared.path_words + before * row,
+            words: row,
+        });
+    }
+
     /// Follows a path through a band, from where it enters it if it does not begin there.
     fn follow(
         &self,
@@ -269,15 +304,8 @@ impl Side {
         let row = u64::from(band.row_words());
         let direction = self.directions[number];
         let start = number as u64 * shared.path_words;
-        if let Some((rows, place)) = from {
-            let before = if direction.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
-            plan.copy(Copy {
-                from: rows.clone(),
-                from_word: place * row,
-                to: Target::Buffer(shared.paths.clone()),
-                to_word: start + before * row,
-                words: row,
-            });
+        if let Some(from) = from {
+            self.enter(plan, shared, band, number, from);
         }
         let [reference, _] = self.census(shared);
         let (costs, paths, start) = (&shared.costs, &shared.paths, (start + row) as u32);
@@ -297,15 +325,12 @@ impl Side {
         let band = &bands[index];
         let row = u64::from(band.row_words());
         plan.run(self.cost.prepare(device, band, self.census(shared), &shared.costs));
-        for (number, _) in self.paths(0) {
-            self.follow(device, plan, shared, band, number, None);
-        }
         for (number, place) in self.paths(-1) {
             self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
         }
         for (number, place) in self.paths(1) {
-            let above = self.above.as_ref().filter(|_| index > 0);
-            self.follow(device, plan, shared, band, number, above.map(|rows| (rows, place)));
+            let above = self.above.as_ref().filter(|_| index > 0).map(|rows| (rows, place));
+            self.follow(device, plan, shared, band, number, above);
             if let Some(above) = &self.above {
                 plan.copy(Copy {
                     from: shared.paths.clone(),
@@ -316,8 +341,29 @@ impl Side {
                 });
             }
         }
-        let (paths, matches, volume) = (&shared.paths, &self.matches, shared.path_words as u32);
-        plan.run(self.select.prepare(device, band, paths, row as u32, volume, matches, offsets));
+        for (number, _) in self.paths(0).filter(|&(number, _)| number != self.last) {
+            self.follow(device, plan, shared, band, number, None);
+        }
+        self.select(device, plan, shared, band, offsets);
+    }
+
+    /// Follows the last path through a band, and selects.
+    fn select(
+        &self,
+        device: &wgpu::Device,
+        plan: &mut Plan,
+        shared: &Shared,
+        band: &VolumeBand,
+        [confidence_offset, key_offset]: [u32; 2],
+    ) {
+        let volume_words = shared.path_words as u32;
+        let places = Places { start: band.row_words(), volume_words, confidence_offset, key_offset };
+        let [reference, _] = self.census(shared);
+        let (direction, costs, paths, matches) =
+            (self.directions[self.last], &shared.costs, &shared.paths, &self.matches);
+        plan.clear(matches);
+        let select = &self.select;
+        plan.run(select.prepare(device, band, direction, places, reference, costs, paths, matches));
     }
 }
 

@@ -1,34 +1,43 @@
 //! From the costs of all paths to disparities.
 
 use hsad::{
-    dense::{DenseConfig, Interpolation, Select, VolumeBand, Wanted},
+    dense::{DenseConfig, Direction, Interpolation, Penalties, Places, Select, Selection, VolumeBand, Wanted},
     disparity::{DisparityRange, SCALE},
+    image::Plane,
     luma::pack,
-    reference::{path_winners, select},
+    reference::{path, path_winners, select},
 };
 
 use crate::common::*;
 
-fn on_device(paths: &[Vec<u8>], size: (u32, u32), config: &DenseConfig) -> Vec<i32> {
+const PENALTIES: Penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
+const BACK: Direction = Direction { dx: -1, dy: 0 };
+
+/// The matches, confidences and keys when the path of number `own` is followed through `costs`, and the others are
+/// given.
+fn on_device(reference: &Plane<u32>, costs: &[u8], paths: &[Vec<u8>], own: u32, config: &DenseConfig) -> Vec<i32> {
     let device = &gpu().device;
-    let (width, rows) = size;
+    let (width, rows) = reference.size();
     let band = VolumeBand { width, first_row: 0, rows, range: config.range };
+    let words = |bytes: &[u8]| bytemuck::pod_collect_to_vec::<u8, u32>(bytes);
+    let mut all: Vec<u32> = paths.iter().flat_map(|path| words(path)).collect();
     let volume_words = band.row_words() * rows;
-    let all: Vec<u32> = paths.iter().flat_map(|path| bytemuck::pod_collect_to_vec::<u8, u32>(path)).collect();
-    let volumes = upload(&all);
-    let matches = upload(&vec![0_u32; (2 * width * rows + width.div_ceil(4) * rows) as usize]);
-    let kernel =
-        Select::new(device, paths.len() as u32, config.interpolation, Wanted::Matches, true, config.uniqueness);
-    let dispatch = kernel.prepare(
-        device,
-        &band,
-        &volumes,
-        0,
-        volume_words,
-        &matches,
-        [width * rows, width * rows + width.div_ceil(4) * rows],
-    );
-    poison(&matches);
+    all[(own * volume_words) as usize..((own + 1) * volume_words) as usize].fill(u32::MAX);
+    let (volumes, costs, reference) = (upload(&all), upload(&words(costs)), upload(reference.data()));
+    let confidence_offset = width * rows;
+    let key_offset = confidence_offset + width.div_ceil(4) * rows;
+    let matches = upload(&vec![0_u32; (key_offset + width * rows) as usize]);
+    let selection = Selection {
+        paths: paths.len() as u32,
+        own,
+        interpolation: config.interpolation,
+        wanted: Wanted::Matches,
+        keys: true,
+        uniqueness: config.uniqueness,
+    };
+    let kernel = Select::new(device, &PENALTIES, band.words(), selection);
+    let places = Places { start: 0, volume_words, confidence_offset, key_offset };
+    let dispatch = kernel.prepare(device, &band, BACK, places, &reference, &costs, &volumes, &matches);
     run(|encoder| dispatch.record(encoder));
     download(&matches)
 }
@@ -41,9 +50,13 @@ fn the_twin_selects_the_same() {
                 let range = DisparityRange::new(-3, count).unwrap();
                 let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) };
                 let volume = |seed| picture(width * count.next_multiple_of(4), height, seed).data().to_vec();
-                let volumes: Vec<_> = (0..paths).map(volume).collect();
+                let mut volumes: Vec<_> = (0..paths).map(volume).collect();
+                let own = paths / 2;
+                let reference = picture(width, height, 99).map(|&value| value.into());
+                let costs: Vec<u8> = volume(55).iter().map(|&cost| cost / 2).collect();
+                volumes[own as usize] = path(&reference, &costs, &PENALTIES, BACK);
                 let expected = select(&volumes, (width, height), &config);
-                let actual = on_device(&volumes, (width, height), &config);
+                let actual = on_device(&reference, &costs, &volumes, own, &config);
                 let pixels = (width * height) as usize;
                 let (disparities, rest) = actual.split_at(pixels);
                 let (confidences, keys) = rest.split_at(rest.len() - pixels);
@@ -65,6 +78,9 @@ fn by_hand() {
     // parabola's vertex lies (40 - 10) / 2(40 + 10) = 0.3 px to the right.
     let range = DisparityRange::new(0, 4).unwrap();
     let config = DenseConfig { interpolation: Interpolation::Parabola, ..DenseConfig::new(range) };
-    let matches = on_device(&[vec![50, 15, 10, 40], vec![10, 5, 20, 40]], (1, 1), &config);
+    // In the first pixel of a line its costs are those of the path.
+    let reference = Plane::filled(1, 1, 0);
+    let paths = [vec![50, 15, 10, 40], vec![10, 5, 20, 40]];
+    let matches = on_device(&reference, &[10, 5, 20, 40], &paths, 1, &config);
     assert_eq!(matches, [SCALE + 77, 1 + 254 * 60 / 80, 20 << 16 | 1]);
 }
