@@ -1,7 +1,9 @@
 //! The dense half (paper, step 5): a disparity for every pixel.
 //!
-//! padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) for both views ->
-//! left-right consistency. All of it is integer arithmetic and equals the CPU twins bit for bit.
+//! Blocks: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views.
+//! Semi-globally: padding -> census -> cost -> paths -> selection of one view or both. Then, for either:
+//! left-right consistency -> support -> medians and filling. All of it is integer arithmetic and equals
+//! the CPU twins bit for bit.
 
 mod band;
 mod block_match;
