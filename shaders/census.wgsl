@@ -7,10 +7,8 @@
 struct Params {
     width: u32,
     rows: u32,
-    // Words a row of the padded plane, which begins four columns left of and two rows above the picture,
-    // and where it begins.
+    // Words a row of the padded plane, which begins four columns left of and two rows above the picture.
     stride: u32,
-    start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -28,7 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     // Two columns left of the thread's four pixels to two right of them.
     var window: array<array<u32, 8>, 5>;
     for (var j = 0; j < 5; j++) { // unroll
-        let first = params.start + (id.y + j) * params.stride + id.x;
+        let first = (id.y + j) * params.stride + id.x;
         let left = plane[first];
         let middle = plane[first + 1u];
         let right = plane[first + 2u];

@@ -14,8 +14,6 @@ struct Params {
     min_disparity: i32,
     // Words a pixel of the volume: a word holds the costs of four disparities, the least in its lowest byte.
     words: u32,
-    // Where in the volume the band begins.
-    start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -115,7 +113,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             for (var t = 0; t < 4; t++) { // unroll
                 let column = u32(x) + 4u * q + t;
                 if column < params.width {
-                    volume[params.start + (id.y * params.width + column) * params.words + step] = words[t];
+                    volume[(id.y * params.width + column) * params.words + step] = words[t];
                 }
             }
         }

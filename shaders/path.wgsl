@@ -7,11 +7,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     var line = begin(id.x);
     for (var i = 0u; i < line_length(); i++) {
-        let words = follow(line);
+        let here = luma_at(line);
+        let words = follow(line, here);
         let start = params.path_start + (u32(line.y) * params.width + u32(line.x)) * WORDS;
         for (var k = 0; k < WORDS; k++) { // unroll
             paths[start + k] = words[k];
         }
-        line = next_of(line, words);
+        line = next_of(line, words, here);
     }
 }

@@ -9,19 +9,17 @@
 // The keys of a pixel's disparities.
 alias Keys = array<vec4<u32>, WORDS>;
 
-// The sums of all paths, of which `words` is this one.
+// The sums of the stored paths and of this one, `words`.
 fn keys_of(pixel: u32, words: array<u32, WORDS>) -> Keys {
     var keys: Keys;
     for (var k = 0; k < WORDS; k++) { // unroll
         // The even and the odd disparities, two sums of 16 bits a word.
         var even = words[k] & 0x00ff00ffu;
         var odd = (words[k] >> 8u) & 0x00ff00ffu;
-        for (var p = 0; p < PATHS; p++) { // unroll
-            if p != OWN {
-                let word = paths[params.volumes_start + p * params.volume_words + pixel * WORDS + k];
-                even += word & 0x00ff00ffu;
-                odd += (word >> 8u) & 0x00ff00ffu;
-            }
+        for (var p = 0; p < STORED; p++) { // unroll
+            let word = paths[params.volumes_start + p * params.volume_words + pixel * WORDS + k];
+            even += word & 0x00ff00ffu;
+            odd += (word >> 8u) & 0x00ff00ffu;
         }
         let index = vec4<u32>(4u * k) + vec4<u32>(0u, 1u, 2u, 3u);
         let sums = vec4<u32>(even << 16u, odd << 16u, even & 0xffff0000u, odd & 0xffff0000u);
@@ -68,7 +66,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     var line = begin(id.x);
     for (var i = 0u; i < line_length(); i++) {
-        let words = follow(line);
+        let here = luma_at(line);
+        let words = follow(line, here);
         let pixel = u32(line.y) * params.width + u32(line.x);
         let keys = keys_of(pixel, words);
         let best = best_key(keys);
@@ -83,6 +82,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if KEYS != 0 {
             atomicStore(&matches[params.key_offset + pixel], best);
         }
-        line = next_of(line, words);
+        line = next_of(line, words, here);
     }
 }

@@ -15,8 +15,7 @@ struct Params {
     // Of the band, and the row of the picture where it begins.
     rows: u32,
     first_row: u32,
-    // Where the band begins in the volume of costs, and in that of this path.
-    cost_start: u32,
+    // Where the band begins in the volume of this path.
     path_start: u32,
     // Whether the row before the band's first one holds where the lines come from.
     goes_on: u32,
@@ -114,17 +113,20 @@ fn begin(index: u32) -> Line {
     return line;
 }
 
-// The costs at the line's pixel, packed.
-fn follow(line: Line) -> array<u32, WORDS> {
-    let pixel = u32(line.y) * params.width + u32(line.x);
-    let here = reference[params.first_row * params.width + pixel] & 255u;
+// The luma of the line's pixel.
+fn luma_at(line: Line) -> u32 {
+    return reference[(params.first_row + u32(line.y)) * params.width + u32(line.x)] & 255u;
+}
+
+// The costs at the line's pixel, whose luma is `here`, packed.
+fn follow(line: Line, here: u32) -> array<u32, WORDS> {
     let change = u32(abs(i32(here) - i32(line.luma)));
     let p2 = max(LEAST_P2, quotient(P2 * P2_SCALE, P2_SCALE + change));
     // A line that begins has no past: the same as one of zeros.
     let scale = select(0xffffffffu, 0u, line.fresh);
     let minimum = least(line.state) & scale;
     let jump = (minimum + p2) & scale;
-    let start = params.cost_start + pixel * WORDS;
+    let start = (u32(line.y) * params.width + u32(line.x)) * WORDS;
     var words: array<u32, WORDS>;
     for (var k = 0; k < WORDS; k++) { // unroll
         let cost = unpack(costs[start + k]);
@@ -135,13 +137,12 @@ fn follow(line: Line) -> array<u32, WORDS> {
 
 // The line at its next pixel. The costs are unpacked again, so that software drivers pack vectors and
 // not lane by lane.
-fn next_of(line: Line, words: array<u32, WORDS>) -> Line {
+fn next_of(line: Line, words: array<u32, WORDS>, here: u32) -> Line {
     var next = line;
     for (var k = 0; k < WORDS; k++) { // unroll
         next.state[k + 1] = unpack(words[k]);
     }
-    let pixel = u32(line.y) * params.width + u32(line.x);
-    next.luma = reference[params.first_row * params.width + pixel] & 255u;
+    next.luma = here;
     next.x += params.dx;
     next.y += params.dy;
     next.fresh = false;

@@ -6,9 +6,10 @@ use super::{
     census::Brightness,
     config::{DenseConfig, View},
     pad::PadParams,
+    select::answer_constants,
 };
 use crate::{
-    disparity::{DisparityRange, NONE, SCALE},
+    disparity::DisparityRange,
     error::Result,
     gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
 };
@@ -104,7 +105,7 @@ impl BlockMatch {
                 include_str!("../../shaders/block_match.wgsl")
             ),
             bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
-            constants: vec![
+            constants: [
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
                 ("TILE_HEIGHT", constant(tile.height)),
@@ -117,14 +118,10 @@ impl BlockMatch {
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
                 ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
-                ("SHIFT", constant(config.index_bits())),
-                ("SCALE", SCALE.into()),
-                ("NONE", NONE.into()),
-                ("FULL", (wanted == Wanted::Matches).into()),
-                ("PARABOLA", 1),
-                ("EQUIANGULAR", 2),
-                ("INTERPOLATION", config.interpolation.code()),
-            ],
+            ]
+            .into_iter()
+            .chain(answer_constants(config.interpolation, wanted, config.index_bits()))
+            .collect(),
         }
     }
 

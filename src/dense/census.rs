@@ -45,7 +45,6 @@ struct Params {
     width: u32,
     rows: u32,
     stride: u32,
-    start: u32,
 }
 
 /// The census kernel.
@@ -91,7 +90,7 @@ impl Census {
         census: &wgpu::Buffer,
     ) -> Dispatch {
         let padding = Self::padding((width, height), Brightness::SAME);
-        let params = Params { width, rows: height, stride: padding.stride, start: padding.offset };
+        let params = Params { width, rows: height, stride: padding.stride };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
     }

@@ -1,6 +1,6 @@
 //! What the dense half is asked to do.
 
-use super::{Brightness, Refinement, SemiGlobal};
+use super::{Brightness, Refinement, SemiGlobal, select::INDEX_BITS};
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
@@ -45,17 +45,6 @@ pub enum Interpolation {
     /// 'Precise sub-pixel estimation on area-based matching', ICCV 2001: absolute differences have
     /// a pointed minimum, which a parabola pulls to whole pixels.
     Equiangular,
-}
-
-impl Interpolation {
-    /// What the kernels know it by.
-    pub(super) fn code(self) -> i64 {
-        match self {
-            Self::None => 0,
-            Self::Parabola => 1,
-            Self::Equiangular => 2,
-        }
-    }
 }
 
 /// How the costs of single pixels become those by which disparities are chosen.
@@ -152,7 +141,7 @@ impl DenseConfig {
     pub(crate) fn index_bits(&self) -> u32 {
         match self.aggregation {
             Aggregation::Window(side) => (255 * side * side).leading_zeros(),
-            Aggregation::Paths(_) => SemiGlobal::INDEX_BITS,
+            Aggregation::Paths(_) => INDEX_BITS,
         }
     }
 

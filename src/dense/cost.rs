@@ -42,7 +42,6 @@ struct Params {
     first_row: u32,
     min_disparity: i32,
     words: u32,
-    start: u32,
 }
 
 /// The kernel of the matching cost, for one view as the reference.
@@ -98,7 +97,6 @@ impl CostVolume {
             first_row: band.first_row,
             min_disparity: band.range.min,
             words: band.words(),
-            start: 0,
         };
         let groups = [band.width.div_ceil(8 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&uniform_buffer(device, "cost", &params), reference, other, volume], groups)

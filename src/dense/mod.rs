@@ -64,8 +64,7 @@ pub fn stages() -> Vec<Stage> {
     stages.push(Path::stage(&penalties, 2));
     stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| {
         let keys = wanted == Wanted::Matches;
-        let selection =
-            Selection { paths: 4, own: 2, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
+        let selection = Selection { stored: 3, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
         Select::stage(&penalties, 2, selection)
     }));
     stages.extend([Support::stage(5), Fill::stage()]);

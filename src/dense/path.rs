@@ -59,12 +59,12 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Along the rows and the columns first, then aslant: those of the first four or of all eight are used.
+    /// Along the rows and the columns first, then aslant: those of the first three, the first four or of all eight are used.
     pub const ALL: [Self; 8] = {
         const fn d(dx: i32, dy: i32) -> Direction {
             Direction { dx, dy }
         }
-        [d(1, 0), d(-1, 0), d(0, 1), d(0, -1), d(1, 1), d(-1, -1), d(1, -1), d(-1, 1)]
+        [d(-1, 0), d(1, 0), d(0, 1), d(0, -1), d(1, 1), d(-1, -1), d(1, -1), d(-1, 1)]
     };
 }
 
@@ -75,7 +75,6 @@ pub(super) struct Params {
     pub(super) width: u32,
     pub(super) rows: u32,
     pub(super) first_row: u32,
-    pub(super) cost_start: u32,
     pub(super) path_start: u32,
     pub(super) goes_on: u32,
     pub(super) dx: i32,

@@ -14,13 +14,35 @@ use crate::{
 /// The bits of a key that hold the disparity's index.
 pub(super) const INDEX_BITS: u32 = 16;
 
+/// The constants of `shaders/shared/selection.wgsl`, for keys with so many bits for the disparity's index.
+pub(super) fn answer_constants(
+    interpolation: Interpolation,
+    wanted: Wanted,
+    index_bits: u32,
+) -> [(&'static str, i64); 7] {
+    const PARABOLA: i64 = 1;
+    const EQUIANGULAR: i64 = 2;
+    let chosen = match interpolation {
+        Interpolation::None => 0,
+        Interpolation::Parabola => PARABOLA,
+        Interpolation::Equiangular => EQUIANGULAR,
+    };
+    [
+        ("SHIFT", index_bits.into()),
+        ("SCALE", SCALE.into()),
+        ("NONE", NONE.into()),
+        ("FULL", (wanted == Wanted::Matches).into()),
+        ("PARABOLA", PARABOLA),
+        ("EQUIANGULAR", EQUIANGULAR),
+        ("INTERPOLATION", chosen),
+    ]
+}
+
 /// What is selected, and from what.
 #[derive(Clone, Copy, Debug)]
 pub struct Selection {
-    /// How many paths there are.
-    pub paths: u32,
-    /// The number of the one that is followed on the way.
-    pub own: u32,
+    /// How many paths stand in the volumes; one more is followed on the way.
+    pub stored: u32,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
     /// Matches or winners.
@@ -54,18 +76,8 @@ impl Select {
     /// What the kernel is made of, for `words` words a pixel.
     pub fn stage(penalties: &Penalties, words: u32, selection: Selection) -> Stage {
         let mut constants = line_constants(penalties, words);
-        constants.extend([
-            ("PATHS", selection.paths.into()),
-            ("OWN", selection.own.into()),
-            ("KEYS", selection.keys.into()),
-            ("SHIFT", INDEX_BITS.into()),
-            ("SCALE", SCALE.into()),
-            ("NONE", NONE.into()),
-            ("FULL", (selection.wanted == Wanted::Matches).into()),
-            ("PARABOLA", 1),
-            ("EQUIANGULAR", 2),
-            ("INTERPOLATION", selection.interpolation.code()),
-        ]);
+        constants.extend([("STORED", selection.stored.into()), ("KEYS", selection.keys.into())]);
+        constants.extend(answer_constants(selection.interpolation, selection.wanted, INDEX_BITS));
         Stage {
             name: "select",
             source: concat!(
@@ -106,14 +118,13 @@ impl Select {
         matches: &wgpu::Buffer,
     ) -> Dispatch {
         let Places { start, volume_words, confidence_offset, key_offset } = places;
-        let own = start + self.selection.own * volume_words;
         let params = Params {
             volumes_start: start,
             volume_words,
             uniqueness: self.selection.uniqueness,
             confidence_offset,
             key_offset,
-            ..Params::new(band, direction, own, false)
+            ..Params::new(band, direction, 0, false)
         };
         let uniforms = uniform_buffer(device, "select", &params);
         self.kernel.dispatch(device, &[&uniforms, reference, costs, paths, matches], params.groups())

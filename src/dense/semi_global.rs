@@ -68,17 +68,15 @@ impl Paths {
         }
     }
 
-    /// The number of the one that is followed last, while disparities are selected: one along the rows, which
-    /// nothing has to be kept of from band to band, and which sees memory in order.
-    fn last(self) -> usize {
-        self.directions().iter().rposition(|direction| direction.dy == 0).unwrap_or(0)
+    /// The one that is followed last, while disparities are selected, and those whose costs are stored until then. The
+    /// last is one along the rows: of it nothing has to be kept from band to band, and it sees memory in order.
+    fn last_and_stored(self) -> (Direction, &'static [Direction]) {
+        let directions = self.directions();
+        (directions[0], &directions[1..])
     }
 }
 
 impl SemiGlobal {
-    /// The bits of a key that are left for the disparity's index.
-    pub(super) const INDEX_BITS: u32 = 16;
-
     /// Refuses what does not fit in the volumes.
     ///
     /// # Errors
@@ -108,7 +106,7 @@ impl SemiGlobal {
 struct Shared {
     census: [wgpu::Buffer; 2],
     costs: wgpu::Buffer,
-    /// A volume for each path, each with a row in front of it and one behind.
+    /// A volume for each path that is stored, each with a row in front of it and one behind.
     paths: wgpu::Buffer,
     path_words: u64,
     path: Path,
@@ -118,10 +116,10 @@ struct Shared {
 struct Side {
     view: View,
     cost: CostVolume,
+    last: Direction,
+    /// The directions of the paths that are stored.
     directions: &'static [Direction],
     select: Select,
-    /// The number of the path that is followed with the selection.
-    last: usize,
     /// The last rows so far of the paths from above; and for each band but the first, the first rows of the
     /// paths from below. None where there is one band.
     above: Option<wgpu::Buffer>,
@@ -142,7 +140,7 @@ pub(super) fn plan(
 ) -> Result<Plan> {
     let (width, height) = size;
     let range = config.searched(width)?;
-    let directions = semi_global.paths.directions();
+    let (last, directions) = semi_global.paths.last_and_stored();
     let band_rows = band_rows_within(limit, size, range, directions.len() as u64, band_rows)?;
     let band = |first_row: u32| VolumeBand { width, first_row, rows: band_rows.min(height - first_row), range };
     let bands: Vec<VolumeBand> = (0..height).step_by(band_rows as usize).map(band).collect();
@@ -184,8 +182,7 @@ pub(super) fn plan(
             Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
         };
         let selection = Selection {
-            paths: directions.len() as u32,
-            own: semi_global.paths.last() as u32,
+            stored: directions.len() as u32,
             interpolation: config.interpolation,
             wanted,
             keys: claimed,
@@ -196,7 +193,7 @@ pub(super) fn plan(
             cost: CostVolume::new(device, &semi_global.cost, view),
             directions,
             select: Select::new(device, &semi_global.penalties, bands[0].words(), selection),
-            last: semi_global.paths.last(),
+            last,
             above,
             below,
             matches,
@@ -211,21 +208,24 @@ pub(super) fn plan(
         side.follow_from_below(device, &mut plan, &shared, &bands);
     }
     let others = if claimed { Others::Claims(range.min) } else { Others::Disparities };
-    let (consistency, claim) = (Consistency::new(device, others), Claim::new(device));
-    let claims = claimed.then(|| plan.buffer(device, "claims", confidence_offset.into())).transpose()?;
+    let check = config.consistency.map(|limit| (Consistency::new(device, others), limit));
+    let claims = match claimed {
+        true => Some((Claim::new(device), plan.buffer(device, "claims", confidence_offset.into())?)),
+        false => None,
+    };
     for (index, band) in bands.iter().enumerate() {
         for side in &sides {
             side.match_band(device, &mut plan, &shared, &bands, index, offsets);
         }
         let (matches, view) = (&sides[0].matches, config.reference);
-        if let Some(claims) = &claims {
+        if let Some((claim, claims)) = &claims {
             plan.clear(claims);
             plan.run(claim.prepare(device, band, view, offsets[1], matches, claims));
         }
-        let others = claims.as_ref().or(sides.get(1).map(|other| &other.matches));
-        if let (Some(limit), Some(others)) = (config.consistency, others) {
+        let others = claims.as_ref().map(|(_, claims)| claims).or(sides.get(1).map(|other| &other.matches));
+        if let (Some((consistency, limit)), Some(others)) = (&check, others) {
             let size = (width, band.rows);
-            plan.run(consistency.prepare(device, size, confidence_offset, view, limit, others, matches));
+            plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, others, matches));
         }
         plan.hand_out(matches, confidence_offset, width, (band.first_row, band.rows));
     }
@@ -246,7 +246,7 @@ impl Side {
         }
     }
 
-    /// The paths with this step from row to row: their number, and their place among themselves.
+    /// The stored paths with this step from row to row: their number, and their place among themselves.
     fn paths(&self, dy: i32) -> impl Iterator<Item = (usize, u64)> {
         let numbers = (0..self.directions.len()).filter(move |&number| self.directions[number].dy == dy);
         numbers.zip(0..)
@@ -341,7 +341,7 @@ impl Side {
                 });
             }
         }
-        for (number, _) in self.paths(0).filter(|&(number, _)| number != self.last) {
+        for (number, _) in self.paths(0) {
             self.follow(device, plan, shared, band, number, None);
         }
         self.select(device, plan, shared, band, offsets);
@@ -359,8 +359,7 @@ impl Side {
         let volume_words = shared.path_words as u32;
         let places = Places { start: band.row_words(), volume_words, confidence_offset, key_offset };
         let [reference, _] = self.census(shared);
-        let (direction, costs, paths, matches) =
-            (self.directions[self.last], &shared.costs, &shared.paths, &self.matches);
+        let (direction, costs, paths, matches) = (self.last, &shared.costs, &shared.paths, &self.matches);
         plan.clear(matches);
         let select = &self.select;
         plan.run(select.prepare(device, band, direction, places, reference, costs, paths, matches));
