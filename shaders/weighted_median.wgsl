@@ -9,6 +9,8 @@
 struct Params {
     width: u32,
     height: u32,
+    // Where the rows begin in the luma.
+    luma_start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -36,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let luma_stride = (params.width + 3u) / 4u;
-    let own_word = luma[u32(y) * luma_stride + id.x];
+    let own_word = luma[params.luma_start + u32(y) * luma_stride + id.x];
     let own = (vec4<u32>(own_word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
 
     var values: array<array<vec4<i32>, SIDE>, SIDE>;
@@ -53,7 +55,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var words: array<u32, 3>;
         for (var i = 0; i < 3; i++) { // unroll
             let word = clamp(i32(id.x) + i - 1, 0, i32(luma_stride) - 1);
-            words[i] = luma[u32(nearest_row) * luma_stride + u32(word)];
+            words[i] = luma[params.luma_start + u32(nearest_row) * luma_stride + u32(word)];
         }
         var lumas: array<u32, SPAN>;
         for (var i = 0; i < SPAN; i++) { // unroll

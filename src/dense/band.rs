@@ -2,13 +2,13 @@
 
 use crate::disparity::DisparityRange;
 
-/// Rows `first_row` to `first_row + rows` of a picture, and the disparities of each of their pixels, four a word of eight
-/// bits each. A pixel's words follow each other, then come the next pixel's.
+/// Some rows of the transformed views, and the disparities of each of their pixels, four a word of eight bits each. A
+/// pixel's words follow each other, then come the next pixel's.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeBand {
-    /// Of the picture.
+    /// Of the views.
     pub width: u32,
-    /// The first row.
+    /// Where the band begins among the rows of the transforms.
     pub first_row: u32,
     /// How many rows.
     pub rows: u32,

@@ -3,9 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{
-    census::Brightness,
     config::{DenseConfig, View},
-    pad::PadParams,
+    pad::{Brightness, PadParams},
     select::answer_constants,
 };
 use crate::{

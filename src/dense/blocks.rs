@@ -31,6 +31,7 @@ pub(super) fn plan(
 ) -> Result<Plan> {
     let (width, height) = size;
     let tiles = tiles(device, config);
+    let most_rows = band_rows;
     let band_rows = band_rows_within(limit, size, config, &tiles, band_rows)?;
     let view = config.reference;
     let pad = Pad::new(device);
@@ -66,7 +67,8 @@ pub(super) fn plan(
     }
     if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
         let luma = if view == View::Left { left } else { right };
-        plan_refinement(device, &mut plan, size, refinement, config.searched(width)?, luma, &whole)?;
+        let range = config.searched(width)?;
+        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole, (limit, most_rows))?;
     }
     Ok(plan)
 }

@@ -28,14 +28,14 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 
 pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
-pub use census::{Brightness, Census};
+pub use census::Census;
 pub use claim::Claim;
 pub use config::{Aggregation, DenseConfig, Interpolation, View};
 pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
 pub use matcher::{Dense, Matcher, compute};
-pub use pad::{Pad, PadParams};
+pub use pad::{Brightness, Pad, PadParams};
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
 pub use select::{Places, Select, Selection};

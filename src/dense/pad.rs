@@ -2,10 +2,41 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::census::Brightness;
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::{
+    error::{Error, Result},
+    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+};
 
 const WORKGROUP: [u32; 2] = [64, 4];
+
+/// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct Brightness {
+    /// In 1/256, up to 2^20 either way.
+    pub gain: i32,
+    /// In 1/256, up to 2^20 either way.
+    pub offset: i32,
+}
+
+impl Brightness {
+    /// No change.
+    pub const SAME: Self = Self { gain: 256, offset: 0 };
+
+    /// Refuses what 32 bits do not hold.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the rule.
+    pub fn validate(&self) -> Result<()> {
+        for (name, value) in [("the gain", self.gain), ("the offset", self.offset)] {
+            if value.unsigned_abs() > 1 << 20 {
+                let expected = "it must be -2^20 to 2^20, in 1/256".into();
+                return Err(Error::Parameter { name, value: value.to_string(), expected });
+            }
+        }
+        Ok(())
+    }
+}
 
 /// Where a padded plane lies: in the picture, and in the buffer. All words and rows are those of
 /// the picture, and may lie outside of it.

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Dispatch, storage_buffer},
+    gpu::{Dispatch, storage_buffer, store},
 };
 
 /// One thing to do.
@@ -34,12 +34,19 @@ pub(super) enum Target {
     Confidences,
 }
 
+/// The disparities and the confidences of a whole view, as the caller gets them. Only copied, since they may be
+/// more than a kernel can bind.
+#[derive(Clone)]
+pub(super) struct Whole {
+    pub(super) disparities: wgpu::Buffer,
+    pub(super) confidences: wgpu::Buffer,
+}
+
 /// The steps, and how much memory they share.
 pub(super) struct Plan {
     steps: Vec<Step>,
-    /// Where the answers of all bands come together, if something is done with them then, and where
-    /// among them the confidences begin.
-    whole: Option<(wgpu::Buffer, u32)>,
+    /// Where the answers of all bands come together, if something is done with them then.
+    whole: Option<Whole>,
     pub(super) bytes: u64,
     /// In how many bands of rows the pair is matched.
     pub(super) bands: usize,
@@ -70,27 +77,30 @@ impl Plan {
     }
 
     /// Brings the answers of all bands together in one map of `size` before anyone gets them.
-    pub(super) fn collect(&mut self, device: &wgpu::Device, (width, height): (u32, u32)) -> Result<wgpu::Buffer> {
-        let (words, confidence_offset) = match_words(width, height);
-        let map = self.buffer(device, "the whole map", words)?;
-        self.whole = Some((map.clone(), confidence_offset));
-        Ok(map)
+    pub(super) fn collect(&mut self, device: &wgpu::Device, (width, height): (u32, u32)) -> Result<Whole> {
+        let mut whole = |label, row: u32| {
+            let bytes = 4 * u64::from(row) * u64::from(height);
+            self.bytes += bytes;
+            store(device, label, bytes)
+        };
+        let disparities = whole("all disparities", width)?;
+        let confidences = whole("all confidences", width.div_ceil(4))?;
+        let whole = Whole { disparities, confidences };
+        self.whole = Some(whole.clone());
+        Ok(whole)
     }
 
     /// The answers for a band of rows that stand in `matches`, on their way to the caller or to the whole map.
     pub(super) fn hand_out(&mut self, matches: &wgpu::Buffer, confidence_offset: u32, width: u32, rows: (u32, u32)) {
         let (first_row, count) = (u64::from(rows.0), u64::from(rows.1));
         let [disparities, confidences] = match &self.whole {
-            None => [(Target::Disparities, 0), (Target::Confidences, 0)],
-            Some((map, offset)) => [(Target::Buffer(map.clone()), 0), (Target::Buffer(map.clone()), (*offset).into())],
+            None => [Target::Disparities, Target::Confidences],
+            Some(Whole { disparities, confidences }) => [disparities, confidences].map(|b| Target::Buffer(b.clone())),
         };
-        let parts = [
-            (disparities, 0, u64::from(width)),
-            (confidences, u64::from(confidence_offset), u64::from(width.div_ceil(4))),
-        ];
-        for ((to, start), from_word, row) in parts {
-            let to_word = start + row * first_row;
-            self.copy(Copy { from: matches.clone(), from_word, to, to_word, words: row * count });
+        let parts = [(disparities, 0, width), (confidences, confidence_offset, width.div_ceil(4))];
+        for (to, from_word, row) in parts {
+            let (from, from_word, row) = (matches.clone(), from_word.into(), u64::from(row));
+            self.copy(Copy { from, from_word, to, to_word: row * first_row, words: row * count });
         }
     }
 

@@ -5,11 +5,14 @@
 
 use super::{
     fill::Fill,
-    plan::{Copy, Plan, Target, match_words},
-    support::Support,
+    plan::{Copy, Plan, Target, Whole, match_words},
+    support::{SUPPORT_RADIUS, Support},
     weighted_median::{Median, WeightedMedian},
 };
-use crate::{disparity::DisparityRange, error::Result};
+use crate::{
+    disparity::DisparityRange,
+    error::{Error, Result},
+};
 
 /// What is done with a map after its checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,49 +46,94 @@ impl Refinement {
     }
 }
 
-/// Maps on their way from one filter to the next: the one that a filter reads, and two others.
-struct Maps([wgpu::Buffer; 3]);
-
-/// Refines `matches`, of all rows of the reference view, whose packed `luma` is given, and hands the result out.
+/// Refines the `whole` map of a view, whose packed `luma` is given, and hands the result out.
+///
+/// Where the map does not fit in buffers of `limit` bytes, or has more than `most_rows` rows, that is done in
+/// windows of rows, each with so many more around it that what is handed out is the same.
+#[expect(clippy::too_many_arguments, reason = "what is refined, how, and within which limits")]
 pub(super) fn plan_refinement(
     device: &wgpu::Device,
     plan: &mut Plan,
-    size: (u32, u32),
+    (width, height): (u32, u32),
     refinement: &Refinement,
     range: DisparityRange,
     luma: &wgpu::Buffer,
-    matches: &wgpu::Buffer,
+    whole: &Whole,
+    (limit, most_rows): (u64, u32),
 ) -> Result<()> {
-    let (width, height) = size;
-    let (words, confidence_offset) = match_words(width, height);
-    let pixels = u64::from(width) * u64::from(height);
+    let around =
+        SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
+    let fitting = u32::try_from(limit / (4 * match_words(width, 1).0)).unwrap_or(u32::MAX);
+    let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * around) }.min(most_rows);
+    if rows == 0 {
+        return Err(Error::TooLarge {
+            what: format!("the refinement of rows {width} px wide"),
+            needed: 4 * match_words(width, 2 * around + 1).0,
+            limit,
+            way_out: "refine less or scale the pictures down".into(),
+        });
+    }
+    let window_rows = (rows + 2 * around).min(height);
+    let (words, _) = match_words(width, window_rows);
+    let pixels = u64::from(width) * u64::from(window_rows);
+    let given = plan.buffer(device, "disparities to refine", words)?;
     let supported = plan.buffer(device, "supported disparities", words)?;
-    plan.run(Support::new(device, refinement.support).prepare(device, size, confidence_offset, matches, &supported));
-    // What was matched is not needed any more.
-    let mut maps = Maps([supported.clone(), matches.clone(), plan.buffer(device, "filtered disparities", pixels)?]);
-    plan.copy(Copy {
-        from: supported.clone(),
-        from_word: confidence_offset.into(),
-        to: Target::Confidences,
-        to_word: 0,
-        words: words - u64::from(confidence_offset),
-    });
-    for median in refinement.before() {
-        let Maps([from, to, _]) = &maps;
-        plan.run(WeightedMedian::new(device, median).prepare(device, size, luma, [from, from], to));
-        maps.0.swap(0, 1);
+    let filtered = plan.buffer(device, "filtered disparities", pixels)?;
+    let (support, fill) = (Support::new(device, refinement.support), Fill::new(device));
+    // Most filters are alike: each kernel is compiled once, and a filter is its place here.
+    let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
+    let mut place = |median: Median| {
+        kernels.iter().position(|(known, _)| *known == median).unwrap_or_else(|| {
+            kernels.push((median, WeightedMedian::new(device, median)));
+            kernels.len() - 1
+        })
+    };
+    let before: Vec<usize> = refinement.before().map(&mut place).collect();
+    let after: Vec<usize> = refinement.after().map(&mut place).collect();
+
+    for first_row in (0..height).step_by(rows as usize) {
+        let kept = rows.min(height - first_row);
+        let top = first_row.saturating_sub(around);
+        let size = (width, (first_row + kept + around).min(height) - top);
+        let (_, confidence_offset) = match_words(width, size.1);
+        for (from, row, to_word) in
+            [(&whole.disparities, width, 0), (&whole.confidences, width.div_ceil(4), confidence_offset)]
+        {
+            let row = u64::from(row);
+            let (from_word, words) = (row * u64::from(top), row * u64::from(size.1));
+            let to = Target::Buffer(given.clone());
+            plan.copy(Copy { from: from.clone(), from_word, to, to_word: to_word.into(), words });
+        }
+        plan.run(support.prepare(device, size, confidence_offset, &given, &supported));
+
+        // The map that a filter reads, and two others. The confidences stand behind the supported disparities and
+        // stay there.
+        let mut maps = [&supported, &given, &filtered];
+        let filter = |place: usize, [disparities, before, to]: [&wgpu::Buffer; 3]| {
+            kernels[place].1.prepare(device, size, (luma, top), [disparities, before], to)
+        };
+        for &place in &before {
+            plan.run(filter(place, [maps[0], maps[0], maps[1]]));
+            maps.swap(0, 1);
+        }
+        if refinement.fill {
+            plan.run(fill.prepare(device, size, range, maps[0], maps[1]));
+            // Those with holes stay until they are filtered by.
+            maps.swap(0, 1);
+        }
+        for &place in &after {
+            plan.run(filter(place, maps));
+            maps.swap(0, 2);
+        }
+        let (skipped, cw) = (u64::from(first_row - top), width.div_ceil(4));
+        for (from, start, row, to) in
+            [(maps[0], 0, width, Target::Disparities), (&supported, confidence_offset, cw, Target::Confidences)]
+        {
+            let row = u64::from(row);
+            let from_word = u64::from(start) + row * skipped;
+            let (to_word, words) = (row * u64::from(first_row), row * u64::from(kept));
+            plan.copy(Copy { from: from.clone(), from_word, to, to_word, words });
+        }
     }
-    if refinement.fill {
-        let Maps([from, to, _]) = &maps;
-        plan.run(Fill::new(device).prepare(device, size, range, from, to));
-        // Those with holes stay until they are filtered by.
-        maps.0.swap(0, 1);
-    }
-    for median in refinement.after() {
-        let Maps([from, before, to]) = &maps;
-        plan.run(WeightedMedian::new(device, median).prepare(device, size, luma, [from, before], to));
-        maps.0.swap(0, 2);
-    }
-    plan.copy(Copy { from: maps.0[0].clone(), from_word: 0, to: Target::Disparities, to_word: 0, words: pixels });
     Ok(())
 }

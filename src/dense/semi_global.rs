@@ -9,12 +9,12 @@
 use super::{
     band::VolumeBand,
     block_match::Wanted,
-    census::{Brightness, Census},
+    census::Census,
     claim::Claim,
     config::{DenseConfig, View},
     consistency::{Consistency, Others},
     cost::{Cost, CostVolume},
-    pad::Pad,
+    pad::{Brightness, Pad},
     path::{Direction, Path, Penalties},
     plan::{Copy, Plan, Target, match_words},
     refine::plan_refinement,
@@ -102,8 +102,15 @@ impl SemiGlobal {
     }
 }
 
-/// What both views share: where their transforms stand, memory for a band of volumes, and a kernel.
+/// What both views share: the pictures, memory for the transforms and volumes of a band, and kernels.
 struct Shared {
+    size: (u32, u32),
+    band_rows: u32,
+    /// The left and the right picture, and how its brightness is changed.
+    pictures: [(wgpu::Buffer, Brightness); 2],
+    pad: Pad,
+    transform: Census,
+    padded: wgpu::Buffer,
     census: [wgpu::Buffer; 2],
     costs: wgpu::Buffer,
     /// A volume for each path that is stored, each with a row in front of it and one behind.
@@ -141,26 +148,26 @@ pub(super) fn plan(
     let (width, height) = size;
     let range = config.searched(width)?;
     let (last, directions) = semi_global.paths.last_and_stored();
+    let most_rows = band_rows;
     let band_rows = band_rows_within(limit, size, range, directions.len() as u64, band_rows)?;
-    let band = |first_row: u32| VolumeBand { width, first_row, rows: band_rows.min(height - first_row), range };
+    // The transforms of a band have a row more in front of it, where lines come from, and one behind.
+    let band = |first_row: u32| VolumeBand { width, first_row: 1, rows: band_rows.min(height - first_row), range };
     let bands: Vec<VolumeBand> = (0..height).step_by(band_rows as usize).map(band).collect();
     let row_words = u64::from(bands[0].row_words());
 
     let mut plan = Plan::new(bands.len());
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
-    let padding = Census::padding(size, Brightness::SAME);
-    let padded = plan.buffer(device, "padded plane", u64::from(padding.rows) * u64::from(padding.stride))?;
-    let (pad, census) = (Pad::new(device), Census::new(device));
-    let pixels = u64::from(width) * u64::from(height);
-    let transformed = [plan.buffer(device, "census, left", pixels)?, plan.buffer(device, "census, right", pixels)?];
-    for ((view, out), brightness) in views.iter().zip(&transformed).zip([Brightness::SAME, config.brightness]) {
-        plan.run(pad.prepare(device, Census::padding(size, brightness), view, &padded));
-        plan.run(census.prepare(device, size, &padded, out));
-    }
-
     let path_words = row_words * (u64::from(band_rows) + 2);
+    let padding = Census::padding(size, 0, band_rows + 2, Brightness::SAME);
+    let transformed = u64::from(width) * u64::from(band_rows + 2);
     let shared = Shared {
-        census: transformed,
+        size,
+        band_rows,
+        pictures: [(views[0].clone(), Brightness::SAME), (views[1].clone(), config.brightness)],
+        pad: Pad::new(device),
+        transform: Census::new(device),
+        padded: plan.buffer(device, "padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
+        census: [plan.buffer(device, "census, left", transformed)?, plan.buffer(device, "census, right", transformed)?],
         costs: plan.buffer(device, "costs", row_words * u64::from(band_rows))?,
         paths: plan.buffer(device, "paths", path_words * directions.len() as u64)?,
         path_words,
@@ -204,8 +211,13 @@ pub(super) fn plan(
         sides.push(side(config.reference.other(), Wanted::Winners)?);
     }
 
-    for side in &sides {
-        side.follow_from_below(device, &mut plan, &shared, &bands);
+    if directions.iter().any(|direction| direction.dy < 0) {
+        for index in (1..bands.len()).rev() {
+            shared.transform(device, &mut plan, index);
+            for side in &sides {
+                side.follow_from_below(device, &mut plan, &shared, &bands, index);
+            }
+        }
     }
     let others = if claimed { Others::Claims(range.min) } else { Others::Disparities };
     let check = config.consistency.map(|limit| (Consistency::new(device, others), limit));
@@ -214,6 +226,7 @@ pub(super) fn plan(
         false => None,
     };
     for (index, band) in bands.iter().enumerate() {
+        shared.transform(device, &mut plan, index);
         for side in &sides {
             side.match_band(device, &mut plan, &shared, &bands, index, offsets);
         }
@@ -227,13 +240,26 @@ pub(super) fn plan(
             let size = (width, band.rows);
             plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, others, matches));
         }
-        plan.hand_out(matches, confidence_offset, width, (band.first_row, band.rows));
+        plan.hand_out(matches, confidence_offset, width, (index as u32 * band_rows, band.rows));
     }
     if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
         let luma = if config.reference == View::Left { views[0] } else { views[1] };
-        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole)?;
+        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole, (limit, most_rows))?;
     }
     Ok(plan)
+}
+
+impl Shared {
+    /// Transforms the rows of band `index` of both views, and one more on either side.
+    fn transform(&self, device: &wgpu::Device, plan: &mut Plan, index: usize) {
+        let first_row = index as u32 * self.band_rows;
+        let rows = self.band_rows.min(self.size.1 - first_row) + 2;
+        for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
+            let padding = Census::padding(self.size, first_row as i32 - 1, rows, *brightness);
+            plan.run(self.pad.prepare(device, padding, picture, &self.padded));
+            plan.run(self.transform.prepare(device, (self.size.0, rows), &self.padded, census));
+        }
+    }
 }
 
 impl Side {
@@ -252,22 +278,27 @@ impl Side {
         numbers.zip(0..)
     }
 
-    /// Follows the paths from below from the last band to the second, and keeps the first row of each band.
-    fn follow_from_below(&self, device: &wgpu::Device, plan: &mut Plan, shared: &Shared, bands: &[VolumeBand]) {
-        let [reference, other] = self.census(shared);
-        for (index, band) in bands.iter().enumerate().skip(1).rev() {
-            plan.run(self.cost.prepare(device, band, [reference, other], &shared.costs));
-            for (number, place) in self.paths(-1) {
-                self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
-                let row = u64::from(band.row_words());
-                plan.copy(Copy {
-                    from: shared.paths.clone(),
-                    from_word: number as u64 * shared.path_words + row,
-                    to: Target::Buffer(self.below[index - 1].clone()),
-                    to_word: place * row,
-                    words: row,
-                });
-            }
+    /// Follows the paths from below through a band, and keeps their first row for the band above.
+    fn follow_from_below(
+        &self,
+        device: &wgpu::Device,
+        plan: &mut Plan,
+        shared: &Shared,
+        bands: &[VolumeBand],
+        index: usize,
+    ) {
+        let band = &bands[index];
+        plan.run(self.cost.prepare(device, band, self.census(shared), &shared.costs));
+        for (number, place) in self.paths(-1) {
+            self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
+            let row = u64::from(band.row_words());
+            plan.copy(Copy {
+                from: shared.paths.clone(),
+                from_word: number as u64 * shared.path_words + row,
+                to: Target::Buffer(self.below[index - 1].clone()),
+                to_word: place * row,
+                words: row,
+            });
         }
     }
 
@@ -376,7 +407,9 @@ fn band_rows_within(
 ) -> Result<u32> {
     let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
     let needed = 3 * row * paths;
-    let rows = (limit / (row * paths)).saturating_sub(2);
+    // A row's answers with their keys can be more than its volumes, where there are few disparities.
+    let answers = 4 * (match_words(width, 1).0 + u64::from(width));
+    let rows = (limit / (row * paths)).saturating_sub(2).min(limit / answers);
     if rows == 0 {
         return Err(Error::TooLarge {
             what: format!("one row of a picture {width} px wide with {} disparities", range.count),

@@ -28,6 +28,7 @@ pub struct Median {
 struct Params {
     width: u32,
     height: u32,
+    luma_start: u32,
 }
 
 /// The kernel of a weighted median.
@@ -66,17 +67,21 @@ impl WeightedMedian {
         Self(Kernel::new(device, &Self::stage(median)))
     }
 
-    /// Filters `disparities` into `filtered`, by the packed `luma` of their view; `before` is the map before its
-    /// holes were filled.
+    /// Filters `disparities` into `filtered`, by the packed `luma` of their view, in which their first row is row
+    /// `first_row`; `before` is the map before its holes were filled.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         (width, height): (u32, u32),
-        luma: &wgpu::Buffer,
+        (luma, first_row): (&wgpu::Buffer, u32),
         [disparities, before]: [&wgpu::Buffer; 2],
         filtered: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = uniform_buffer(device, "weighted median", &Params { width, height });
+        let params = uniform_buffer(
+            device,
+            "weighted median",
+            &Params { width, height, luma_start: first_row * width.div_ceil(4) },
+        );
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
     }

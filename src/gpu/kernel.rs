@@ -156,7 +156,26 @@ impl Dispatch {
 /// # Errors
 /// [`Error::TooLarge`] where the device could not bind it.
 pub(crate) fn storage_buffer(device: &wgpu::Device, label: &'static str, bytes: u64) -> Result<wgpu::Buffer> {
-    let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+    let limits = device.limits();
+    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    buffer_within(device, label, bytes, limit, wgpu::BufferUsages::STORAGE)
+}
+
+/// A buffer that no kernel sees, for what may be more than one can bind.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub(crate) fn store(device: &wgpu::Device, label: &'static str, bytes: u64) -> Result<wgpu::Buffer> {
+    buffer_within(device, label, bytes, device.limits().max_buffer_size, wgpu::BufferUsages::empty())
+}
+
+fn buffer_within(
+    device: &wgpu::Device,
+    label: &'static str,
+    bytes: u64,
+    limit: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer> {
     if bytes > limit {
         return Err(Error::TooLarge {
             what: label.into(),
@@ -169,7 +188,7 @@ pub(crate) fn storage_buffer(device: &wgpu::Device, label: &'static str, bytes: 
         label: Some(label),
         // An empty binding is refused by wgpu; a copy needs whole words.
         size: bytes.next_multiple_of(4).max(4),
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     }))
 }

@@ -7,5 +7,5 @@ mod unroll;
 
 pub use device::{DeviceChoice, Gpu, list_adapters};
 pub use kernel::{Binding, Dispatch, Stage};
-pub(crate) use kernel::{Kernel, guarded, storage_buffer, uniform_buffer};
+pub(crate) use kernel::{Kernel, guarded, storage_buffer, store, uniform_buffer};
 pub(crate) use readback::Readback;

@@ -11,7 +11,7 @@ use crate::common::*;
 fn on_device(luma: &Luma) -> Vec<u32> {
     let device = &gpu().device;
     let size = luma.size();
-    let padding = Census::padding(size, Brightness::SAME);
+    let padding = Census::padding(size, 0, size.1, Brightness::SAME);
     let padded = upload(&vec![0_u32; (padding.rows * padding.stride) as usize]);
     let census = upload(&vec![0_u32; luma.data().len()]);
     let dispatches = [

@@ -128,12 +128,36 @@ fn what_cannot_be_is_refused_by_both_alike() {
 
 /// The same adapter with the smallest limits that WebGPU knows.
 fn strict() -> Gpu {
+    with_limits(wgpu::Limits::downlevel_defaults())
+}
+
+fn with_limits(required_limits: wgpu::Limits) -> Gpu {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
-    let descriptor =
-        wgpu::DeviceDescriptor { required_limits: wgpu::Limits::downlevel_defaults(), ..Default::default() };
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
     Gpu { device, queue, info: adapter.get_info() }
+}
+
+/// A device that binds less than a pair's maps and transforms need: the result is the same.
+#[test]
+fn no_buffer_needs_to_hold_a_whole_view() {
+    let (left, right) = pair(400, 300);
+    let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
+    let small = with_limits(small);
+    for config in [
+        semi_global(View::Left, Paths::Three, OtherView::Claimed),
+        semi_global(View::Right, Paths::Four, OtherView::Searched),
+        DenseConfig {
+            refinement: semi_global(View::Left, Paths::Four, OtherView::Claimed).refinement,
+            ..config(View::Left)
+        },
+    ] {
+        let expected = dense::compute(gpu(), &left, &right, &config).unwrap();
+        let actual = dense::compute(&small, &left, &right, &config).unwrap();
+        assert_same("disparities", actual.disparity.data(), expected.disparity.data());
+        assert_same("confidences", actual.confidence.data(), expected.confidence.data());
+    }
 }
 
 /// 36 megapixels: their disparities are more than one binding of 128 MiB holds.

@@ -13,7 +13,7 @@ fn on_device(luma: &Luma, disparities: &DisparityMap, before: &DisparityMap, med
     let device = &gpu().device;
     let (from, before, to) = (upload(disparities.data()), upload(before.data()), upload(disparities.data()));
     let kernel = WeightedMedian::new(device, median);
-    let dispatch = kernel.prepare(device, disparities.size(), &upload_luma(luma), [&from, &before], &to);
+    let dispatch = kernel.prepare(device, disparities.size(), (&upload_luma(luma), 0), [&from, &before], &to);
     poison(&to);
     run(|encoder| dispatch.record(encoder));
     download(&to)
