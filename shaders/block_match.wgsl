@@ -25,11 +25,11 @@ struct Params {
     reference_start: u32,
     searched_start: u32,
     min_disparity: i32,
-    disparities: u32,
-    // Disparities that are looked at before the range begins, 0 to 3.
+    // Disparities that a step may look at before the range begins, 0 to 3.
     skipped: u32,
-    // Steps of four disparities.
-    steps: u32,
+    // The side of a cell of `ranges` is 2^cell_shift pixels.
+    cell_shift: u32,
+    cell_columns: u32,
     // Per cent by which the rival's cost must exceed the winner's.
     uniqueness: u32,
     // Where the confidences begin, four a word.
@@ -39,8 +39,10 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 // Both padded planes, four pixels a word.
 @group(0) @binding(1) var<storage, read> planes: array<u32>;
+// What is searched in each cell of the picture: the index of the first disparity, and how many.
+@group(0) @binding(2) var<storage, read> ranges: array<vec2<u32>>;
 // A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
-@group(0) @binding(2) var<storage, read_write> matches: array<i32>;
+@group(0) @binding(3) var<storage, read_write> matches: array<i32>;
 
 // A number for each of a step's four disparities and each pixel of a row of the tile.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
@@ -82,11 +84,11 @@ fn consider(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -
 
 // What is ored to the costs of a step for pixels from column x on: the disparity's index; or, where
 // it leads out of the picture or the range, all ones.
-fn tags_of(x: i32, step: u32) -> Costs {
+fn tags_of(x: i32, step: u32, range: vec2<u32>) -> Costs {
     var tags: Costs;
     for (var k = 0; k < 4; k++) { // unroll
         let index = 4u * step + k - params.skipped;
-        let end = select(0u, params.width, index < params.disparities);
+        let end = select(0u, params.width, index - range.x < range.y);
         for (var q = 0; q < QUADS; q++) { // unroll
             let partner = vec4<i32>(x + 4 * q + DIRECTION * (params.min_disparity + i32(index))) + vec4<i32>(0, 1, 2, 3);
             tags[k][q] = select(vec4<u32>(NOTHING), vec4<u32>(index), vec4<u32>(partner) < vec4<u32>(end));
@@ -171,6 +173,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
 
+    let range = ranges[(y0 >> params.cell_shift) * params.cell_columns + (x >> params.cell_shift)];
+    let first_step = (params.skipped + range.x) / 4u;
+    let end = (params.skipped + range.x + range.y + 3u) / 4u;
+    let searched_start = params.searched_start + u32(DIRECTION * i32(first_step));
+
     var reference: array<array<vec4<i32>, WORDS>, ROWS>;
     // One word more: four disparities on, the same words serve again, one place further.
     var searched: array<array<u32, WORDS + 1>, ROWS>;
@@ -178,7 +185,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let row = (y0 + y) * params.stride + column;
         for (var j = 0; j < WORDS; j++) { // unroll
             reference[y][j] = unpack(planes[params.reference_start + row + j]);
-            searched[y][j + START] = planes[params.searched_start + row + j];
+            searched[y][j + START] = planes[searched_start + row + j];
         }
     }
 
@@ -190,8 +197,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
 
-    for (var step = 0u; step < params.steps; step++) {
-        let tags = tags_of(i32(x), step);
+    for (var step = first_step; step < end; step++) {
+        let tags = tags_of(i32(x), step, range);
         // Row sums of each row, behind as many rows of zeros as the first windows 'lose'.
         var sums: array<Costs, ROWS + SIDE>;
         var window: Costs;

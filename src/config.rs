@@ -3,7 +3,7 @@
 use crate::{
     dense::{
         Aggregation, Brightness, Cost, DenseConfig, Difference, Interpolation, OtherView, Paths, Penalties, Refinement,
-        SemiGlobal, View,
+        Search, SemiGlobal, View,
     },
     disparity::DisparityRange,
     error::{Error, Result},
@@ -67,7 +67,7 @@ impl Config {
     /// The side of the matching window, or of the census transform's where paths put the costs together.
     pub fn window(&self) -> u32 {
         match self.aggregation {
-            Aggregation::Window(side) => side,
+            Aggregation::Window { side, .. } => side,
             Aggregation::Paths(_) => 5,
         }
     }
@@ -164,13 +164,18 @@ impl Preset {
                 }),
                 ..balanced
             },
-            Self::Fast => Config { aggregation: Aggregation::Window(11), uniqueness: 10, refinement: None, ..balanced },
+            Self::Fast => Config {
+                aggregation: Aggregation::Window { side: 11, search: Search::CoarseToFine },
+                uniqueness: 10,
+                refinement: None,
+                ..balanced
+            },
             Self::Paper => Config {
                 features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..balanced.features },
                 least: Some(0),
                 strongest: Some(10),
                 reference: View::Right,
-                aggregation: Aggregation::Window(7),
+                aggregation: Aggregation::Window { side: 7, search: Search::Whole },
                 interpolation: Interpolation::Parabola,
                 uniqueness: 0,
                 consistency: None,
@@ -193,7 +198,10 @@ mod tests {
         }
         let balanced = || Preset::Balanced.config();
         let bad = [
-            (Config { aggregation: Aggregation::Window(8), ..balanced() }, "window is 8"),
+            (
+                Config { aggregation: Aggregation::Window { side: 8, search: Search::Whole }, ..balanced() },
+                "window is 8",
+            ),
             (Config { strongest: Some(0), ..balanced() }, "strongest is 0"),
             (Config { uniqueness: 101, ..balanced() }, "uniqueness is 101"),
             (Config { least: Some(i32::MIN), ..balanced() }, "the disparity range"),

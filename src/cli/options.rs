@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
     config::{Config, Preset},
-    dense::{Aggregation, Interpolation, View},
+    dense::{Aggregation, Interpolation, Search, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -92,6 +92,10 @@ pub struct MatchOptions {
     /// match semi-globally instead]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
+    /// Compare blocks at every disparity of the range [fast: only at those that a map of half the size
+    /// shows nearby]
+    #[arg(long)]
+    whole_range: bool,
     /// Smallest disparity: with --disparities where the range begins [default: 0], without it a
     /// limit to the range that is found [paper: 0]
     #[arg(long, value_name = "PX", allow_negative_numbers = true)]
@@ -149,7 +153,14 @@ impl MatchOptions {
         config.strongest = self.strongest.or(config.strongest);
         config.reference = self.reference.map_or(config.reference, View::from);
         if let Some(side) = self.window {
-            config.aggregation = Aggregation::Window(side);
+            let search = match config.aggregation {
+                Aggregation::Window { search, .. } => search,
+                Aggregation::Paths(_) => Search::Whole,
+            };
+            config.aggregation = Aggregation::Window { side, search };
+        }
+        if let (true, Aggregation::Window { search, .. }) = (self.whole_range, &mut config.aggregation) {
+            *search = Search::Whole;
         }
         config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);
         config.uniqueness = self.uniqueness.unwrap_or(config.uniqueness);

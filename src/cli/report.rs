@@ -2,7 +2,7 @@
 
 use hsad::{
     config::Config,
-    dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, SemiGlobal, View},
+    dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     pipeline::RangeSource,
@@ -67,7 +67,11 @@ fn parameters(config: &Config) -> Value {
     json!({
         "reference": match reference { View::Left => "left", View::Right => "right" },
         "aggregation": aggregation_of(aggregation),
-        "window": match aggregation { Aggregation::Window(side) => Some(side), Aggregation::Paths(_) => None },
+        "window": match aggregation { Aggregation::Window { side, .. } => Some(side), Aggregation::Paths(_) => None },
+        "search": match aggregation {
+            Aggregation::Window { search: Search::CoarseToFine, .. } => "coarse to fine",
+            Aggregation::Window { search: Search::Whole, .. } | Aggregation::Paths(_) => "whole",
+        },
         "range": range.map(ends),
         "min_disparity": least,
         "interpolation": match interpolation {

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{
+    cells::Ranges,
     config::{DenseConfig, View},
     pad::{Brightness, PadParams},
     select::answer_constants,
@@ -18,7 +19,8 @@ const WORKGROUP: [u32; 2] = [8, 8];
 /// The pixels that one thread matches.
 ///
 /// A larger tile shares more of its row sums and loads; a smaller one needs fewer registers and less
-/// time to compile, and leaves more threads. The result is the same.
+/// time to compile, and leaves more threads. The result is the same. Where each cell has a range of its own, a
+/// tile must lie in one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
     /// Columns, in fours.
@@ -57,9 +59,9 @@ struct Params {
     reference_start: u32,
     searched_start: u32,
     min_disparity: i32,
-    disparities: u32,
     skipped: u32,
-    steps: u32,
+    cell_shift: u32,
+    cell_columns: u32,
     uniqueness: u32,
     confidence_offset: u32,
 }
@@ -103,7 +105,7 @@ impl BlockMatch {
                 include_str!("../../shaders/shared/selection.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
             constants: [
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
@@ -130,7 +132,7 @@ impl BlockMatch {
         Self { kernel, view, uniqueness: config.uniqueness, tile }
     }
 
-    /// Matches the padded `planes` of `layout`, writing a fixed-point disparity for each pixel of
+    /// Matches the padded `planes` of `layout` at the disparities that `ranges` name, writing a fixed-point disparity for each pixel of
     /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
     /// `confidence_offset` on, four a word and each row in words of its own.
     pub fn prepare(
@@ -138,6 +140,7 @@ impl BlockMatch {
         device: &wgpu::Device,
         layout: &Layout,
         planes: &wgpu::Buffer,
+        ranges: &Ranges,
         matches: &wgpu::Buffer,
         confidence_offset: u32,
     ) -> Dispatch {
@@ -149,16 +152,16 @@ impl BlockMatch {
             reference_start,
             searched_start,
             min_disparity: layout.range.min,
-            disparities: layout.range.count,
             skipped: (layout.range.min - 4 * layout.first_step()) as u32,
-            steps: layout.steps(),
+            cell_shift: ranges.shift,
+            cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset,
         };
         let Tile { quads, height } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "block_match", &params);
-        self.kernel.dispatch(device, &[&params, planes, matches], groups)
+        self.kernel.dispatch(device, &[&params, planes, &ranges.buffer, matches], groups)
     }
 }
 

@@ -1,11 +1,14 @@
 //! Block matching: the plan.
 //!
 //! padding -> block matching of the reference view -> the other view's winners -> consistency, in bands
-//! of rows where the padded planes do not fit in a buffer; no result depends on where they are cut.
+//! of rows where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to
+//! fine, each band finds the ranges of its cells first: see [`super::coarse`].
 
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
-    config::{DenseConfig, View},
+    cells::{CELL, Ranges},
+    coarse::Coarse,
+    config::{DenseConfig, Search, View},
     consistency::{Consistency, Others},
     pad::Pad,
     plan::{Plan, match_words},
@@ -26,13 +29,15 @@ pub(super) fn plan(
     device: &wgpu::Device,
     size: (u32, u32),
     config: &DenseConfig,
+    search: Search,
     [left, right]: [&wgpu::Buffer; 2],
     (limit, band_rows): (u64, u32),
 ) -> Result<Plan> {
     let (width, height) = size;
     let tiles = tiles(device, config);
     let most_rows = band_rows;
-    let band_rows = band_rows_within(limit, size, config, &tiles, band_rows)?;
+    let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
+    let band_rows = band_rows_within(limit, size, config, &tiles, (unit, band_rows))?;
     let view = config.reference;
     let pad = Pad::new(device);
     let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
@@ -42,6 +47,11 @@ pub(super) fn plan(
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let planes = plan.buffer(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
     let matches = plan.buffer(device, "matches", match_words)?;
+    let coarse = match search {
+        Search::Whole => None,
+        Search::CoarseToFine => Some(Coarse::new(device, &mut plan, size, config, [left, right], band_rows)?),
+    };
+    let whole_range = Ranges::whole(device, config.searched(width)?);
     let check = match config.consistency {
         None => None,
         Some(max_difference) => {
@@ -54,12 +64,16 @@ pub(super) fn plan(
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, &tiles)?;
+        let [ranges, partners] = match &coarse {
+            None => [&whole_range; 2],
+            Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
+        };
         let [pad_left, pad_right] = layout.padding(config.brightness);
         plan.run(pad.prepare(device, pad_left, left, &planes));
         plan.run(pad.prepare(device, pad_right, right, &planes));
-        plan.run(block_match.prepare(device, &layout, &planes, &matches, confidence_offset));
+        plan.run(block_match.prepare(device, &layout, &planes, ranges, &matches, confidence_offset));
         if let Some((find_winners, winners, consistency, limit)) = &check {
-            plan.run(find_winners.prepare(device, &layout, &planes, winners, 0));
+            plan.run(find_winners.prepare(device, &layout, &planes, partners, winners, 0));
             let size = (width, rows);
             plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, winners, &matches));
         }
@@ -79,27 +93,34 @@ fn tiles(device: &wgpu::Device, config: &DenseConfig) -> Vec<Tile> {
     [Some(Wanted::Matches), winners].into_iter().flatten().map(|wanted| Tile::of(device, wanted)).collect()
 }
 
-/// The most rows, up to `wanted`, for which every buffer of a band stays within `limit` bytes and its
+/// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes and its
 /// work within a second or so.
-fn band_rows_within(limit: u64, size: (u32, u32), config: &DenseConfig, tiles: &[Tile], wanted: u32) -> Result<u32> {
+fn band_rows_within(
+    limit: u64,
+    size: (u32, u32),
+    config: &DenseConfig,
+    tiles: &[Tile],
+    (unit, wanted): (u32, u32),
+) -> Result<u32> {
     let (width, height) = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
     let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
-    let mut rows = wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS));
+    let whole_units = |rows: u32| if rows >= height { height } else { (rows / unit * unit).max(unit) };
+    let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
         let planes = Layout::new(size, 0, rows, config, tiles)?.words();
         let needed = 4 * planes.max(match_words(width, rows).0);
         if needed <= limit {
             return Ok(rows);
         }
-        if rows == 1 {
+        if rows == unit {
             return Err(Error::TooLarge {
-                what: format!("one row of a picture {width} px wide with {} disparities", config.range.count),
+                what: format!("{unit} rows of a picture {width} px wide with {} disparities", config.range.count),
                 needed,
                 limit,
                 way_out: "search fewer disparities or scale the pictures down".into(),
             });
         }
-        rows = rows.div_ceil(2);
+        rows = whole_units(rows.div_ceil(2));
     }
 }

@@ -47,12 +47,26 @@ pub enum Interpolation {
     Equiangular,
 }
 
+/// Which disparities of a range a pixel is compared at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// All of them.
+    Whole,
+    /// Those that a map of half the size shows around it, and a few more; all, where that map has holes. A
+    /// thing that is too thin or too small to be seen at half the size may be lost.
+    CoarseToFine,
+}
+
 /// How the costs of single pixels become those by which disparities are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aggregation {
-    /// Block matching: the sum of absolute differences over a square window of this side, odd, 3 to 31
-    /// pixels.
-    Window(u32),
+    /// Block matching: the sum of absolute differences over a square window.
+    Window {
+        /// Its side in pixels, odd, 3 to 31.
+        side: u32,
+        /// Which disparities a pixel is compared at.
+        search: Search,
+    },
     /// Semi-global matching.
     Paths(SemiGlobal),
 }
@@ -84,7 +98,7 @@ impl DenseConfig {
     /// Plain block matching over `range`: a 7x7 window, the left view, no checks.
     pub fn new(range: DisparityRange) -> Self {
         Self {
-            aggregation: Aggregation::Window(7),
+            aggregation: Aggregation::Window { side: 7, search: Search::Whole },
             brightness: Brightness::SAME,
             range,
             reference: View::Left,
@@ -95,16 +109,16 @@ impl DenseConfig {
         }
     }
 
-    /// The same with windows of this side.
+    /// The same with windows of this side, and the whole range searched.
     #[must_use]
     pub fn with_window(self, side: u32) -> Self {
-        Self { aggregation: Aggregation::Window(side), ..self }
+        Self { aggregation: Aggregation::Window { side, search: Search::Whole }, ..self }
     }
 
     /// The side of the window over which costs are summed up: one pixel, where paths do it.
     pub fn window(&self) -> u32 {
         match self.aggregation {
-            Aggregation::Window(side) => side,
+            Aggregation::Window { side, .. } => side,
             Aggregation::Paths(_) => 1,
         }
     }
@@ -140,7 +154,7 @@ impl DenseConfig {
     /// The bits of a 32-bit key that the largest cost of the window leaves for the disparity's index.
     pub(crate) fn index_bits(&self) -> u32 {
         match self.aggregation {
-            Aggregation::Window(side) => (255 * side * side).leading_zeros(),
+            Aggregation::Window { side, .. } => (255 * side * side).leading_zeros(),
             Aggregation::Paths(_) => INDEX_BITS,
         }
     }
@@ -159,7 +173,7 @@ impl DenseConfig {
             }
         };
         match &self.aggregation {
-            Aggregation::Window(side) => {
+            Aggregation::Window { side, .. } => {
                 let odd = side % 2 == 1 && (3..=31).contains(side);
                 check(odd, "window", *side, "it must be odd and 3 to 31")?;
             }

@@ -78,7 +78,9 @@ impl Matcher {
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
         let plan = guarded(device, "dense matching", || match &config.aggregation {
-            Aggregation::Window(_) => blocks::plan(device, size, config, [left, right], (limit, band_rows)),
+            Aggregation::Window { search, .. } => {
+                blocks::plan(device, size, config, *search, [left, right], (limit, band_rows))
+            }
             Aggregation::Paths(paths) => {
                 semi_global::plan(device, size, config, paths, [left, right], (limit, band_rows))
             }

@@ -1,6 +1,7 @@
 //! The dense half (paper, step 5): a disparity for every pixel.
 //!
-//! Blocks: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views.
+//! Blocks: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views; coarse to fine,
+//! half the size is matched before, to tell for each cell of the picture which disparities are worth searching.
 //! Semi-globally: padding -> census -> cost -> paths -> selection of one view or both. Then, for either:
 //! left-right consistency -> support -> medians and filling. All of it is integer arithmetic and equals
 //! the CPU twins bit for bit.
@@ -8,14 +9,19 @@
 mod band;
 mod block_match;
 mod blocks;
+pub(crate) mod cell_ranges;
+pub(crate) mod cells;
 mod census;
 mod claim;
+mod coarse;
 mod config;
 mod consistency;
 mod cost;
 mod fill;
+mod halve;
 mod matcher;
 mod pad;
+mod partner_ranges;
 mod path;
 mod plan;
 mod refine;
@@ -28,14 +34,18 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 
 pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
+pub use cell_ranges::CellRanges;
+pub use cells::{CELL, CellBand, Ranges};
 pub use census::Census;
 pub use claim::Claim;
-pub use config::{Aggregation, DenseConfig, Interpolation, View};
+pub use config::{Aggregation, DenseConfig, Interpolation, Search, View};
 pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
+pub use halve::Halve;
 pub use matcher::{Dense, Matcher, compute};
 pub use pad::{Brightness, Pad, PadParams};
+pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
 pub use select::{Places, Select, Selection};
@@ -46,7 +56,8 @@ pub use weighted_median::{Median, WeightedMedian};
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, either view and what it may be asked for.
 pub fn stages() -> Vec<Stage> {
-    let mut stages = vec![Pad::stage(), Claim::stage(), Census::stage()];
+    let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage(), PartnerRanges::stage()];
+    stages.extend([Claim::stage(), Census::stage()]);
     stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
     for window in (3..=31).step_by(2) {
         let hardware = [Tile::HARDWARE; 2];

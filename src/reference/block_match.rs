@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::CellPlane;
 use crate::{
-    dense::{Dense, DenseConfig, Interpolation, View},
+    dense::{CELL, Dense, DenseConfig, Interpolation, View},
     disparity::{DisparityMap, NONE, SCALE},
     image::{Luma, Plane},
 };
@@ -23,13 +24,24 @@ pub fn cost(reference: &Luma, searched: &Luma, radius: u32, (x, y): (u32, u32), 
     sum
 }
 
-/// For each pixel of `view` the disparity of least cost, unless its best rival is too close. Ties go to the smaller disparity.
-pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig) -> Dense {
+/// For each pixel of `view` the disparity of least cost, unless its best rival is too close. Ties go to the smaller
+/// disparity. Where there are `ranges`, only those of the pixel's cell are searched.
+pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, ranges: Option<&CellPlane>) -> Dense {
     let (width, height) = left.size();
     let rows: Vec<Vec<(i32, u8)>> = (0..height)
         .into_par_iter()
         .map(|y| {
-            let costs = row_costs(left, right, view, y, config);
+            let mut costs = row_costs(left, right, view, y, config);
+            for (x, costs) in (0..).zip(&mut costs) {
+                if let Some((first, count)) = ranges.map(|ranges| ranges.get(x / CELL, y / CELL)) {
+                    let searched = first as usize..(first + count) as usize;
+                    costs
+                        .iter_mut()
+                        .enumerate()
+                        .filter(|(index, _)| !searched.contains(index))
+                        .for_each(|(_, c)| *c = None);
+                }
+            }
             costs.iter().map(|costs| decide(costs, config)).collect()
         })
         .collect();
@@ -41,9 +53,15 @@ pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig) 
 }
 
 /// For each pixel of `view` the whole disparity of least cost. Ties go to the smaller disparity.
-pub fn winners(left: &Luma, right: &Luma, view: View, config: &DenseConfig) -> DisparityMap {
+pub fn winners(
+    left: &Luma,
+    right: &Luma,
+    view: View,
+    config: &DenseConfig,
+    ranges: Option<&CellPlane>,
+) -> DisparityMap {
     let config = DenseConfig { interpolation: Interpolation::None, uniqueness: 0, ..config.clone() };
-    block_match(left, right, view, &config).disparity
+    block_match(left, right, view, &config, ranges).disparity
 }
 
 /// For each pixel of row `y` the cost of each disparity of the range, `None` where its partner lies
@@ -130,7 +148,7 @@ mod tests {
     #[test]
     fn ties_go_to_the_smaller_disparity() {
         let flat = Luma::filled(5, 3, 7);
-        let dense = block_match(&flat, &flat, View::Left, &config(-1, 3));
+        let dense = block_match(&flat, &flat, View::Left, &config(-1, 3), None);
         // The first column has no partner at disparity 1, the last none at -1.
         assert_eq!(dense.disparity.row(1), [-SCALE, -SCALE, -SCALE, -SCALE, 0]);
     }
@@ -160,8 +178,8 @@ mod tests {
     fn both_views_see_one_shift() {
         let left = Luma::from_fn(24, 8, |x, y| ((x * 37 + y * 91).wrapping_mul(2_654_435_761) >> 13) as u8);
         let right = Luma::from_fn(24, 8, |x, y| left.get_clamped(i64::from(x) + 3, i64::from(y)));
-        let of_left = winners(&left, &right, View::Left, &config(0, 8));
-        let of_right = winners(&left, &right, View::Right, &config(0, 8));
+        let of_left = winners(&left, &right, View::Left, &config(0, 8), None);
+        let of_right = winners(&left, &right, View::Right, &config(0, 8), None);
         assert!((6..20).all(|x| of_left.get(x, 4) == 3 * SCALE), "{:?}", of_left.row(4));
         assert!((3..17).all(|x| of_right.get(x, 4) == 3 * SCALE), "{:?}", of_right.row(4));
     }

@@ -1,14 +1,14 @@
 //! The dense half in one call.
 
 use super::{
-    block_match, brightened, census, check_consistency, claimed, cost_volume, filled, path, path_winners, select,
-    supported, weighted_median, winners,
+    CellPlane, block_match, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled,
+    partner_ranges, path, path_winners, select, supported, weighted_median, winners,
 };
 use crate::{
-    dense::{Aggregation, Dense, DenseConfig, OtherView, Refinement, SemiGlobal, View},
+    dense::{Aggregation, Dense, DenseConfig, OtherView, Refinement, Search, SemiGlobal, View, cells::halved_config},
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
-    image::Luma,
+    image::{Luma, reduced},
 };
 
 /// What [`crate::dense::compute`] computes, on the CPU.
@@ -27,9 +27,16 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     let mut dense;
     let others;
     match &config.aggregation {
-        Aggregation::Window(_) => {
-            dense = block_match(left, right, view, &config);
-            others = config.consistency.map(|_| winners(left, right, view.other(), &config));
+        Aggregation::Window { search, .. } => {
+            let ranges = match search {
+                Search::Whole => None,
+                Search::CoarseToFine => Some(ranges_from_half(unchanged, &config)),
+            };
+            dense = block_match(left, right, view, &config, ranges.as_ref());
+            others = config.consistency.map(|_| {
+                let partners = ranges.map(|ranges| partner_ranges(&ranges, view, config.range));
+                winners(left, right, view.other(), &config, partners.as_ref())
+            });
         }
         Aggregation::Paths(semi_global) => {
             let paths = all_paths(left, right, view, &config, semi_global);
@@ -54,6 +61,15 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
         }
         None => Ok(dense),
     }
+}
+
+/// What is to be searched in the cells of the reference view, from a map of half the size.
+fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlane {
+    let [left_half, right_half] = [left, right].map(|luma| reduced(luma, 2));
+    let right_half = right_half.map(|&luma| brightened(luma, config.brightness));
+    let half = halved_config(config, config.range);
+    let map = block_match(&left_half, &right_half, config.reference, &half, None).disparity;
+    cell_ranges(&map, left.size(), config.range)
 }
 
 /// A map after all that `refinement` asks for.

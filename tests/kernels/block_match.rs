@@ -1,17 +1,24 @@
 //! Block matching.
 
 use hsad::{
-    dense::{BlockMatch, Brightness, DenseConfig, Interpolation, Layout, Pad, Tile, View, Wanted},
+    dense::{BlockMatch, Brightness, CELL, DenseConfig, Interpolation, Layout, Pad, Ranges, Tile, View, Wanted},
     disparity::{DisparityRange, SCALE},
-    image::Luma,
+    image::{Luma, Plane},
     luma::pack,
-    reference,
+    reference::{self, CellPlane},
 };
 
 use crate::common::*;
 
 /// Padding and block matching of one view, nothing else: the words written.
-fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig, wanted: Wanted, tile: Tile) -> Vec<i32> {
+fn on_device(
+    left: &Luma,
+    right: &Luma,
+    view: View,
+    config: &DenseConfig,
+    ranges: Option<&CellPlane>,
+    (wanted, tile): (Wanted, Tile),
+) -> Vec<i32> {
     let device = &gpu().device;
     let (width, height) = left.size();
     let layout = Layout::new(left.size(), 0, height, config, &[tile]).expect("a layout");
@@ -19,11 +26,18 @@ fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig, wanted
     let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
     let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
     let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
+    let ranges = match ranges {
+        None => Ranges::whole(device, config.searched(width).unwrap()),
+        Some(cells) => {
+            let words: Vec<u32> = cells.data().iter().flat_map(|&(first, count)| [first, count]).collect();
+            Ranges::of_cells(upload(&words), width)
+        }
+    };
     let [left_padding, right_padding] = layout.padding(Brightness::SAME);
     let dispatches = [
         pad.prepare(device, left_padding, &upload_luma(left), &planes),
         pad.prepare(device, right_padding, &upload_luma(right), &planes),
-        kernel.prepare(device, &layout, &planes, &matches, width * height),
+        kernel.prepare(device, &layout, &planes, &ranges, &matches, width * height),
     ];
     poison(&planes);
     poison(&matches);
@@ -48,19 +62,27 @@ fn config(window: u32, min: i32, count: u32) -> DenseConfig {
 }
 
 fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) {
-    compare_tiled(what, views, view, config, Tile::HARDWARE);
+    compare_tiled(what, views, view, config, None, Tile::HARDWARE);
 }
 
-fn compare_tiled(what: &str, (left, right): (&Luma, &Luma), view: View, config: &DenseConfig, tile: Tile) {
+fn compare_tiled(
+    what: &str,
+    (left, right): (&Luma, &Luma),
+    view: View,
+    config: &DenseConfig,
+    ranges: Option<&CellPlane>,
+    tile: Tile,
+) {
     let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
-    let expected = reference::block_match(left, right, view, &searched);
-    let actual = on_device(left, right, view, config, Wanted::Matches, tile);
+    let expected = reference::block_match(left, right, view, &searched, ranges);
+    let actual = on_device(left, right, view, config, ranges, (Wanted::Matches, tile));
     let (disparities, confidences) = actual.split_at(left.data().len());
     assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
     let expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
     assert_same(&format!("{what}, confidences"), confidences, &expected);
-    let winners = on_device(left, right, view, config, Wanted::Winners, tile);
-    assert_same(&format!("{what}, winners"), &winners, reference::winners(left, right, view, &searched).data());
+    let winners = on_device(left, right, view, config, ranges, (Wanted::Winners, tile));
+    let expected = reference::winners(left, right, view, &searched, ranges);
+    assert_same(&format!("{what}, winners"), &winners, expected.data());
 }
 
 #[test]
@@ -77,7 +99,24 @@ fn the_twin_matches_the_same_at_any_size() {
 fn tiles_leave_no_trace() {
     let (left, right) = pair(97, 33, 51);
     for tile in [Tile::SOFTWARE, Tile::SOFTWARE_WINNERS, Tile { quads: 3, height: 1 }] {
-        compare_tiled(&format!("{tile:?}"), (&left, &right), View::Right, &config(7, 0, 17), tile);
+        compare_tiled(&format!("{tile:?}"), (&left, &right), View::Right, &config(7, 0, 17), None, tile);
+    }
+}
+
+#[test]
+fn the_twin_searches_the_same_cells() {
+    let (left, right) = pair(130, 131, 61);
+    // From nothing to everything, and from one end or the other.
+    let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
+    let cells =
+        Plane::from_fn(130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL), |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
+    for (view, tile) in
+        [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE), (View::Left, Tile::SOFTWARE_WINNERS)]
+    {
+        for min in [0, -7, 2] {
+            let what = format!("{view:?} {tile:?} from {min}");
+            compare_tiled(&what, (&left, &right), view, &config(5, min, 30), Some(&cells), tile);
+        }
     }
 }
 
@@ -131,7 +170,7 @@ fn by_hand() {
     // and a window without it costs nothing at any disparity that does not see it either.
     let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
     let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
-    let winners = on_device(&view(5), &view(3), View::Left, &config, Wanted::Winners, Tile::HARDWARE);
+    let winners = on_device(&view(5), &view(3), View::Left, &config, None, (Wanted::Winners, Tile::HARDWARE));
     let d = |whole: i32| whole * SCALE;
     // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
     // and 1, and 4 is 2 from the only place that sees it at the same side of the window.

@@ -5,6 +5,7 @@
 #![cfg(feature = "cli")]
 
 mod block_match;
+mod cell_ranges;
 mod census;
 mod claim;
 mod common;
@@ -13,6 +14,7 @@ mod cost;
 mod descriptor;
 mod detector;
 mod fill;
+mod halve;
 mod hessian;
 mod integral_columns;
 mod integral_rows;

@@ -1,0 +1,103 @@
+//! Coarse to fine: what is worth searching in each cell, found in pictures of half the size.
+//!
+//! halving, once -> and in each band of rows: padding -> block matching of the reference view -> the ranges of its
+//! cells -> those of the other view's cells.
+
+use super::{
+    block_match::{BlockMatch, Layout, Tile, Wanted},
+    cell_ranges::CellRanges,
+    cells::{CELL, CellBand, Ranges, halved_config},
+    config::{DenseConfig, View},
+    halve::Halve,
+    pad::Pad,
+    partner_ranges::PartnerRanges,
+    plan::{Plan, match_words},
+};
+use crate::{disparity::DisparityRange, error::Result, luma::packed_bytes};
+
+/// The kernels and the memory of the search at half the size.
+pub(super) struct Coarse {
+    size: (u32, u32),
+    range: DisparityRange,
+    view: View,
+    half: DenseConfig,
+    cell_ranges: CellRanges,
+    partner_ranges: PartnerRanges,
+    /// Left and right picture of half the size.
+    halves: [wgpu::Buffer; 2],
+    planes: wgpu::Buffer,
+    map: wgpu::Buffer,
+    ranges: [Ranges; 2],
+}
+
+impl Coarse {
+    /// Allocates memory for bands of `band_rows` rows, and plans the halving of `pictures`.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        plan: &mut Plan,
+        size: (u32, u32),
+        config: &DenseConfig,
+        pictures: [&wgpu::Buffer; 2],
+        band_rows: u32,
+    ) -> Result<Self> {
+        let (width, height) = size;
+        let range = config.searched(width)?;
+        let half_size = (width.div_ceil(2), height.div_ceil(2));
+        let half = halved_config(config, range);
+        let half = DenseConfig { range: half.searched(half_size.0)?, ..half };
+        let halve = Halve::new(device);
+        let [left, right] = pictures.map(|picture| -> Result<wgpu::Buffer> {
+            let halved = plan.buffer(device, "half the picture", packed_bytes(half_size.0, half_size.1) / 4)?;
+            plan.run(halve.prepare(device, size, picture, &halved));
+            Ok(halved)
+        });
+        // No band looks at more rows than one in the midst of the picture.
+        let most_rows = (band_rows.next_multiple_of(CELL) / 2 + CELL).min(half_size.1);
+        let tile = Tile::of(device, Wanted::Matches);
+        let planes =
+            plan.buffer(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, &[tile])?.words())?;
+        let map = plan.buffer(device, "map of half the size", match_words(half_size.0, most_rows).0)?;
+        let words = CellBand::new(size, (0, band_rows), range).words();
+        let ranges = |plan: &mut Plan| -> Result<Ranges> {
+            let buffer = plan.buffer(device, "ranges of cells", words)?;
+            Ok(Ranges::of_cells(buffer, width))
+        };
+        Ok(Self {
+            size,
+            range,
+            view: config.reference,
+            half,
+            cell_ranges: CellRanges::new(device),
+            partner_ranges: PartnerRanges::new(device),
+            halves: [left?, right?],
+            planes,
+            map,
+            ranges: [ranges(plan)?, ranges(plan)?],
+        })
+    }
+
+    /// Plans what finds the ranges of the reference view's cells, and of the other's, for some rows.
+    pub(super) fn plan(
+        &self,
+        device: &wgpu::Device,
+        plan: &mut Plan,
+        pad: &Pad,
+        block_match: &BlockMatch,
+        rows: (u32, u32),
+    ) -> Result<[&Ranges; 2]> {
+        let band = CellBand::new(self.size, rows, self.range);
+        let half_size = (band.map_width, self.size.1.div_ceil(2));
+        let tile = Tile::of(device, Wanted::Matches);
+        let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, &[tile])?;
+        for (params, half) in layout.padding(self.half.brightness).into_iter().zip(&self.halves) {
+            plan.run(pad.prepare(device, params, half, &self.planes));
+        }
+        let whole = Ranges::whole(device, self.half.range);
+        let confidence_offset = match_words(band.map_width, band.map_rows).1;
+        plan.run(block_match.prepare(device, &layout, &self.planes, &whole, &self.map, confidence_offset));
+        let [ranges, partners] = &self.ranges;
+        plan.run(self.cell_ranges.prepare(device, &band, &self.map, &ranges.buffer));
+        plan.run(self.partner_ranges.prepare(device, &band, self.view, &ranges.buffer, &partners.buffer));
+        Ok([ranges, partners])
+    }
+}

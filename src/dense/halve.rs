@@ -1,0 +1,48 @@
+//! A picture of half the size. `shaders/halve.wgsl`; its twin is [`crate::image::reduced`].
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+
+const WORKGROUP: [u32; 2] = [16, 8];
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+/// The halving kernel.
+pub struct Halve(Kernel);
+
+impl Halve {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "halve",
+            source: include_str!("../../shaders/halve.wgsl"),
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Writes packed `luma` of a picture of this size, at half the size, to `halved`.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        luma: &wgpu::Buffer,
+        halved: &wgpu::Buffer,
+    ) -> Dispatch {
+        let words = width.div_ceil(2).div_ceil(4);
+        let groups = [words.div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
+        let params = uniform_buffer(device, "halve", &Params { width, height });
+        self.0.dispatch(device, &[&params, luma, halved], groups)
+    }
+}
