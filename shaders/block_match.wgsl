@@ -38,7 +38,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 // Both padded planes, four pixels a word.
-@group(0) @binding(1) var<storage, read> planes: array<u32>;
+@group(0) @binding(1) var planes: texture_2d<u32>;
 // What is searched in each cell of the picture: the index of the first disparity, and how many.
 @group(0) @binding(2) var<storage, read> ranges: array<vec2<u32>>;
 // A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
@@ -184,8 +184,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var y = 0; y < ROWS; y++) { // unroll
         let row = (y0 + y) * params.stride + column;
         for (var j = 0; j < WORDS; j++) { // unroll
-            reference[y][j] = unpack(planes[params.reference_start + row + j]);
-            searched[y][j + START] = planes[searched_start + row + j];
+            reference[y][j] = unpack(word_of(planes, params.reference_start + row + j));
+            searched[y][j + START] = word_of(planes, searched_start + row + j);
         }
     }
 
@@ -208,12 +208,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 for (var j = 0; j < WORDS; j++) { // unroll
                     searched[y][WORDS - j] = searched[y][WORDS - j - 1];
                 }
-                searched[y][0] = planes[row - 1u - step];
+                searched[y][0] = word_of(planes, row - 1u - step);
             } else {
                 for (var j = 0; j < WORDS; j++) { // unroll
                     searched[y][j] = searched[y][j + 1];
                 }
-                searched[y][WORDS] = planes[row + WORDS + step];
+                searched[y][WORDS] = word_of(planes, row + WORDS + step);
             }
             sums[y + SIDE] = row_sums(reference[y], searched[y]);
             window = slide(window, sums[y + SIDE], sums[y]);

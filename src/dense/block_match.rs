@@ -11,7 +11,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Bindable, Binding, Dispatch, Kernel, ROW_BITS, Stage, WordTexture, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -103,9 +103,10 @@ impl BlockMatch {
             source: concat!(
                 include_str!("../../shaders/shared/quotient.wgsl"),
                 include_str!("../../shaders/shared/selection.wgsl"),
+                include_str!("../../shaders/shared/words.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Texture, Binding::Read, Binding::Write],
             constants: [
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
@@ -119,6 +120,7 @@ impl BlockMatch {
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
                 ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
+                ("ROW_BITS", ROW_BITS.into()),
             ]
             .into_iter()
             .chain(answer_constants(config.interpolation, wanted, config.index_bits()))
@@ -139,7 +141,7 @@ impl BlockMatch {
         &self,
         device: &wgpu::Device,
         layout: &Layout,
-        planes: &wgpu::Buffer,
+        planes: &WordTexture,
         ranges: &Ranges,
         matches: &wgpu::Buffer,
         confidence_offset: u32,
@@ -161,7 +163,8 @@ impl BlockMatch {
         let Tile { quads, height } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "block_match", &params);
-        self.kernel.dispatch(device, &[&params, planes, &ranges.buffer, matches], groups)
+        let bound: [&dyn Bindable; 4] = [&params, &planes.view, &ranges.buffer, matches];
+        self.kernel.dispatch(device, &bound, groups)
     }
 }
 
@@ -209,7 +212,7 @@ impl Layout {
         })
     }
 
-    /// Words of the buffer that holds both planes.
+    /// Words of both planes.
     pub fn words(&self) -> u64 {
         2 * u64::from(self.padded_rows()) * u64::from(self.stride())
     }

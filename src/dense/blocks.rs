@@ -45,7 +45,7 @@ pub(super) fn plan(
     let mut plan = Plan::new(height.div_ceil(band_rows) as usize);
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let (match_words, confidence_offset) = match_words(width, band_rows);
-    let planes = plan.buffer(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
+    let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
     let matches = plan.buffer(device, "matches", match_words)?;
     let coarse = match search {
         Search::Whole => None,
@@ -69,11 +69,12 @@ pub(super) fn plan(
             Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
         };
         let [pad_left, pad_right] = layout.padding(config.brightness);
-        plan.run(pad.prepare(device, pad_left, left, &planes));
-        plan.run(pad.prepare(device, pad_right, right, &planes));
-        plan.run(block_match.prepare(device, &layout, &planes, ranges, &matches, confidence_offset));
+        plan.run(pad.prepare(device, pad_left, left, &planes.0));
+        plan.run(pad.prepare(device, pad_right, right, &planes.0));
+        plan.to_texture(&planes);
+        plan.run(block_match.prepare(device, &layout, &planes.1, ranges, &matches, confidence_offset));
         if let Some((find_winners, winners, consistency, limit)) = &check {
-            plan.run(find_winners.prepare(device, &layout, &planes, partners, winners, 0));
+            plan.run(find_winners.prepare(device, &layout, &planes.1, partners, winners, 0));
             let size = (width, rows);
             plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, winners, &matches));
         }

@@ -13,7 +13,7 @@ use super::{
     partner_ranges::PartnerRanges,
     plan::{Plan, match_words},
 };
-use crate::{disparity::DisparityRange, error::Result, luma::packed_bytes};
+use crate::{disparity::DisparityRange, error::Result, gpu::WordTexture, luma::packed_bytes};
 
 /// The kernels and the memory of the search at half the size.
 pub(super) struct Coarse {
@@ -25,7 +25,7 @@ pub(super) struct Coarse {
     partner_ranges: PartnerRanges,
     /// Left and right picture of half the size.
     halves: [wgpu::Buffer; 2],
-    planes: wgpu::Buffer,
+    planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
     ranges: [Ranges; 2],
 }
@@ -55,7 +55,7 @@ impl Coarse {
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + CELL).min(half_size.1);
         let tile = Tile::of(device, Wanted::Matches);
         let planes =
-            plan.buffer(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, &[tile])?.words())?;
+            plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, &[tile])?.words())?;
         let map = plan.buffer(device, "map of half the size", match_words(half_size.0, most_rows).0)?;
         let words = CellBand::new(size, (0, band_rows), range).words();
         let ranges = |plan: &mut Plan| -> Result<Ranges> {
@@ -90,11 +90,12 @@ impl Coarse {
         let tile = Tile::of(device, Wanted::Matches);
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, &[tile])?;
         for (params, half) in layout.padding(self.half.brightness).into_iter().zip(&self.halves) {
-            plan.run(pad.prepare(device, params, half, &self.planes));
+            plan.run(pad.prepare(device, params, half, &self.planes.0));
         }
+        plan.to_texture(&self.planes);
         let whole = Ranges::whole(device, self.half.range);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
-        plan.run(block_match.prepare(device, &layout, &self.planes, &whole, &self.map, confidence_offset));
+        plan.run(block_match.prepare(device, &layout, &self.planes.1, &whole, &self.map, confidence_offset));
         let [ranges, partners] = &self.ranges;
         plan.run(self.cell_ranges.prepare(device, &band, &self.map, &ranges.buffer));
         plan.run(self.partner_ranges.prepare(device, &band, self.view, &ranges.buffer, &partners.buffer));

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Dispatch, storage_buffer, store},
+    gpu::{Dispatch, WordTexture, in_rows, storage_buffer, store},
 };
 
 /// One thing to do.
@@ -11,6 +11,8 @@ pub(super) enum Step {
     Run(Dispatch),
     /// Copies words.
     Copy(Copy),
+    /// Copies a whole buffer to a texture.
+    ToTexture(wgpu::Buffer, WordTexture),
     /// Sets a whole buffer to 0.
     Clear(wgpu::Buffer),
 }
@@ -68,6 +70,23 @@ impl Plan {
         self.steps.push(Step::Run(dispatch));
     }
 
+    /// Memory for so many words in a buffer and in a texture.
+    pub(super) fn words(
+        &mut self,
+        device: &wgpu::Device,
+        label: &'static str,
+        words: u64,
+    ) -> Result<(wgpu::Buffer, WordTexture)> {
+        let buffer = self.buffer(device, label, in_rows(words))?;
+        self.bytes += 4 * in_rows(words);
+        Ok((buffer, WordTexture::new(device, label, words)?))
+    }
+
+    /// The words of a buffer, on their way to the texture.
+    pub(super) fn to_texture(&mut self, (buffer, texture): &(wgpu::Buffer, WordTexture)) {
+        self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
+    }
+
     pub(super) fn clear(&mut self, buffer: &wgpu::Buffer) {
         self.steps.push(Step::Clear(buffer.clone()));
     }
@@ -114,6 +133,7 @@ impl Plan {
         for step in &self.steps {
             match step {
                 Step::Run(dispatch) => dispatch.record(encoder),
+                Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
                 Step::Copy(Copy { from, from_word, to, to_word, words }) => {
                     let to = match to {

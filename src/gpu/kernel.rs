@@ -14,6 +14,25 @@ pub enum Binding {
     Read,
     /// A storage buffer that is written.
     Write,
+    /// A texture of one `u32` a texel that is only read.
+    Texture,
+}
+
+/// What is bound: a whole buffer, or a texture.
+pub(crate) trait Bindable {
+    fn resource(&self) -> wgpu::BindingResource<'_>;
+}
+
+impl Bindable for wgpu::Buffer {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        self.as_entire_binding()
+    }
+}
+
+impl Bindable for wgpu::TextureView {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(self)
+    }
 }
 
 /// What a stage's kernel is made of; enough to build it, and to check it without any GPU.
@@ -52,19 +71,21 @@ impl Kernel {
     /// Compiles `stage`, whose entry point is `main`.
     pub(crate) fn new(device: &wgpu::Device, stage: &Stage) -> Self {
         let label = Some(stage.name);
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
         let entries: Vec<_> = (0..)
             .zip(stage.bindings)
             .map(|(binding, kind)| wgpu::BindGroupLayoutEntry {
                 binding,
                 visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer {
-                    ty: match kind {
-                        Binding::Uniform(_) => wgpu::BufferBindingType::Uniform,
-                        Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                        Binding::Write => wgpu::BufferBindingType::Storage { read_only: false },
+                ty: match kind {
+                    Binding::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
+                    Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+                    Binding::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+                    Binding::Texture => wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Uint,
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                        multisampled: false,
                     },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
                 },
                 count: None,
             })
@@ -93,26 +114,31 @@ impl Kernel {
         Self { name: stage.name, layout, pipeline }
     }
 
-    /// Binds whole `buffers`, in the order of the stage's bindings, for `groups` workgroups along x, y and z.
-    pub(crate) fn dispatch(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: [u32; 3]) -> Dispatch {
-        self.bind(device, buffers, Groups::Known(groups))
+    /// Binds `bound`, in the order of the stage's bindings, for `groups` workgroups along x, y and z.
+    pub(crate) fn dispatch<B: Bindable + ?Sized>(
+        &self,
+        device: &wgpu::Device,
+        bound: &[&B],
+        groups: [u32; 3],
+    ) -> Dispatch {
+        self.bind(device, bound, Groups::Known(groups))
     }
 
     /// As [`Self::dispatch`], for as many workgroups as the first three words of `groups` will say when the device
     /// gets there.
-    pub(crate) fn dispatch_indirect(
+    pub(crate) fn dispatch_indirect<B: Bindable + ?Sized>(
         &self,
         device: &wgpu::Device,
-        buffers: &[&wgpu::Buffer],
+        bound: &[&B],
         groups: &wgpu::Buffer,
     ) -> Dispatch {
-        self.bind(device, buffers, Groups::Indirect(groups.clone()))
+        self.bind(device, bound, Groups::Indirect(groups.clone()))
     }
 
-    fn bind(&self, device: &wgpu::Device, buffers: &[&wgpu::Buffer], groups: Groups) -> Dispatch {
+    fn bind<B: Bindable + ?Sized>(&self, device: &wgpu::Device, bound: &[&B], groups: Groups) -> Dispatch {
         let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .zip(bound)
+            .map(|(binding, bound)| wgpu::BindGroupEntry { binding, resource: bound.resource() })
             .collect();
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.name),

@@ -4,8 +4,11 @@ mod device;
 mod kernel;
 mod readback;
 mod unroll;
+mod words;
 
 pub use device::{DeviceChoice, Gpu, list_adapters};
+pub(crate) use kernel::{Bindable, Kernel, guarded, storage_buffer, store, uniform_buffer};
 pub use kernel::{Binding, Dispatch, Stage};
-pub(crate) use kernel::{Kernel, guarded, storage_buffer, store, uniform_buffer};
 pub(crate) use readback::Readback;
+pub use words::WordTexture;
+pub(crate) use words::{ROW_BITS, in_rows, most_words};
