@@ -34,6 +34,8 @@ struct Params {
     uniqueness: u32,
     // Where the confidences begin, four a word.
     confidence_offset: u32,
+    // How far apart, in 1/256 px, the disparities of both views may be; all ones where the other is not asked.
+    max_difference: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -41,8 +43,10 @@ struct Params {
 @group(0) @binding(1) var planes: texture_2d<u32>;
 // What is searched in each cell of the picture: the index of the first disparity, and how many.
 @group(0) @binding(2) var<storage, read> ranges: array<vec2<u32>>;
+// A fixed-point disparity a pixel of the other view, where it is asked.
+@group(0) @binding(3) var<storage, read> others: array<i32>;
 // A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
-@group(0) @binding(3) var<storage, read_write> matches: array<i32>;
+@group(0) @binding(4) var<storage, read_write> matches: array<i32>;
 
 // A number for each of a step's four disparities and each pixel of a row of the tile.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
@@ -230,6 +234,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
+fn is_confirmed(x: u32, y: u32, disparity: i32) -> bool {
+    let partner = partner_of(i32(x), disparity, DIRECTION);
+    let other = others[y * params.width + u32(clamp(partner, 0, i32(params.width) - 1))];
+    return params.max_difference == 0xffffffffu
+        || is_consistent(disparity, partner, params.width, other, params.max_difference);
+}
+
 // Writes the answers of four pixels, of which those of a last column may lie beyond the picture.
 fn finish(x: u32, y: u32, s: Search) {
     if x >= params.width || y >= params.rows {
@@ -245,8 +256,10 @@ fn finish(x: u32, y: u32, s: Search) {
     var word = 0u;
     for (var t = 0; t < 4; t++) { // unroll
         if x + t < params.width {
-            matches[y * params.width + x + t] = i32(answers[t].x);
-            word |= answers[t].y << (8u * t);
+            let disparity = i32(answers[t].x);
+            let holds = FULL == 0 || is_confirmed(x + t, y, disparity);
+            matches[y * params.width + x + t] = select(NONE, disparity, holds);
+            word |= select(0u, answers[t].y << (8u * t), holds);
         }
     }
     if FULL != 0 {

@@ -43,15 +43,15 @@ fn main(@builtin(workgroup_id) cell: vec3<u32>, @builtin(local_invocation_index)
     let corner = vec2<i32>(0, params.first_row) + SIDE * vec2<i32>(cell.xy) - REACH;
     let first = max(corner, vec2<i32>(0));
     let end = min(corner + SIDE + 2 * REACH, vec2<i32>(vec2<u32>(params.width, params.rows)));
-    let size = vec2<u32>(end - first);
-    let pixels = size.x * size.y;
-    for (var i = thread; i < pixels; i += THREADS) {
-        let at = vec2<u32>(first) + vec2<u32>(i % size.x, i / size.x);
-        let disparity = map[at.y * params.width + at.x];
-        if disparity != NONE {
+    // In squares of 8x8, without a division.
+    for (var y = first.y + i32(thread / 8u); y < end.y; y += 8) {
+        for (var x = first.x + i32(thread % 8u); x < end.x; x += 8) {
+            let disparity = map[u32(y) * params.width + u32(x)];
             let nearest = (disparity + SCALE / 2) >> firstTrailingBit(u32(SCALE));
             let index = clamp(nearest - params.coarse_min, 0, i32(params.coarse_disparities) - 1);
-            atomicAdd(&histogram[u32(index) >> params.bin_bits], 1u);
+            if disparity != NONE {
+                atomicAdd(&histogram[u32(index) >> params.bin_bits], 1u);
+            }
         }
     }
     workgroupBarrier();
@@ -79,6 +79,7 @@ fn main(@builtin(workgroup_id) cell: vec3<u32>, @builtin(local_invocation_index)
     let last_index = i32(params.disparities) - 1;
     let first_index = clamp(2 * lowest - MARGIN - params.min_disparity, 0, last_index);
     let end_index = clamp(2 * highest + MARGIN - params.min_disparity, 0, last_index) + 1;
+    let pixels = u32((end.x - first.x) * (end.y - first.y));
     let enough = estimated > 0u && 100u * estimated >= LEAST * pixels;
     let found = vec2<u32>(u32(first_index), u32(end_index - first_index));
     ranges[cell.y * params.columns + cell.x] = select(vec2<u32>(0u, params.disparities), found, enough);

@@ -1,7 +1,4 @@
-// Left-right consistency: a disparity stays if its partner in the other view points back at it.
-//
-// Fua: 'A parallel stereo algorithm that produces dense depth maps and preserves image features',
-// Machine Vision and Applications 6, 1993.
+// Left-right consistency where both views are known.
 
 struct Params {
     width: u32,
@@ -33,7 +30,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var kept = 0u;
     for (var t = 0u; t < min(4u, params.width - x); t++) {
         let disparity = matches[row + x + t];
-        if is_consistent(row, i32(x + t), disparity) {
+        if holds(row, i32(x + t), disparity) {
             kept |= 255u << (8u * t);
         } else {
             matches[row + x + t] = NONE;
@@ -43,12 +40,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     matches[word] &= i32(kept);
 }
 
-fn is_consistent(row: u32, x: i32, disparity: i32) -> bool {
-    let partner = x + params.direction * ((disparity + SCALE / 2) >> SCALE_BITS);
+fn holds(row: u32, x: i32, disparity: i32) -> bool {
+    let partner = partner_of(x, disparity, params.direction);
     let other = disparity_of(others[row + u32(clamp(partner, 0, i32(params.width) - 1))]);
-    let exists = disparity != NONE && partner >= 0 && partner < i32(params.width) && other != NONE;
-    // Only where both exist is their difference sure to be one.
-    return exists && u32(abs(disparity - other)) <= params.max_difference;
+    return is_consistent(disparity, partner, params.width, other, params.max_difference);
 }
 
 fn disparity_of(word: i32) -> i32 {

@@ -165,7 +165,7 @@ impl Preset {
                 ..balanced
             },
             Self::Fast => Config {
-                aggregation: Aggregation::Window { side: 11, search: Search::CoarseToFine },
+                aggregation: Aggregation::Window { side: 9, search: Search::CoarseToFine },
                 uniqueness: 10,
                 refinement: None,
                 ..balanced

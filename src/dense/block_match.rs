@@ -9,7 +9,7 @@ use super::{
     select::answer_constants,
 };
 use crate::{
-    disparity::DisparityRange,
+    disparity::{DisparityRange, SCALE},
     error::Result,
     gpu::{Bindable, Binding, Dispatch, Kernel, ROW_BITS, Stage, WordTexture, uniform_buffer},
 };
@@ -64,6 +64,7 @@ struct Params {
     cell_columns: u32,
     uniqueness: u32,
     confidence_offset: u32,
+    max_difference: u32,
 }
 
 /// What is wanted of a view.
@@ -103,10 +104,17 @@ impl BlockMatch {
             source: concat!(
                 include_str!("../../shaders/shared/quotient.wgsl"),
                 include_str!("../../shaders/shared/selection.wgsl"),
+                include_str!("../../shaders/shared/consistent.wgsl"),
                 include_str!("../../shaders/shared/words.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Texture, Binding::Read, Binding::Write],
+            bindings: &[
+                Binding::Uniform(size_of::<Params>() as u64),
+                Binding::Texture,
+                Binding::Read,
+                Binding::Read,
+                Binding::Write,
+            ],
             constants: [
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
@@ -121,6 +129,7 @@ impl BlockMatch {
                 ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
                 ("ROW_BITS", ROW_BITS.into()),
+                ("SCALE_BITS", SCALE.ilog2().into()),
             ]
             .into_iter()
             .chain(answer_constants(config.interpolation, wanted, config.index_bits()))
@@ -136,15 +145,16 @@ impl BlockMatch {
 
     /// Matches the padded `planes` of `layout` at the disparities that `ranges` name, writing a fixed-point disparity for each pixel of
     /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
-    /// `confidence_offset` on, four a word and each row in words of its own.
+    /// `confidence_offset` on, four a word and each row in words of its own. Where there are `others`, the disparities
+    /// of the other view, and the largest difference to them in 1/256 px, a match that they contradict is none.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
-        matches: &wgpu::Buffer,
-        confidence_offset: u32,
+        others: Option<(&wgpu::Buffer, u32)>,
+        (matches, confidence_offset): (&wgpu::Buffer, u32),
     ) -> Dispatch {
         let [reference_start, searched_start] = layout.starts(self.view);
         let params = Params {
@@ -159,11 +169,14 @@ impl BlockMatch {
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset,
+            max_difference: others.map_or(u32::MAX, |(_, max_difference)| max_difference),
         };
         let Tile { quads, height } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
         let params = uniform_buffer(device, "block_match", &params);
-        let bound: [&dyn Bindable; 4] = [&params, &planes.view, &ranges.buffer, matches];
+        // Where there are none, something has to be bound.
+        let others = others.map_or(&ranges.buffer, |(others, _)| others);
+        let bound: [&dyn Bindable; 5] = [&params, &planes.view, &ranges.buffer, others, matches];
         self.kernel.dispatch(device, &bound, groups)
     }
 }

@@ -1,20 +1,21 @@
 //! Block matching: the plan.
 //!
-//! padding -> block matching of the reference view -> the other view's winners -> consistency, in bands
-//! of rows where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to
-//! fine, each band finds the ranges of its cells first: see [`super::coarse`].
+//! padding -> the other view's winners -> block matching of the reference view, which they confirm; in bands of rows
+//! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band finds the ranges of its cells first: see [`super::coarse`].
 
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
     cells::{CELL, Ranges},
     coarse::Coarse,
     config::{DenseConfig, Search, View},
-    consistency::{Consistency, Others},
     pad::Pad,
     plan::{Plan, match_words},
     refine::plan_refinement,
 };
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    gpu::{in_rows, most_words},
+};
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
 const MAX_BAND_ROWS: u32 = 8192;
@@ -37,7 +38,7 @@ pub(super) fn plan(
     let tiles = tiles(device, config);
     let most_rows = band_rows;
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
-    let band_rows = band_rows_within(limit, size, config, &tiles, (unit, band_rows))?;
+    let band_rows = band_rows_within((limit, 4 * most_words(device)), size, config, &tiles, (unit, band_rows))?;
     let view = config.reference;
     let pad = Pad::new(device);
     let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
@@ -52,12 +53,12 @@ pub(super) fn plan(
         Search::CoarseToFine => Some(Coarse::new(device, &mut plan, size, config, [left, right], band_rows)?),
     };
     let whole_range = Ranges::whole(device, config.searched(width)?);
-    let check = match config.consistency {
+    let other_view = match config.consistency {
         None => None,
         Some(max_difference) => {
             let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tiles[1]);
             let winners = plan.buffer(device, "winners of the other view", confidence_offset.into())?;
-            Some((find_winners, winners, Consistency::new(device, Others::Disparities), max_difference))
+            Some((find_winners, winners, max_difference))
         }
     };
 
@@ -71,13 +72,12 @@ pub(super) fn plan(
         let [pad_left, pad_right] = layout.padding(config.brightness);
         plan.run(pad.prepare(device, pad_left, left, &planes.0));
         plan.run(pad.prepare(device, pad_right, right, &planes.0));
-        plan.to_texture(&planes);
-        plan.run(block_match.prepare(device, &layout, &planes.1, ranges, &matches, confidence_offset));
-        if let Some((find_winners, winners, consistency, limit)) = &check {
-            plan.run(find_winners.prepare(device, &layout, &planes.1, partners, winners, 0));
-            let size = (width, rows);
-            plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, winners, &matches));
-        }
+        plan.fill_texture(&planes);
+        let others = other_view.as_ref().map(|(find_winners, winners, max_difference)| {
+            plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));
+            (winners, *max_difference)
+        });
+        plan.run(block_match.prepare(device, &layout, &planes.1, ranges, others, (&matches, confidence_offset)));
         plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
     }
     if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
@@ -94,10 +94,10 @@ fn tiles(device: &wgpu::Device, config: &DenseConfig) -> Vec<Tile> {
     [Some(Wanted::Matches), winners].into_iter().flatten().map(|wanted| Tile::of(device, wanted)).collect()
 }
 
-/// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes and its
-/// work within a second or so.
+/// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes, every
+/// texture within `texture_limit`, and its work within a second or so.
 fn band_rows_within(
-    limit: u64,
+    (limit, texture_limit): (u64, u64),
     size: (u32, u32),
     config: &DenseConfig,
     tiles: &[Tile],
@@ -109,11 +109,13 @@ fn band_rows_within(
     let whole_units = |rows: u32| if rows >= height { height } else { (rows / unit * unit).max(unit) };
     let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
-        let planes = Layout::new(size, 0, rows, config, tiles)?.words();
-        let needed = 4 * planes.max(match_words(width, rows).0);
-        if needed <= limit {
+        let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tiles)?.words());
+        let matches = 4 * match_words(width, rows).0;
+        let over =
+            [(planes, limit.min(texture_limit)), (matches, limit)].into_iter().find(|(needed, limit)| needed > limit);
+        let Some((needed, limit)) = over else {
             return Ok(rows);
-        }
+        };
         if rows == unit {
             return Err(Error::TooLarge {
                 what: format!("{unit} rows of a picture {width} px wide with {} disparities", config.range.count),

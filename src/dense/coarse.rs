@@ -92,10 +92,10 @@ impl Coarse {
         for (params, half) in layout.padding(self.half.brightness).into_iter().zip(&self.halves) {
             plan.run(pad.prepare(device, params, half, &self.planes.0));
         }
-        plan.to_texture(&self.planes);
+        plan.fill_texture(&self.planes);
         let whole = Ranges::whole(device, self.half.range);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
-        plan.run(block_match.prepare(device, &layout, &self.planes.1, &whole, &self.map, confidence_offset));
+        plan.run(block_match.prepare(device, &layout, &self.planes.1, &whole, None, (&self.map, confidence_offset)));
         let [ranges, partners] = &self.ranges;
         plan.run(self.cell_ranges.prepare(device, &band, &self.map, &ranges.buffer));
         plan.run(self.partner_ranges.prepare(device, &band, self.view, &ranges.buffer, &partners.buffer));

@@ -41,7 +41,10 @@ impl Consistency {
     pub fn stage(others: Others) -> Stage {
         Stage {
             name: "consistency",
-            source: include_str!("../../shaders/consistency.wgsl"),
+            source: concat!(
+                include_str!("../../shaders/shared/consistent.wgsl"),
+                include_str!("../../shaders/consistency.wgsl")
+            ),
             bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),

@@ -83,7 +83,7 @@ impl Plan {
     }
 
     /// The words of a buffer, on their way to the texture.
-    pub(super) fn to_texture(&mut self, (buffer, texture): &(wgpu::Buffer, WordTexture)) {
+    pub(super) fn fill_texture(&mut self, (buffer, texture): &(wgpu::Buffer, WordTexture)) {
         self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
     }
 

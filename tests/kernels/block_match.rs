@@ -2,7 +2,8 @@
 
 use hsad::{
     dense::{BlockMatch, Brightness, CELL, DenseConfig, Interpolation, Layout, Pad, Ranges, Tile, View, Wanted},
-    disparity::{DisparityRange, SCALE},
+    disparity::{DisparityMap, DisparityRange, SCALE},
+    gpu::WordTexture,
     image::{Luma, Plane},
     luma::pack,
     reference::{self, CellPlane},
@@ -17,12 +18,14 @@ fn on_device(
     view: View,
     config: &DenseConfig,
     ranges: Option<&CellPlane>,
+    others: Option<(&DisparityMap, u32)>,
     (wanted, tile): (Wanted, Tile),
 ) -> Vec<i32> {
     let device = &gpu().device;
     let (width, height) = left.size();
     let layout = Layout::new(left.size(), 0, height, config, &[tile]).expect("a layout");
-    let planes = upload(&vec![0_u32; layout.words() as usize]);
+    let texture = WordTexture::new(device, "planes", layout.words()).expect("a texture");
+    let planes = upload(&vec![0_u32; layout.words().next_multiple_of(2048) as usize]);
     let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
     let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
     let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
@@ -37,11 +40,17 @@ fn on_device(
     let dispatches = [
         pad.prepare(device, left_padding, &upload_luma(left), &planes),
         pad.prepare(device, right_padding, &upload_luma(right), &planes),
-        kernel.prepare(device, &layout, &planes, &ranges, &matches, width * height),
     ];
+    let others = others.map(|(others, limit)| (upload(others.data()), limit));
+    let others = others.as_ref().map(|(others, limit)| (others, *limit));
+    let block_match = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
     poison(&planes);
     poison(&matches);
-    run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
+    run(|encoder| {
+        dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
+        texture.record(encoder, &planes);
+        block_match.record(encoder);
+    });
     download(&matches)
 }
 
@@ -74,13 +83,20 @@ fn compare_tiled(
     tile: Tile,
 ) {
     let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
-    let expected = reference::block_match(left, right, view, &searched, ranges);
-    let actual = on_device(left, right, view, config, ranges, (Wanted::Matches, tile));
-    let (disparities, confidences) = actual.split_at(left.data().len());
-    assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
-    let expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
-    assert_same(&format!("{what}, confidences"), confidences, &expected);
-    let winners = on_device(left, right, view, config, ranges, (Wanted::Winners, tile));
+    let mut expected = reference::block_match(left, right, view, &searched, ranges);
+    let others = reference::winners(left, right, view.other(), &searched, None);
+    for others in [None, Some((&others, 300))] {
+        if let Some((others, max_difference)) = others {
+            reference::check_consistency(&mut expected, view, others, max_difference);
+        }
+        let actual = on_device(left, right, view, config, ranges, others, (Wanted::Matches, tile));
+        let (disparities, confidences) = actual.split_at(left.data().len());
+        let what = format!("{what}, others {}", others.is_some());
+        assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
+        let confidences_expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
+        assert_same(&format!("{what}, confidences"), confidences, &confidences_expected);
+    }
+    let winners = on_device(left, right, view, config, ranges, None, (Wanted::Winners, tile));
     let expected = reference::winners(left, right, view, &searched, ranges);
     assert_same(&format!("{what}, winners"), &winners, expected.data());
 }
@@ -170,7 +186,7 @@ fn by_hand() {
     // and a window without it costs nothing at any disparity that does not see it either.
     let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
     let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
-    let winners = on_device(&view(5), &view(3), View::Left, &config, None, (Wanted::Winners, Tile::HARDWARE));
+    let winners = on_device(&view(5), &view(3), View::Left, &config, None, None, (Wanted::Winners, Tile::HARDWARE));
     let d = |whole: i32| whole * SCALE;
     // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
     // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
