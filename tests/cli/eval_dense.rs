@@ -332,7 +332,8 @@ fn an_interruption_keeps_what_is_finished() {
         thread::sleep(Duration::from_millis(5));
     }
     thread::sleep(Duration::from_millis(200));
-    assert!(process::Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+    // What runs in the background of a shell ignores SIGINT, but not this.
+    assert!(process::Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
     assert_eq!(run.wait().unwrap().code(), Some(130));
     assert_eq!(names(&out), ["small"]);
     assert_eq!(names(&out.join("small")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
