@@ -1,20 +1,19 @@
-//! The figures of a change, on scenes with known truth: dense error and the share of matches that are right.
+//! The figures of a change that `hsad eval dense` does not tell: plain block matching over the true range, what the
+//! confidence and the range that is found are worth, and the share of matches that are right.
 //!
-//! `cargo run --example measure -- FOLDER [SCENE...]`, where `FOLDER/SCENE/` holds `left.png`, `right.png`,
-//! `disp_left.pfm` and `nonocc.png` as `data/` does.
+//! `cargo run --example measure -- [SCENE...]`, where a `SCENE` is what `hsad eval dense` takes; one that does not tell
+//! what both views see is left out. Without any, those of `data/`.
 #![expect(clippy::print_stdout, reason = "a measurement prints")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use hsad::{
     config::Preset,
-    dense::{Dense, DenseConfig},
-    disparity::{DisparityMap, DisparityRange, SCALE},
-    eval::score,
+    dense::{Dense, DenseConfig, View},
+    disparity::{self, DisparityRange, SCALE},
+    eval::scene::{self, SceneFiles},
     features::Feature,
     gpu::DeviceChoice,
-    image::Plane,
-    io::{Picture, load, pfm},
     matching::{MatchConfig, Rows, Seed, match_features, refine},
     pair::{Backend, Pair},
     pipeline,
@@ -24,41 +23,18 @@ type AnyError = Box<dyn std::error::Error>;
 
 struct Scene {
     name: String,
-    left: Picture,
-    right: Picture,
-    truth: Plane<f32>,
-    visible: Plane<u8>,
+    data: scene::Scene,
 }
 
 impl Scene {
-    fn read(folder: &Path) -> Result<Self, AnyError> {
-        let file = |name: &str| folder.join(name);
-        Ok(Self {
-            name: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            left: load::load(&file("left.png"))?,
-            right: load::load(&file("right.png"))?,
-            truth: pfm::read(&file("disp_left.pfm"))?,
-            visible: load::load(&file("nonocc.png"))?.luma(),
-        })
-    }
-
-    /// Wrong pixels in per cent: non-occluded and all, of all known; the same of those estimated; estimated ones.
-    fn bad(&self, map: &DisparityMap) -> Result<[f64; 5], AnyError> {
-        let visible = score(map, &self.truth, Some(&self.visible), &[1.0])?;
-        let all = score(map, &self.truth, None, &[1.0])?;
-        let shares = [
-            visible.bad[0].of_known,
-            all.bad[0].of_known,
-            visible.bad[0].of_estimated,
-            all.bad[0].of_estimated,
-            all.coverage(),
-        ];
-        Ok(shares.map(|share| 100.0 * share))
+    /// The finite disparities of the truth, in pixels.
+    fn known(&self) -> impl Iterator<Item = f32> {
+        self.data.truth.data().iter().copied().filter(|disparity| disparity.is_finite())
     }
 
     /// Per cent of pixels that are wrong by more than 2 px among the more confident half of all that are known.
     fn confident(&self, dense: &Dense) -> f64 {
-        let known = self.truth.data().iter().zip(dense.disparity.data()).zip(dense.confidence.data());
+        let known = self.data.truth.data().iter().zip(dense.disparity.data()).zip(dense.confidence.data());
         let mut pixels: Vec<(u8, bool)> = known
             .filter(|((truth, _), _)| truth.is_finite())
             .map(|((truth, &d), &confidence)| (confidence, (d as f32 / SCALE as f32 - truth).abs() > 2.0))
@@ -71,12 +47,12 @@ impl Scene {
 
     /// Whether a seed lies within 1 px of the truth, in its column and in its row; `None` where that is not known.
     fn is_right(&self, seed: &Seed) -> Option<bool> {
-        let (width, height) = self.truth.size();
+        let (width, height) = self.data.truth.size();
         let (x, y) = (seed.x.round(), seed.y.round());
         if x < 0.0 || y < 0.0 || x >= width as f32 || y >= height as f32 {
             return None;
         }
-        let truth = self.truth.get(x as u32, y as u32);
+        let truth = self.data.truth.get(x as u32, y as u32);
         truth.is_finite().then(|| (seed.disparity - truth).abs() <= 1.0 && seed.dy.abs() <= 1.0)
     }
 
@@ -92,41 +68,42 @@ impl Scene {
 }
 
 fn main() -> Result<(), AnyError> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let folder = arguments.first().map_or_else(|| PathBuf::from("data"), PathBuf::from);
-    let mut names = arguments.get(1..).unwrap_or_default().to_vec();
-    if names.is_empty() {
-        for entry in folder.read_dir()? {
-            let entry = entry?;
-            if entry.path().join("nonocc.png").is_file() {
-                names.push(entry.file_name().to_string_lossy().into_owned());
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.is_empty() {
+        arguments.push("data".into());
+    }
+    let mut scenes = Vec::new();
+    for argument in &arguments {
+        for files in SceneFiles::find(Path::new(argument))? {
+            let data = files.read(View::Left)?;
+            if data.non_occluded.is_some() {
+                scenes.push(Scene { name: files.name, data });
             }
         }
-        names.sort();
     }
-    let scenes = names.iter().map(|name| Scene::read(&folder.join(name))).collect::<Result<Vec<_>, _>>()?;
     let backend = Backend::open(&DeviceChoice::Best)?;
     println!("on {}", backend.name());
 
-    table("7x7 SAD, winner-take-all, from 0 to the truth's largest, in whole sixteens", &DENSE, &scenes, |scene| {
-        let largest = scene.truth.data().iter().filter(|d| d.is_finite()).fold(0.0_f32, |a, &b| a.max(b));
+    let columns = ["non-occ", "all", "est n-o", "est all", "covered"];
+    table("7x7 SAD, winner-take-all, from 0 to the truth's largest, in whole sixteens", &columns, &scenes, |scene| {
+        let largest = scene.known().fold(0.0, f32::max);
         let config = DenseConfig::new(DisparityRange::new(0, (largest as u32 + 1).next_multiple_of(16))?);
-        let dense = Pair::new(&backend, &scene.left, &scene.right)?.dense(&config)?;
-        scene.bad(&dense.disparity)
+        let dense = Pair::new(&backend, &scene.data.left, &scene.data.right)?.dense(&config)?;
+        let scores = scene.data.score(&disparity::in_pixels(&dense.disparity))?;
+        let visible = scores.non_occluded.ok_or("no mask")?.bad[1];
+        let all = scores.all.bad[1];
+        let shares = [visible.of_known, all.of_known, visible.of_estimated, all.of_estimated, scores.all.coverage()];
+        Ok(shares.map(|share| 100.0 * share))
     })?;
     for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
-        table(&format!("preset {preset:?}, the range found"), &DENSE, &scenes, |scene| {
-            let outcome = pipeline::run(&backend, (&scene.left, &scene.right), &preset.config(), |_| ())?;
-            let known = scene.truth.data().iter().filter(|d| d.is_finite()).collect::<Vec<_>>();
-            let inside = known.iter().filter(|d| outcome.range.contains(d.round() as i32)).count();
-            println!(
-                "  {} to {} px, which {:.2} % of the truth lie in; {:.2} % of the more confident half wrong by over 2 px",
-                outcome.range.min,
-                outcome.range.last(),
-                100.0 * inside as f64 / known.len() as f64,
-                scene.confident(&outcome.dense)
-            );
-            scene.bad(&outcome.dense.disparity)
+        let columns = ["from px", "to px", "inside", "half bad"];
+        table(&format!("preset {preset:?}, the range found"), &columns, &scenes, |scene| {
+            let views = (&scene.data.left, &scene.data.right);
+            let outcome = pipeline::run(&backend, views, &preset.config(), |_| ())?;
+            let range = outcome.range;
+            let inside = scene.known().filter(|d| range.contains(d.round() as i32)).count();
+            let share = 100.0 * inside as f64 / scene.known().count() as f64;
+            Ok([range.min.into(), range.last().into(), share, scene.confident(&outcome.dense)])
         })?;
     }
     type Seeds = fn(&Pair, &[Vec<Feature>; 2]) -> Result<Vec<Seed>, AnyError>;
@@ -142,28 +119,29 @@ fn main() -> Result<(), AnyError> {
     ];
     for (title, seeds) in kinds {
         table(title, &["matches", "all", "of 10", "of 100", "of 500"], &scenes, |scene| {
-            let pair = Pair::new(&backend, &scene.left, &scene.right)?;
+            let pair = Pair::new(&backend, &scene.data.left, &scene.data.right)?;
             let features = pair.features(&Preset::Balanced.config().features)?;
             Ok(scene.right(&seeds(&pair, &features)?))
         })?;
     }
-    println!("\nper cent; wrong: by more than 1 px; right: by at most 1 px; disparities in 1/{SCALE} px");
+    println!(
+        "\nper cent; wrong: by more than 1 px; inside: of the truth, in the range; half bad: of the more confident half, \
+         wrong by over 2 px; right: by at most 1 px"
+    );
     Ok(())
 }
 
-const DENSE: [&str; 5] = ["non-occ", "all", "est n-o", "est all", "covered"];
-
 /// Prints a row of figures a scene, and their means.
-fn table(
+fn table<const N: usize>(
     title: &str,
-    columns: &[&str; 5],
+    columns: &[&str; N],
     scenes: &[Scene],
-    mut figures: impl FnMut(&Scene) -> Result<[f64; 5], AnyError>,
+    mut figures: impl FnMut(&Scene) -> Result<[f64; N], AnyError>,
 ) -> Result<(), AnyError> {
     println!("\n{title}\n{:24}{}", "", columns.map(|column| format!("{column:>9}")).concat());
-    let mut sums = [0.0; 5];
-    let row = |name: &str, figures: [f64; 5]| {
-        println!("{name:24}{}", figures.map(|figure| format!("{figure:9.1}")).concat());
+    let mut sums = [0.0; N];
+    let row = |name: &str, figures: [f64; N]| {
+        println!("{name:24}{}", figures.map(|figure| format!("{figure:9.2}")).concat());
     };
     for scene in scenes {
         let figures = figures(scene)?;

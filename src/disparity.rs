@@ -22,6 +22,17 @@ pub fn pixels(disparity: i32) -> Option<f32> {
     (disparity != NONE).then(|| disparity as f32 / SCALE as f32)
 }
 
+/// The nearest fixed-point disparity of one in pixels (halves away from 0); [`NONE`] for what is not finite.
+pub fn fixed_point(pixels: f32) -> i32 {
+    // A cast saturates, at one end at NONE itself.
+    if pixels.is_finite() { ((pixels * SCALE as f32).round() as i32).max(NONE + 1) } else { NONE }
+}
+
+/// A map in pixels, +inf where there is [`NONE`].
+pub fn in_pixels(map: &DisparityMap) -> Plane<f32> {
+    map.map(|&d| pixels(d).unwrap_or(f32::INFINITY))
+}
+
 /// The share of pixels that have a disparity, 0 to 1.
 pub fn coverage(map: &DisparityMap) -> f64 {
     map.data().iter().filter(|&&d| d != NONE).count() as f64 / map.data().len() as f64
@@ -81,5 +92,18 @@ impl DisparityRange {
     /// Whether `disparity` (whole pixels) is one of the range.
     pub fn contains(&self, disparity: i32) -> bool {
         (self.min..=self.last()).contains(&disparity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_and_fixed_point_by_hand() {
+        let pixels = [0.0, -1.5, 1.0 / 512.0, -1.0 / 512.0, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN];
+        assert_eq!(pixels.map(fixed_point), [0, -384, 1, -1, i32::MAX, NONE + 1, NONE, NONE]);
+        let map = DisparityMap::new(3, 1, vec![384, NONE, -1]).unwrap();
+        assert_eq!(in_pixels(&map).data(), [1.5, f32::INFINITY, -1.0 / 256.0]);
     }
 }

@@ -10,18 +10,18 @@ use clap::Args;
 use hsad::{
     Result,
     config::Preset,
-    disparity::{DisparityMap, SCALE},
-    eval::{Score, score},
+    disparity::DisparityMap,
+    eval::{self, Score},
     image::Plane,
-    io::{Calibration, Picture, color, figure, load, pfm, png},
+    io::{Calibration, Picture, figure, load, pfm, png},
 };
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::{
     job::Job,
     options::RunOptions,
     output::Output,
-    products, summary,
+    products, score, summary,
     terminal::{self, Progress},
 };
 
@@ -68,7 +68,8 @@ impl Demo {
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        let panels = scene.panels(&done.outcome.dense.disparity);
+        let panels = products::beside_truth(&scene.left, &done.outcome.dense.disparity, &scene.truth);
+        let panels = figure::side_by_side(&panels.each_ref());
         output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
         output.add("left.png", |out| out.write_all(LEFT))?;
         output.add("right.png", |out| out.write_all(RIGHT))?;
@@ -116,15 +117,6 @@ impl Scene {
             calibration: Calibration::parse(calib, &shipped("calib.txt"))?,
         })
     }
-
-    /// The left picture, `found` and the truth, both in the truth's colours.
-    fn panels(&self, found: &DisparityMap) -> Plane<[u8; 3]> {
-        let truth = self.truth.map(|&disparity| (disparity * SCALE as f32).round() as i32);
-        let range = color::disparity_range(&truth).unwrap_or((0, 0));
-        let colors = |map| color::disparity_colors(map, range);
-        let left = self.left.map(|&[red, green, blue, _]| [red, green, blue]);
-        figure::side_by_side(&[&left, &colors(found), &colors(&truth)])
-    }
 }
 
 /// The map's errors where both cameras see, and everywhere.
@@ -136,8 +128,8 @@ struct Accuracy {
 impl Accuracy {
     fn new(map: &DisparityMap, scene: &Scene) -> Result<Self> {
         Ok(Self {
-            non_occluded: score(map, &scene.truth, Some(&scene.non_occluded), &THRESHOLDS)?,
-            all: score(map, &scene.truth, None, &THRESHOLDS)?,
+            non_occluded: eval::score(map, &scene.truth, Some(&scene.non_occluded), &THRESHOLDS)?,
+            all: eval::score(map, &scene.truth, None, &THRESHOLDS)?,
         })
     }
 
@@ -162,25 +154,14 @@ impl Accuracy {
     }
 
     fn report(&self) -> Value {
-        let rows = self.rows().map(|(name, score)| {
-            let bad: Vec<Value> = score
-                .bad
-                .iter()
-                .map(|bad| json!({ "above_px": bad.threshold, "of_all": bad.of_known, "of_estimated": bad.of_estimated }))
-                .collect();
-            let Score { known, estimated, average, rms, .. } = score;
-            let value = json!({
-                "pixels": known, "estimated": estimated, "coverage": score.coverage(), "bad": bad,
-                "average_error_px": average, "rms_error_px": rms,
-            });
-            (name.replace('-', "_"), value)
-        });
-        rows.into_iter().collect()
+        self.rows().into_iter().map(|(name, figures)| (name.replace('-', "_"), score::to_json(figures))).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use hsad::disparity::fixed_point;
+
     use super::*;
 
     #[test]
@@ -188,7 +169,7 @@ mod tests {
         let scene = Scene::new().unwrap();
         let size = scene.left.size();
         assert!(scene.right.size() == size && scene.truth.size() == size && scene.calibration.size == Some(size));
-        let truth = scene.truth.map(|&disparity| (disparity * SCALE as f32).round() as i32);
+        let truth = scene.truth.map(|&pixels| fixed_point(pixels));
         let accuracy = Accuracy::new(&truth, &scene).unwrap();
         for (_, score) in accuracy.rows() {
             assert!(score.bad.iter().all(|bad| bad.of_known == 0.0) && score.coverage() == 1.0);

@@ -43,7 +43,7 @@ impl Job {
         let progress = Progress::new(options.quiet);
         let views = (&self.left, &self.right);
         let outcome = pipeline::run(&backend, views, &self.config, |step| progress.step(step))?;
-        let warnings = warnings(&self, &outcome);
+        let warnings = warnings(views, &self.config, &outcome);
         Ok(Done { job: self, backend, outcome, total: start.elapsed(), warnings })
     }
 }
@@ -52,15 +52,15 @@ impl Job {
 const LITTLE_TRUST: f32 = 0.25;
 
 /// What someone should know before they use the result.
-fn warnings(job: &Job, outcome: &Outcome) -> Vec<String> {
+pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
-    if job.left == job.right {
+    if left == right {
         warnings.push("both views are the same picture, which shows no depth".into());
     }
     if let RangeSource::Fallback(thin) = outcome.range_source {
         warnings.push(format!("{}; {} were searched instead", Error::from(thin), span(outcome.range)));
     }
-    if let Some(asked) = job.config.range.filter(|&asked| asked != outcome.range) {
+    if let Some(asked) = config.range.filter(|&asked| asked != outcome.range) {
         let reason = "no pixel has a partner further away than the picture is wide";
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }

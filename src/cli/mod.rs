@@ -2,6 +2,7 @@
 
 mod demo;
 mod devices;
+mod eval;
 mod features;
 mod job;
 mod match_views;
@@ -9,6 +10,7 @@ mod options;
 mod output;
 mod products;
 mod report;
+mod score;
 mod summary;
 pub mod terminal;
 
@@ -38,6 +40,7 @@ enum Command {
     Features(features::Features),
     Devices(devices::Devices),
     Demo(demo::Demo),
+    Eval(eval::Eval),
 }
 
 impl Cli {
@@ -49,6 +52,7 @@ impl Cli {
             Command::Features(command) => command.run(),
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
+            Command::Eval(command) => command.run(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io::{self, BufWriter},
+    io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
 };
@@ -11,6 +11,7 @@ use hsad::{
     Error, Result,
     io::atomic::{self, Staged, temporary_in},
 };
+use serde_json::Value;
 
 /// Folders that were created for a run, the deepest first. Whoever holds it is not interrupted.
 static CREATED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -132,6 +133,14 @@ impl Output {
         Ok(written)
     }
 
+    /// Writes JSON, indented, which does not appear yet.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_json(&mut self, name: &'static str, value: &Value) -> Result<()> {
+        self.add(name, |out| write_json(out, value))
+    }
+
     /// The folder.
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -152,6 +161,15 @@ impl Output {
     }
 }
 
+/// Writes JSON as people can read it, too.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_json(out: &mut impl Write, value: &Value) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
+    out.write_all(b"\n")
+}
+
 impl Drop for Output {
     fn drop(&mut self) {
         self.staged.clear();
@@ -161,8 +179,6 @@ impl Drop for Output {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
-
     use super::*;
 
     #[test]

@@ -3,7 +3,7 @@
 use hsad::{
     Result,
     dense::View,
-    disparity::NONE,
+    disparity::{DisparityMap, NONE, fixed_point},
     features::Feature,
     image::Plane,
     io::{Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
@@ -73,12 +73,17 @@ impl Done {
     }
 }
 
+/// `view`, and `map` and the truth (in pixels, not finite where unknown) in the truth's colours.
+pub fn beside_truth(view: &Picture, map: &DisparityMap, truth: &Plane<f32>) -> [Plane<[u8; 3]>; 3] {
+    let truth = truth.map(|&pixels| fixed_point(pixels));
+    let range = color::disparity_range(&truth).unwrap_or((0, 0));
+    let colors = |map| color::disparity_colors(map, range);
+    [view.map(|&[red, green, blue, _]| [red, green, blue]), colors(map), colors(&truth)]
+}
+
 /// `report.json`, with all files named so far.
 pub fn add_report(output: &mut Output, mut report: Value) -> Result<()> {
     const NAME: &str = "report.json";
     report["files"] = output.names().iter().copied().chain([NAME]).collect();
-    output.add(NAME, |out| {
-        serde_json::to_writer_pretty(&mut *out, &report)?;
-        std::io::Write::write_all(out, b"\n")
-    })
+    output.add_json(NAME, &report)
 }

@@ -5,6 +5,7 @@ use hsad::{
     dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
+    pair::Backend,
     pipeline::RangeSource,
     seeding::{Brightness, Rectification, Verdict},
 };
@@ -25,7 +26,7 @@ impl Done {
             "right": job.names[1],
             "width": job.left.width(),
             "height": job.left.height(),
-            "device": { "name": backend.name(), "backend": backend.api(), "driver": backend.driver() },
+            "device": device(backend),
             "parameters": parameters(&job.config),
             "calibration": job.calibration.as_ref().map(calibration),
             "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
@@ -42,12 +43,18 @@ impl Done {
     }
 }
 
+/// What computed.
+pub fn device(backend: &Backend) -> Value {
+    json!({ "name": backend.name(), "backend": backend.api(), "driver": backend.driver() })
+}
+
 /// The shortest decimal that is this `f32`: 0.85, not 0.8500000238418579.
 fn number(value: f32) -> Value {
     value.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-fn parameters(config: &Config) -> Value {
+/// What was asked for.
+pub fn parameters(config: &Config) -> Value {
     let Config {
         features,
         seeding,
@@ -130,7 +137,8 @@ fn ends(range: DisparityRange) -> Value {
     json!({ "min": range.min, "max": range.last(), "count": range.count })
 }
 
-fn searched(range: DisparityRange, source: &RangeSource) -> Value {
+/// The disparities that were searched, and who named them.
+pub fn searched(range: DisparityRange, source: &RangeSource) -> Value {
     let mut value = ends(range);
     value["source"] = match source {
         RangeSource::Asked => "asked",

@@ -50,11 +50,16 @@ impl Progress {
     /// Nothing is shown where `quiet`.
     pub fn new(quiet: bool) -> Self {
         let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}{msg} ({elapsed})") {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(100));
         Self(bar)
+    }
+
+    /// Says which of several pieces of work the steps belong to from now on.
+    pub fn piece(&self, name: &str, number: usize, of: usize) {
+        self.0.set_prefix(format!("{} ({number} of {of}): ", one_line(name)));
     }
 
     /// Says what begins now.

@@ -1,5 +1,7 @@
 //! How good a disparity map is.
 
 mod metrics;
+#[cfg(feature = "cli")]
+pub mod scene;
 
-pub use metrics::{Bad, Score, score};
+pub use metrics::{Bad, OUTLIER_PIXELS, OUTLIER_SHARE, Outliers, Score, score, score_pixels};

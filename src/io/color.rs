@@ -1,4 +1,4 @@
-//! Disparities in false colours, for people to look at.
+//! Disparities and their errors in false colours, for people to look at.
 
 use crate::{
     disparity::{DisparityMap, NONE},
@@ -26,6 +26,39 @@ pub fn disparity_colors(map: &DisparityMap, range: (i32, i32)) -> Plane<[u8; 3]>
     let (low, high) = (f64::from(range.0), f64::from(range.1));
     let share = |d: i32| if high > low { ((f64::from(d) - low) / (high - low)) as f32 } else { 0.5 };
     map.map(|&d| if d == NONE { [0; 3] } else { turbo(FAR + (1.0 - FAR) * share(d).clamp(0.0, 1.0)) })
+}
+
+/// The colours of errors, each with the largest error in pixels that it stands for: from blue, which is good, to red,
+/// after the diverging scheme RdYlBu of C. Brewer, <https://colorbrewer2.org>.
+pub const ERROR_COLORS: [(f32, [u8; 3]); 5] = [
+    (0.5, [44, 123, 182]),
+    (1.0, [171, 217, 233]),
+    (2.0, [255, 255, 191]),
+    (4.0, [253, 174, 97]),
+    (f32::INFINITY, [215, 25, 28]),
+];
+
+/// The colour of a pixel that has a true disparity and no estimate.
+pub const NO_ESTIMATE: [u8; 3] = [255; 3];
+
+/// The errors of `map` in the colours of [`ERROR_COLORS`], and [`NO_ESTIMATE`]. Where `mask`, if there is one, is not
+/// 255, the pixel is occluded and has a third of its brightness; where the truth is unknown it is black. A disparity
+/// (in pixels) that is not finite is missing in `map` and unknown in `truth`.
+///
+/// # Panics
+/// If the sizes differ.
+pub fn error_colors(map: &Plane<f32>, truth: &Plane<f32>, mask: Option<&Plane<u8>>) -> Plane<[u8; 3]> {
+    assert!(map.size() == truth.size() && mask.is_none_or(|mask| mask.size() == truth.size()), "the sizes differ");
+    Plane::from_fn(truth.width(), truth.height(), |x, y| {
+        let (found, wanted) = (map.get(x, y), truth.get(x, y));
+        if !wanted.is_finite() {
+            return [0; 3];
+        }
+        let error = (found - wanted).abs();
+        let reached = ERROR_COLORS.iter().find(|(limit, _)| error <= *limit).filter(|_| found.is_finite());
+        let color = reached.map_or(NO_ESTIMATE, |&(_, color)| color);
+        if mask.is_none_or(|mask| mask.get(x, y) == 255) { color } else { color.map(|channel| channel / 3) }
+    })
 }
 
 /// Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour
@@ -73,6 +106,19 @@ mod tests {
         let map = DisparityMap::new(6, 1, vec![NONE, -256, 0, 256, i32::MAX, i32::MIN + 1]).unwrap();
         let expected = [[0; 3], turbo(0.05), turbo(0.525), turbo(1.0), turbo(1.0), turbo(0.05)];
         assert_eq!(disparity_colors(&map, (-256, 256)).data(), expected);
+    }
+
+    #[test]
+    fn errors_by_hand() {
+        let truth = Plane::new(9, 1, vec![5.0, 5.0, 5.0, 5.0, 5.0, 5.0, f32::INFINITY, 5.0, 5.0]).unwrap();
+        let map = Plane::new(9, 1, vec![5.5, 4.0, 7.0, 1.0, 9.5, f32::NAN, 5.0, 5.0, f32::INFINITY]).unwrap();
+        let mask = Plane::from_fn(9, 1, |x, _| if x < 7 { 255 } else { 128 });
+        let [blue, light, yellow, orange, red] = ERROR_COLORS.map(|(_, color)| color);
+        let expected = [blue, light, yellow, orange, red, NO_ESTIMATE, [0; 3], [14, 41, 60], [85; 3]];
+        assert_eq!(error_colors(&map, &truth, Some(&mask)).data(), expected);
+        let visible = error_colors(&map, &truth, None);
+        assert_eq!(visible.data()[..7], expected[..7]);
+        assert_eq!(visible.data()[7..], [blue, NO_ESTIMATE]);
     }
 
     #[test]

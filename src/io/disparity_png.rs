@@ -20,7 +20,7 @@ use crate::{
     image::Plane,
 };
 
-const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// How many disparities a 16-bit PNG cannot tell, and shows as 'none'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +61,7 @@ pub fn read(path: &Path) -> Result<DisparityMap> {
 /// # Errors
 /// [`crate::Error::Format`] if they are no sound PNG of 16-bit grey.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<DisparityMap> {
-    if !bytes.starts_with(PNG_SIGNATURE) {
+    if !bytes.starts_with(SIGNATURE) {
         return Err(malformed(path, "not a PNG: disparities are read from 16-bit grey PNG and from PFM"));
     }
     match load::decode_image(bytes, path)? {

@@ -12,6 +12,8 @@ pub mod atomic;
 pub mod calibration;
 pub mod color;
 #[cfg(feature = "cli")]
+pub mod disparities;
+#[cfg(feature = "cli")]
 pub mod disparity_png;
 #[cfg(feature = "cli")]
 pub mod figure;

@@ -12,7 +12,7 @@ use std::{
 
 use super::{MAX_PIXELS, check_pixels, malformed, read_whole};
 use crate::{
-    disparity::{self, DisparityMap, DisparityRange, NONE, SCALE},
+    disparity::{self, DisparityMap, DisparityRange},
     error::Result,
     image::Plane,
 };
@@ -31,7 +31,7 @@ pub fn read(path: &Path) -> Result<Plane<f32>> {
     decode(&read_whole(path, 4 * MAX_PIXELS + MAX_HEADER)?, path)
 }
 
-/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`NONE`], anything else the
+/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`disparity::NONE`], anything else the
 /// nearest 1/256 px (halves away from 0).
 ///
 /// # Errors
@@ -82,20 +82,20 @@ pub fn write(out: &mut impl Write, plane: &Plane<f32>) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes disparities in pixels as a little-endian PFM, [`NONE`] as +inf. Nothing is lost below
+/// Writes disparities in pixels as a little-endian PFM, [`disparity::NONE`] as +inf. Nothing is lost below
 /// 65536 px, where a float still holds each 1/256.
 ///
 /// # Errors
 /// Those of `out`.
 pub fn write_disparities(out: &mut impl Write, map: &DisparityMap) -> io::Result<()> {
-    write(out, &map.map(|&d| disparity::pixels(d).unwrap_or(f32::INFINITY)))
+    write(out, &disparity::in_pixels(map))
 }
 
 fn fixed_point(pixels: &Plane<f32>, path: &Path) -> Result<DisparityMap> {
     let limit = DisparityRange::LIMIT;
     let too_large = |value: f32| value.is_finite() && value.abs() > limit as f32;
     refuse(pixels, path, too_large, &format!("a disparity lies within -{limit} and {limit} px"))?;
-    Ok(pixels.map(|&d| if d.is_finite() { (d * SCALE as f32).round() as i32 } else { NONE }))
+    Ok(pixels.map(|&d| disparity::fixed_point(d)))
 }
 
 fn refuse(plane: &Plane<f32>, path: &Path, is_bad: impl Fn(f32) -> bool, rule: &str) -> Result<()> {
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn disparities_are_pixels_and_none_is_infinite() {
-        let map = DisparityMap::new(2, 2, vec![256, 512, 768, NONE]).unwrap();
+        let map = DisparityMap::new(2, 2, vec![256, 512, 768, disparity::NONE]).unwrap();
         let mut out = Vec::new();
         write_disparities(&mut out, &map).unwrap();
         assert_eq!(out, LITTLE);

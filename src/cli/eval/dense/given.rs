@@ -1,0 +1,90 @@
+//! Maps that other programs made: `--disparity NAME=FILE`.
+
+use std::path::{Path, PathBuf};
+
+use hsad::{Error, Result};
+
+use super::OURS;
+
+/// Stands for a scene's name in FILE.
+const SCENE: &str = "{scene}";
+
+/// Another program's maps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// What the program is called.
+    pub name: String,
+    file: String,
+}
+
+impl Given {
+    /// Takes NAME=FILE apart.
+    ///
+    /// # Errors
+    /// A line that says what is missing.
+    pub fn parse(text: &str) -> std::result::Result<Self, String> {
+        let (name, file) = text.split_once('=').ok_or("it is NAME=FILE, for example sgbm=sgbm.pfm")?;
+        // The name is also a folder's.
+        let is_usable = !name.starts_with('.') && !name.contains(['/', '\\']) && !name.contains(char::is_control);
+        if name.is_empty() || !is_usable {
+            return Err(format!("'{name}' is no name: it must not be empty, begin with '.' or have a '/' in it"));
+        }
+        if name == OURS {
+            return Err(format!("'{OURS}' is this program: choose another name"));
+        }
+        if file.is_empty() {
+            return Err("there is no file after the '='".into());
+        }
+        Ok(Self { name: name.into(), file: file.into() })
+    }
+
+    /// Its map of `scene`.
+    pub fn path(&self, scene: &str) -> PathBuf {
+        Path::new(&self.file.replace(SCENE, scene)).into()
+    }
+}
+
+/// Refuses names that stand twice, and one file for several scenes.
+///
+/// # Errors
+/// [`Error::Parameter`].
+pub fn check(given: &[Given], scenes: usize) -> Result<()> {
+    let refused = |given: &Given, expected: String| {
+        Err(Error::Parameter { name: "disparity", value: format!("{}={}", given.name, given.file), expected })
+    };
+    for (index, this) in given.iter().enumerate() {
+        if given[..index].iter().any(|other| other.name == this.name) {
+            return refused(this, format!("there is another '{}': give each program a name of its own", this.name));
+        }
+        if scenes > 1 && !this.file.contains(SCENE) {
+            let example = format!("{}=maps/{SCENE}.pfm", this.name);
+            return refused(
+                this,
+                format!("there are {scenes} scenes: name the file of each by {SCENE}, as in {example}"),
+            );
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::slice;
+
+    use super::*;
+
+    #[test]
+    fn names_and_files() {
+        let given = Given::parse("sgbm=maps/{scene}/a=b.png").unwrap();
+        assert_eq!((&*given.name, given.path("Art")), ("sgbm", PathBuf::from("maps/Art/a=b.png")));
+        for text in ["64", "=a", "a=", "a/b=c", "..=c", "hsad=c", "a\nb=c"] {
+            assert!(Given::parse(text).is_err(), "{text}");
+        }
+        let alone = Given::parse("sgbm=map.pfm").unwrap();
+        check(slice::from_ref(&alone), 1).unwrap();
+        check(slice::from_ref(&given), 9).unwrap();
+        let message = |given: &[Given], scenes| check(given, scenes).unwrap_err().to_string();
+        assert!(message(slice::from_ref(&alone), 2).contains("as in sgbm=maps/{scene}.pfm"));
+        assert!(message(&[alone, given], 1).contains("another 'sgbm'"));
+    }
+}

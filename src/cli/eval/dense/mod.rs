@@ -1,0 +1,216 @@
+//! `hsad eval dense`: disparity maps against the truth of whole scenes.
+
+mod given;
+mod kept;
+mod record;
+mod run;
+mod table;
+
+use std::{
+    fmt::{self, Display, Formatter},
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use anyhow::anyhow;
+use clap::Args;
+use hsad::{
+    Error,
+    eval::scene::SceneFiles,
+    io::atomic::{temporary_in, write_whole},
+};
+use serde_json::{Value, json};
+
+use self::{given::Given, record::Record, run::Run};
+use crate::cli::{
+    options::{FeatureOptions, MatchOptions, RunOptions},
+    output::{Output, write_json},
+    report, terminal,
+};
+
+/// This program among the methods.
+const OURS: &str = "hsad";
+
+/// Compare disparity maps with the truth of whole scenes, by the measures of Middlebury and KITTI
+///
+/// A SCENE is a folder with left.png, right.png, disp_left.pfm and, if need be, nonocc.png (255: both views see it);
+/// a folder of Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2,
+/// image_3, disp_occ_0, disp_noc_0) or a single picture in image_2; or a folder of such folders. Each pair is matched as
+/// hsad match does, the disparity range found and not named, and scored over non-occluded pixels, over all, and over
+/// those alone that have an estimate. A pixel without an estimate counts as wrong in the first two.
+#[derive(Args)]
+#[command(
+    after_help = "With -o, DIR/SCENE/ gets disparity.pfm, error.png, figure.png (picture, truth, map and errors) and
+result.json; DIR/SCENE/NAME/ the same for the map of another program. In error.png an error of at most 0.5 px is blue,
+1 px light blue, 2 px yellow, 4 px orange and above that red; no estimate is white; occluded pixels have a third of
+their brightness, and where the truth is unknown it is black. Results whose files, options, device and program are
+still the same are not computed again.
+
+Examples:
+  hsad eval dense data
+  hsad eval dense Art Teddy --preset quality -o out --csv out/errors.csv
+  hsad eval dense Art --disparity sgbm=sgbm.pfm
+  hsad eval dense kitti/training --disparity theirs=maps/{scene}.png --given-only --json errors.json
+
+Exit codes: 0 done, 1 a scene failed (the others are scored all the same), 2 usage"
+)]
+pub struct Dense {
+    /// Folders of scenes with known truth
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// Also score FILE, a map of the same view by another program: PFM (+inf for none) or PNG (16 bit, 256 times the
+    /// disparity, 0 for none). {scene} in FILE stands for each scene's name
+    #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = Given::parse)]
+    given: Vec<Given>,
+    /// Match nothing, only score the maps that --disparity names
+    #[arg(long, requires = "given")]
+    given_only: bool,
+    /// Folder for maps, pictures and results, created if need be
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Compute again what an earlier run left in the folder
+    #[arg(long, requires = "output")]
+    fresh: bool,
+    /// Write all figures to FILE, a line a scene, method and region; shares are 0 to 1
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write all figures, their means, the parameters and what failed to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunOptions,
+    #[command(flatten)]
+    matching: MatchOptions,
+    #[command(flatten)]
+    features: FeatureOptions,
+}
+
+/// A scene, or a method on a scene, that could not be scored.
+struct Failure {
+    /// The scene, and the method unless it is ours; `None` where no scene was found.
+    what: Option<String>,
+    error: Error,
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        if let Some(what) = &self.what {
+            write!(f, "{what}: ")?;
+        }
+        write!(f, "{}", self.error)
+    }
+}
+
+/// All that came out.
+#[derive(Default)]
+struct Results {
+    records: Vec<Record>,
+    /// How many of the records an earlier run made.
+    kept: usize,
+    failures: Vec<Failure>,
+}
+
+impl Dense {
+    /// Scores everything that can be scored, and fails at the end if anything could not.
+    pub fn run(self) -> anyhow::Result<()> {
+        let config = self.matching.config(&self.features)?;
+        let (scenes, failures) = self.find()?;
+        given::check(&self.given, scenes.len())?;
+        let root = self.output.as_deref().map(Output::open).transpose()?;
+        for file in [&self.csv, &self.json].into_iter().flatten() {
+            check_writable(file)?;
+        }
+        let backend = if self.given_only { None } else { Some(self.run.open()?) };
+
+        let mut results = Results { failures, ..Default::default() };
+        Run::new(&self, &config, backend.as_ref()).all(&scenes, &mut results);
+        drop(root);
+
+        let methods: Vec<&str> =
+            backend.iter().map(|_| OURS).chain(self.given.iter().map(|given| &*given.name)).collect();
+        if let Some(file) = &self.csv {
+            write_whole(file, |out| out.write_all(record::csv(&results.records).as_bytes()))?;
+        }
+        if let Some(file) = &self.json {
+            let mut report = results.report(&methods);
+            report["device"] = backend.as_ref().map(report::device).into();
+            report["parameters"] = backend.as_ref().map(|_| report::parameters(&config)).into();
+            write_whole(file, |out| write_json(out, &report))?;
+        }
+        if !self.run.quiet {
+            self.tell(&results, &methods)?;
+        }
+        let Some(last) = results.failures.pop() else { return Ok(()) };
+        results.failures.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
+        Err(anyhow!("{last}"))
+    }
+
+    /// All scenes, and what of the arguments holds none.
+    fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Failure>)> {
+        let (mut scenes, mut failures): (Vec<SceneFiles>, Vec<Failure>) = Default::default();
+        for path in &self.scenes {
+            match SceneFiles::find(path) {
+                Ok(found) => scenes.extend(found),
+                Err(error) => failures.push(Failure { what: None, error }),
+            }
+        }
+        for (index, scene) in scenes.iter().enumerate() {
+            if scenes[..index].iter().any(|other| other.name == scene.name) {
+                return Err(Error::Parameter {
+                    name: "SCENE",
+                    value: format!("the name of two scenes, '{}'", scene.name),
+                    expected: "each needs a name of its own: evaluate them one after the other".into(),
+                });
+            }
+        }
+        Ok((scenes, failures))
+    }
+
+    fn tell(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
+        for record in &results.records {
+            record.warnings.iter().for_each(|text| terminal::warning(format!("{}: {text}", record.scene)));
+        }
+        if results.records.is_empty() {
+            return Ok(());
+        }
+        let mut text = format!("{}\n{}", table::tables(&results.records, methods), table::LEGEND);
+        if let Some(folder) = &self.output {
+            text += &format!("\nmaps and pictures of errors are in {}", folder.display());
+            if results.kept > 0 {
+                let (kept, all) = (results.kept, results.records.len());
+                text +=
+                    &format!("; {kept} of {all} results were there from an earlier run (--fresh computes them again)");
+            }
+            text.push('\n');
+        }
+        terminal::print(&text)
+    }
+}
+
+impl Results {
+    /// Everything that came out, for programs.
+    fn report(&self, methods: &[&str]) -> Value {
+        let failed =
+            self.failures.iter().map(|Failure { what, error }| json!({ "what": what, "error": error.to_string() }));
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "results": self.records.iter().map(Record::to_json).collect::<Vec<_>>(),
+            "means": record::means(&self.records, methods),
+            "failed": failed.collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Finds out, before any work, whether a file can be written.
+fn check_writable(path: &Path) -> hsad::Result<()> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
+    let tried = if path.is_dir() {
+        Err(std::io::ErrorKind::IsADirectory.into())
+    } else if path.exists() {
+        Ok(())
+    } else {
+        temporary_in(folder).map(drop)
+    };
+    tried.map_err(|source| Error::Io { path: path.into(), source })
+}

@@ -1,0 +1,248 @@
+//! What is known of one map, and its forms for programs: JSON and CSV.
+
+use hsad::eval::{Score, scene::Scores};
+use serde_json::{Value, json};
+
+use crate::cli::score;
+
+/// How good one method's map of one scene is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    pub scene: String,
+    pub method: String,
+    pub scores: Scores,
+    /// The disparities that were searched, as in report.json; null for a map that was given.
+    pub range: Value,
+    /// From the pictures to the map, kernels built included; `None` for a map that was given.
+    pub seconds: Option<f64>,
+    /// What someone should know before they use the map.
+    pub warnings: Vec<String>,
+}
+
+impl Record {
+    /// For people's programs, and for [`Self::from_json`].
+    pub fn to_json(&self) -> Value {
+        let Self { scene, method, scores, range, seconds, warnings } = self;
+        json!({
+            "scene": scene,
+            "method": method,
+            "all": score::to_json(&scores.all),
+            "non_occluded": scores.non_occluded.as_ref().map(score::to_json),
+            "range": range,
+            "seconds": seconds,
+            "warnings": warnings,
+        })
+    }
+
+    /// What [`Self::to_json`] made; `None` where something is missing.
+    pub fn from_json(value: &Value) -> Option<Self> {
+        let text = |value: &Value| value.as_str().map(String::from);
+        let non_occluded = match value.get("non_occluded")? {
+            Value::Null => None,
+            figures => Some(score::from_json(figures)?),
+        };
+        Some(Self {
+            scene: text(&value["scene"])?,
+            method: text(&value["method"])?,
+            scores: Scores { all: score::from_json(&value["all"])?, non_occluded },
+            range: value.get("range")?.clone(),
+            seconds: value.get("seconds")?.as_f64(),
+            warnings: value["warnings"].as_array()?.iter().map(text).collect::<Option<_>>()?,
+        })
+    }
+
+    /// Its score over the pixels of `region`, if it is known which these are.
+    pub fn score(&self, region: Region) -> Option<&Score> {
+        match region {
+            Region::All => Some(&self.scores.all),
+            Region::NonOccluded => self.scores.non_occluded.as_ref(),
+        }
+    }
+}
+
+/// The pixels that are scored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Region {
+    /// All whose truth is known.
+    All,
+    /// Those that both views see.
+    NonOccluded,
+}
+
+impl Region {
+    pub const BOTH: [Self; 2] = [Self::NonOccluded, Self::All];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::NonOccluded => "non-occluded",
+        }
+    }
+}
+
+/// A figure of a score.
+pub struct Figure {
+    /// In files, where shares are 0 to 1; `_est`: of the estimated pixels only.
+    pub name: &'static str,
+    /// In tables, where shares are per cent.
+    pub heading: &'static str,
+    /// What makes it what a table shows.
+    pub factor: f64,
+    pub of: fn(&Score) -> f64,
+}
+
+const fn share(name: &'static str, heading: &'static str, of: fn(&Score) -> f64) -> Figure {
+    Figure { name, heading, factor: 100.0, of }
+}
+
+const fn pixels(name: &'static str, heading: &'static str, of: fn(&Score) -> f64) -> Figure {
+    Figure { name, heading, factor: 1.0, of }
+}
+
+/// Wrong pixels, of all that are scored; the thresholds are [`hsad::eval::scene::THRESHOLDS`].
+pub const WRONG: [Figure; 5] = [
+    share("bad_0.5", "bad-0.5", |score| score.bad[0].of_known),
+    share("bad_1", "bad-1", |score| score.bad[1].of_known),
+    share("bad_2", "bad-2", |score| score.bad[2].of_known),
+    share("bad_4", "bad-4", |score| score.bad[3].of_known),
+    share("d1", "D1", |score| score.d1.of_known),
+];
+
+/// Wrong pixels, of those that have an estimate.
+pub const WRONG_ESTIMATES: [Figure; 5] = [
+    share("bad_0.5_est", "bad-0.5", |score| score.bad[0].of_estimated),
+    share("bad_1_est", "bad-1", |score| score.bad[1].of_estimated),
+    share("bad_2_est", "bad-2", |score| score.bad[2].of_estimated),
+    share("bad_4_est", "bad-4", |score| score.bad[3].of_estimated),
+    share("d1_est", "D1", |score| score.d1.of_estimated),
+];
+
+/// Errors of the pixels that have an estimate, and how many these are.
+pub const ERRORS: [Figure; 6] = [
+    pixels("average_px", "avg", |score| score.average),
+    pixels("rms_px", "rms", |score| score.rms),
+    pixels("a50_px", "A50", |score| score.a50),
+    pixels("a90_px", "A90", |score| score.a90),
+    pixels("a99_px", "A99", |score| score.a99),
+    share("density", "density", Score::coverage),
+];
+
+/// All figures, in the order of the files.
+fn figures() -> impl Iterator<Item = &'static Figure> {
+    WRONG.iter().chain(&WRONG_ESTIMATES).chain(&ERRORS)
+}
+
+/// The mean of a figure; `None` of no scores, and NaN if one of them does not have it.
+pub fn mean<'s>(figure: &Figure, scores: impl Iterator<Item = &'s Score>) -> Option<f64> {
+    let (sum, count) = scores.fold((0.0, 0), |(sum, count), score| (sum + (figure.of)(score), count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// A line a record and region: names, pixels, all figures, and seconds. What there is none of is left empty.
+pub fn csv(records: &[Record]) -> String {
+    let number = |value: f64| if value.is_nan() { String::new() } else { value.to_string() };
+    let mut text = String::from("scene,method,region,pixels,estimated");
+    figures().for_each(|figure| text += &format!(",{}", figure.name));
+    text += ",seconds\n";
+    for record in records {
+        for region in Region::BOTH {
+            let Some(score) = record.score(region) else { continue };
+            let names = [&record.scene, &record.method].map(|name| quoted(name));
+            text += &format!("{},{},{},{}", names.join(","), region.name(), score.known, score.estimated);
+            figures().for_each(|figure| text += &format!(",{}", number((figure.of)(score))));
+            text += &format!(",{}\n", record.seconds.map(number).unwrap_or_default());
+        }
+    }
+    text
+}
+
+/// A field of CSV (RFC 4180).
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.into() }
+}
+
+/// The means of each method and region, under the names of the CSV.
+pub fn means(records: &[Record], methods: &[&str]) -> Value {
+    let mut means = Vec::new();
+    for method in methods {
+        for region in Region::BOTH {
+            let scores = || of_method(records, method).filter_map(|record| record.score(region));
+            let mut value = json!({ "method": method, "region": region.name(), "scenes": scores().count() });
+            for figure in figures() {
+                value[figure.name] = mean(figure, scores()).into();
+            }
+            means.push(value);
+        }
+    }
+    means.into()
+}
+
+/// The records of one method.
+pub fn of_method<'r>(records: &'r [Record], method: &'r str) -> impl Iterator<Item = &'r Record> {
+    records.iter().filter(move |record| record.method == method)
+}
+
+#[cfg(test)]
+pub mod tests {
+    use hsad::{
+        eval::{scene::THRESHOLDS, score_pixels},
+        image::Plane,
+    };
+
+    use super::*;
+
+    /// A record of errors, pixel by pixel; NaN is no estimate.
+    pub fn record(scene: &str, method: &str, errors: &[f32], non_occluded: Option<&[f32]>) -> Record {
+        let score = |errors: &[f32]| {
+            let map = Plane::new(errors.len() as u32, 1, errors.to_vec()).unwrap();
+            score_pixels(&map, &map.map(|_| 0.0), None, &THRESHOLDS).unwrap()
+        };
+        Record {
+            scene: scene.into(),
+            method: method.into(),
+            scores: Scores { all: score(errors), non_occluded: non_occluded.map(score) },
+            range: Value::Null,
+            seconds: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn files_by_hand() {
+        let records =
+            [record("a,\"b\"", "hsad", &[0.0, f32::NAN], None), record("c", "hsad", &[6.0], Some(&[f32::NAN]))];
+        let text = csv(&records);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(
+            lines[0],
+            "scene,method,region,pixels,estimated,bad_0.5,bad_1,bad_2,bad_4,d1,bad_0.5_est,bad_1_est,bad_2_est,\
+             bad_4_est,d1_est,average_px,rms_px,a50_px,a90_px,a99_px,density,seconds"
+        );
+        assert_eq!(lines[1], "\"a,\"\"b\"\"\",hsad,all,2,1,0.5,0.5,0.5,0.5,0.5,0,0,0,0,0,0,0,0,0,0,0.5,");
+        assert_eq!(lines[2], "c,hsad,non-occluded,1,0,1,1,1,1,1,,,,,,,,,,,0,");
+        assert_eq!(lines[3], "c,hsad,all,1,1,1,1,1,1,1,1,1,1,1,1,6,6,6,6,6,1,");
+        assert_eq!(lines.len(), 4);
+
+        let means = means(&records, &["hsad", "none"]);
+        assert_eq!((&means[0]["region"], &means[0]["scenes"]), (&"non-occluded".into(), &1.into()));
+        assert_eq!((&means[0]["bad_2"], &means[0]["average_px"]), (&1.0.into(), &Value::Null));
+        assert_eq!(
+            (&means[1]["scenes"], &means[1]["bad_2"], &means[1]["average_px"]),
+            (&2.into(), &0.75.into(), &3.0.into())
+        );
+        assert_eq!((&means[3]["scenes"], &means[3]["bad_2"]), (&0.into(), &Value::Null));
+    }
+
+    #[test]
+    fn records_come_back() {
+        let mut all = record("a", "hsad", &[0.1, f32::NAN, 3.0], Some(&[0.7]));
+        (all.seconds, all.warnings) = (Some(0.1), vec!["odd".into()]);
+        all.range = serde_json::json!({ "min": 1 });
+        for record in [all, record("b", "x", &[1.0], None)] {
+            let text = record.to_json().to_string();
+            assert_eq!(Record::from_json(&serde_json::from_str(&text).unwrap()), Some(record));
+        }
+        assert_eq!(Record::from_json(&Value::Null), None);
+    }
+}

@@ -1,0 +1,191 @@
+//! One scene after the other, by all methods.
+
+use std::{path::PathBuf, time::Instant};
+
+use hsad::{
+    Result,
+    config::Config,
+    disparity::{fixed_point, in_pixels},
+    eval::scene::{Scene, SceneFiles},
+    image::Plane,
+    io::{color, disparities, figure, pfm, png},
+    pair::Backend,
+    pipeline,
+};
+use serde_json::Value;
+
+use super::{
+    Dense, Failure, OURS, Results,
+    given::Given,
+    kept::{self, Fingerprint},
+    record::Record,
+};
+use crate::cli::{job, output::Output, products, report, terminal::Progress};
+
+/// What makes maps, and where they go.
+pub struct Run<'a> {
+    options: &'a Dense,
+    config: &'a Config,
+    methods: Vec<Method<'a>>,
+    /// Of the program; `None` where no results are kept.
+    fingerprint: Option<Fingerprint>,
+    progress: Progress,
+}
+
+/// What makes a map.
+#[derive(Clone, Copy)]
+enum Method<'a> {
+    Ours(&'a Backend),
+    Given(&'a Given),
+}
+
+/// Where a result is kept, and what it depends on.
+struct Place {
+    folder: PathBuf,
+    fingerprint: Fingerprint,
+}
+
+impl<'a> Run<'a> {
+    /// Without a backend nothing is matched.
+    pub fn new(options: &'a Dense, config: &'a Config, backend: Option<&'a Backend>) -> Self {
+        let given = options.given.iter().map(Method::Given);
+        Self {
+            options,
+            config,
+            methods: backend.map(Method::Ours).into_iter().chain(given).collect(),
+            fingerprint: options.output.as_ref().map(|_| Fingerprint::of_program()),
+            progress: Progress::new(options.run.quiet),
+        }
+    }
+
+    /// Adds what all methods make of `scenes` to `results`.
+    pub fn all(&self, scenes: &[SceneFiles], results: &mut Results) {
+        for (number, files) in (1..).zip(scenes) {
+            self.progress.piece(&files.name, number, scenes.len());
+            if let Err(error) = self.scene(files, results) {
+                results.failures.push(Failure { what: Some(files.name.clone()), error });
+            }
+        }
+    }
+
+    /// Fails where the scene cannot be read; a method that fails is noted and does not lose the others.
+    fn scene(&self, files: &SceneFiles, results: &mut Results) -> Result<()> {
+        let paths = files.files(self.config.reference)?;
+        let fingerprint = match &self.fingerprint {
+            Some(program) => Some(paths.into_iter().try_fold(program.clone(), Fingerprint::with_file)?),
+            None => None,
+        };
+        // Read when it is first needed, which may be never.
+        let mut scene = None;
+        for &method in &self.methods {
+            let made = match self.place(files, fingerprint.clone(), method) {
+                Ok(place) => match place.as_ref().and_then(|place| self.kept(place)) {
+                    Some(record) => {
+                        results.kept += 1;
+                        Ok(record)
+                    }
+                    None => {
+                        let scene = match &mut scene {
+                            Some(scene) => scene,
+                            unread => unread.insert(self.read(files)?),
+                        };
+                        self.make(&files.name, scene, method, place.as_ref())
+                    }
+                },
+                Err(error) => Err(error),
+            };
+            match made {
+                Ok(record) => results.records.push(record),
+                Err(error) => {
+                    let what = match method {
+                        Method::Ours(_) => files.name.clone(),
+                        Method::Given(given) => format!("{}, {}", files.name, given.name),
+                    };
+                    results.failures.push(Failure { what: Some(what), error });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a result is kept, if it is; `fingerprint` is that of the program and the scene.
+    fn place(&self, files: &SceneFiles, fingerprint: Option<Fingerprint>, method: Method) -> Result<Option<Place>> {
+        let (Some(root), Some(fingerprint)) = (&self.options.output, fingerprint) else { return Ok(None) };
+        let folder = root.join(&files.name);
+        Ok(Some(match method {
+            Method::Ours(backend) => {
+                let device = report::device(backend).to_string();
+                Place { folder, fingerprint: fingerprint.with(&format!("{:?}", self.config)).with(&device) }
+            }
+            Method::Given(given) => {
+                let fingerprint = fingerprint.with_file(&given.path(&files.name))?;
+                Place { folder: folder.join(&given.name), fingerprint }
+            }
+        }))
+    }
+
+    fn kept(&self, place: &Place) -> Option<Record> {
+        if self.options.fresh { None } else { kept::find(&place.folder, &place.fingerprint) }
+    }
+
+    fn read(&self, files: &SceneFiles) -> Result<Scene> {
+        self.progress.begin("reading");
+        files.read(self.config.reference)
+    }
+
+    fn make(&self, name: &str, scene: &Scene, method: Method, place: Option<&Place>) -> Result<Record> {
+        let (map, record) = match method {
+            Method::Ours(backend) => self.ours(backend, name, scene)?,
+            Method::Given(given) => self.given(given, name, scene)?,
+        };
+        if let Some(Place { folder, fingerprint }) = place {
+            self.progress.begin("writing");
+            let mut output = Output::open(folder)?;
+            add_files(&mut output, scene, &map)?;
+            kept::add(&mut output, &record, fingerprint)?;
+            output.finish()?;
+        }
+        Ok(record)
+    }
+
+    fn ours(&self, backend: &Backend, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
+        let views = (&scene.left, &scene.right);
+        let start = Instant::now();
+        let outcome = pipeline::run(backend, views, self.config, |step| self.progress.step(step))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let map = in_pixels(&outcome.dense.disparity);
+        let record = Record {
+            scene: name.into(),
+            method: OURS.into(),
+            scores: scene.score(&map)?,
+            range: report::searched(outcome.range, &outcome.range_source),
+            seconds: Some(seconds),
+            warnings: job::warnings(views, self.config, &outcome),
+        };
+        Ok((map, record))
+    }
+
+    fn given(&self, given: &Given, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
+        let map = disparities::read(&given.path(name))?;
+        let record = Record {
+            scene: name.into(),
+            method: given.name.clone(),
+            scores: scene.score(&map)?,
+            range: Value::Null,
+            seconds: None,
+            warnings: Vec::new(),
+        };
+        Ok((map, record))
+    }
+}
+
+/// The map, its errors, and a figure: picture, truth, map and errors.
+fn add_files(output: &mut Output, scene: &Scene, map: &Plane<f32>) -> Result<()> {
+    let errors = color::error_colors(map, &scene.truth, scene.non_occluded.as_ref());
+    let in_fixed_point = map.map(|&pixels| fixed_point(pixels));
+    let [view, found, truth] = products::beside_truth(scene.reference_view(), &in_fixed_point, &scene.truth);
+    let figure = figure::side_by_side(&[&view, &truth, &found, &errors]);
+    output.add("disparity.pfm", |out| pfm::write(out, map))?;
+    output.add("error.png", |out| png::write_rgb8(out, &errors))?;
+    output.add("figure.png", |out| png::write_rgb8(out, &figure))
+}

@@ -1,0 +1,350 @@
+//! `hsad eval dense`.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use assert_cmd::Command;
+use hsad::{
+    disparity::{DisparityMap, NONE},
+    image::Plane,
+    io::{disparity_png, load, pfm},
+};
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+use serde_json::Value;
+
+use crate::common::{fails, folder, grey_png, hsad, names, noise, scene as shipped};
+
+const SIZE: (u32, u32) = (64, 48);
+
+/// How far the right view of a scene is shifted, in pixels.
+const SHIFT: u32 = 4;
+
+/// `hsad eval dense` on the CPU, in few disparities.
+fn eval(scenes: &[&Path]) -> Command {
+    let mut command = hsad();
+    command.args(["eval", "dense"]).args(scenes);
+    command.args(["--device", "cpu", "--preset", "fast", "--disparities", "8"]);
+    command
+}
+
+/// Views of noise, [`SHIFT`] apart.
+fn views(left: &Path, right: &Path, seed: u32) {
+    let picture = noise(SIZE.0 + SHIFT, SIZE.1, seed);
+    let part = |start: u32| Plane::from_fn(SIZE.0, SIZE.1, |x, y| picture.get(x + start, y));
+    for path in [left, right] {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+    }
+    grey_png(left, &part(0));
+    grey_png(right, &part(SHIFT));
+}
+
+/// The true map: [`SHIFT`] everywhere.
+fn truth() -> DisparityMap {
+    Plane::filled(SIZE.0, SIZE.1, 256 * SHIFT as i32)
+}
+
+fn write_pfm(path: &Path, map: &DisparityMap) {
+    let mut bytes = Vec::new();
+    pfm::write_disparities(&mut bytes, map).unwrap();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, bytes).unwrap();
+}
+
+fn write_png(path: &Path, map: &DisparityMap) {
+    let mut bytes = Vec::new();
+    disparity_png::write(&mut bytes, map).unwrap();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, bytes).unwrap();
+}
+
+/// A scene as those in data/. The right view shows nothing of the first columns.
+fn scene(parent: &Path, name: &str) -> PathBuf {
+    let path = parent.join(name);
+    views(&path.join("left.png"), &path.join("right.png"), name.len() as u32);
+    write_pfm(&path.join("disp_left.pfm"), &truth());
+    grey_png(&path.join("nonocc.png"), &Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < SHIFT { 0 } else { 255 }));
+    path
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// The rows of a CSV by the names of their columns.
+fn column(csv: &Path, name: &str) -> Vec<String> {
+    let text = fs::read_to_string(csv).unwrap();
+    let mut lines = text.lines();
+    let index = lines.next().unwrap().split(',').position(|heading| heading == name).unwrap();
+    lines.map(|line| line.split(',').nth(index).unwrap().to_owned()).collect()
+}
+
+#[test]
+fn scores_a_folder_of_scenes_in_every_form() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    for name in ["b", "aa"] {
+        scene(&path("scenes"), name);
+    }
+    let (out, csv, report) = (path("out"), path("all.csv"), path("all.json"));
+    let mut command = eval(&[&path("scenes")]);
+    command.arg("-o").arg(&out).arg("--csv").arg(&csv).arg("--json").arg(&report);
+    let told = contains("Non-occluded pixels").and(contains("All pixels")).and(contains("\n  mean of 2 "));
+    command.assert().success().stdout(told.and(contains("bad-0.5")).and(contains("density")));
+
+    assert_eq!(column(&csv, "scene"), ["aa", "aa", "b", "b"]);
+    assert_eq!(column(&csv, "region"), ["non-occluded", "all", "non-occluded", "all"]);
+    assert_eq!(column(&csv, "pixels"), ["2880", "3072", "2880", "3072"]);
+    for (wrong, density) in column(&csv, "bad_1_est").iter().zip(column(&csv, "density")) {
+        assert!(wrong.parse::<f64>().unwrap() < 0.01 && density.parse::<f64>().unwrap() > 0.5, "{wrong}, {density}");
+    }
+
+    let report = json(&report);
+    assert_eq!((&report["device"]["name"], report["failed"].as_array().unwrap().len()), (&"CPU twins".into(), 0));
+    assert_eq!(report["parameters"]["window"], 11);
+    assert_eq!((&report["results"][1]["scene"], &report["results"][1]["range"]["count"]), (&"b".into(), &8.into()));
+    let [first, second] = [0, 1].map(|i| report["results"][i]["all"]["density"].as_f64().unwrap());
+    assert_eq!(report["means"][1]["region"], "all");
+    assert_eq!(report["means"][1]["density"].as_f64().unwrap(), (first + second) / 2.0);
+
+    assert_eq!(names(&out), ["aa", "b"]);
+    assert_eq!(names(&out.join("b")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
+    let map = pfm::read_disparities(&out.join("b/disparity.pfm")).unwrap();
+    let found = map.data().iter().filter(|&&d| d != NONE).count();
+    assert_eq!(report["results"][1]["all"]["estimated"], found);
+    assert_eq!(load::load(&out.join("b/figure.png")).unwrap().size(), (4 * SIZE.0 + 3 * 8, SIZE.1));
+    // Nothing found and hidden from the right view: a third of white.
+    let errors = load::load(&out.join("b/error.png")).unwrap();
+    assert_eq!((map.get(0, 0), errors.rgb(0, 0)), (NONE, [85; 3]));
+    assert_eq!(errors.rgb(SIZE.0 / 2, SIZE.1 / 2), [44, 123, 182]);
+}
+
+#[test]
+fn knows_the_layouts_of_middlebury_and_kitti() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    views(&path("Piano/im0.png"), &path("Piano/im1.png"), 1);
+    write_pfm(&path("Piano/disp0GT.pfm"), &truth());
+    grey_png(&path("Piano/mask0nocc.png"), &Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < 8 { 128 } else { 255 }));
+    for frame in ["000000_10", "000001_10", "000002_10"] {
+        let file = |folder: &str| path("training").join(folder).join(frame).with_extension("png");
+        views(&file("image_2"), &file("image_3"), 2);
+        let known = |from: u32| Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < from { NONE } else { 1024 });
+        write_png(&file("disp_occ_0"), &known(1));
+        write_png(&file("disp_noc_0"), &known(16));
+    }
+    let csv = path("all.csv");
+    let frame = path("training/image_2/000002_10.png");
+    eval(&[&path("Piano"), &frame]).arg("--csv").arg(&csv).assert().success();
+    assert_eq!(column(&csv, "scene"), ["Piano", "Piano", "000002_10", "000002_10"]);
+    let pixels = [56, 64, 48, 63].map(|columns| (columns * SIZE.1).to_string());
+    assert_eq!(column(&csv, "pixels"), pixels);
+    assert!(column(&csv, "d1_est").iter().all(|share| share.parse::<f64>().unwrap() < 0.01));
+    eval(&[&path("training")]).arg("--csv").arg(&csv).assert().success();
+    assert_eq!(column(&csv, "scene").len(), 6);
+
+    // KITTI has no truth for the right view.
+    let mut command = eval(&[&frame]);
+    command.args(["--reference", "right"]);
+    fails(command, 1, "no truth for the right view");
+}
+
+#[test]
+fn the_right_view_has_its_own_truth() {
+    let temporary = folder();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/planes");
+    let report = temporary.path().join("report.json");
+    let mut command = hsad();
+    command.args(["eval", "dense"]).arg(data).args(["--preset", "paper", "--device", "cpu", "--json"]).arg(&report);
+    command.assert().success();
+    let all = &json(&report)["results"][0]["all"];
+    assert!(all["bad"][1]["of_estimated"].as_f64().unwrap() < 0.4, "{all}");
+}
+
+#[test]
+fn maps_of_other_programs_are_scored_beside_ours() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let scenes = ["a", "bb"].map(|name| scene(&path("scenes"), name));
+    for name in ["a", "bb"] {
+        write_pfm(&path("maps").join(name).join("perfect.pfm"), &truth());
+        // Off by 5 px on the left half, and empty in one row.
+        let off = |x: u32, y: u32| if y == 0 { NONE } else { 1024 + if x < SIZE.0 / 2 { 1280 } else { 0 } };
+        write_png(&path("maps").join(name).join("off.png"), &Plane::from_fn(SIZE.0, SIZE.1, off));
+        write_pfm(&path("maps").join(name).join("empty.pfm"), &Plane::filled(SIZE.0, SIZE.1, NONE));
+    }
+    let option = |name: &str, file: &str| format!("--disparity={name}={}/{{scene}}/{file}", path("maps").display());
+    let others = [option("perfect", "perfect.pfm"), option("off", "off.png"), option("empty", "empty.pfm")];
+    let (csv, out) = (path("all.csv"), path("out"));
+    let mut command = eval(&[&scenes[0], &scenes[1]]);
+    command.args(&others).arg("--csv").arg(&csv).arg("-o").arg(&out);
+    let told = contains("Estimated of all").and(contains("  mean of 2             perfect"));
+    command.assert().success().stdout(told);
+    let methods: Vec<_> = column(&csv, "method").into_iter().skip(1).step_by(2).collect();
+    assert_eq!(methods, ["hsad", "perfect", "off", "empty", "hsad", "perfect", "off", "empty"]);
+    let all = |name: &str| column(&csv, name).into_iter().skip(1).step_by(2).skip(1).take(3).collect::<Vec<_>>();
+    let rows = f64::from(SIZE.1);
+    assert_eq!(all("bad_4"), ["0".into(), (0.5 + 0.5 / rows).to_string(), "1".to_owned()]);
+    assert_eq!(all("bad_4_est"), ["0", "0.5", ""]);
+    assert_eq!(all("d1_est"), ["0", "0.5", ""]);
+    assert_eq!(all("average_px"), ["0", "2.5", ""]);
+    assert_eq!(all("a99_px"), ["0", "5", ""]);
+    assert_eq!(names(&out.join("a/off")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
+
+    // Alone, nothing is matched.
+    let report = path("all.json");
+    let mut command = eval(&[&scenes[0]]);
+    command.arg(&others[0]).args(["--given-only", "--json"]).arg(&report).assert().success();
+    let report = json(&report);
+    assert_eq!((report["results"].as_array().unwrap().len(), &report["device"]), (1, &Value::Null));
+}
+
+#[test]
+fn what_fails_is_told_and_loses_nothing_else() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let [good, cut, small, nothing] = ["good", "cut", "small", "nothing"].map(|name| scene(&path(""), name));
+    fs::write(cut.join("right.png"), b"no picture").unwrap();
+    write_pfm(&small.join("disp_left.pfm"), &Plane::filled(3, 2, 0));
+    for file in names(&nothing) {
+        fs::remove_file(nothing.join(file)).unwrap();
+    }
+    let maps = format!("--disparity=theirs={}/{{scene}}/theirs.pfm", path("").display());
+    let (csv, report) = (path("all.csv"), path("all.json"));
+    let mut command = eval(&[&cut, &nothing, &good, &small, &path("missing")]);
+    let output = command.arg(maps).arg("--csv").arg(&csv).arg("--json").arg(&report).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8(output.stderr).unwrap();
+    let errors: Vec<_> = told.lines().filter(|line| line.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 5, "{told}");
+    let expected =
+        ["cut/right.png", "disp_left.pfm: its size is 3x2", "theirs.pfm", "a folder without a scene", "missing"];
+    for text in expected {
+        assert_eq!(errors.iter().filter(|line| line.contains(text)).count(), 1, "{text}: {told}");
+    }
+    assert!(String::from_utf8(output.stdout).unwrap().contains("\n  good "));
+    assert_eq!(column(&csv, "scene"), ["good", "good"]);
+    assert_eq!(json(&report)["failed"].as_array().unwrap().len(), 5);
+}
+
+#[test]
+fn bad_input_is_one_line_and_a_code() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let good = scene(&path(""), "good");
+    fs::create_dir(path("empty")).unwrap();
+    fs::write(path("nan.pfm"), [&b"Pf\n1 1\n-1\n"[..], &f32::NAN.to_le_bytes()].concat()).unwrap();
+    write_pfm(&path("small.pfm"), &Plane::filled(3, 2, 0));
+    fs::write(path("text.pfm"), "this is text").unwrap();
+
+    let bad = |scenes: &[&Path], args: &[&str], code: i32, expected: &str| {
+        let mut command = eval(scenes);
+        command.args(args).arg("--given-only").current_dir(temporary.path());
+        fails(command, code, expected);
+    };
+    bad(&[&path("empty")], &["--disparity", "x=nan.pfm"], 1, "empty: a folder without a scene");
+    bad(&[&path("nan.pfm")], &["--disparity", "x=nan.pfm"], 1, "a file: a scene is a folder with left.png");
+    bad(&[&good], &["--disparity", "x=nan.pfm"], 1, "good, x: nan.pfm: the value at column 0, row 0 is NaN");
+    bad(&[&good], &["--disparity", "x=small.pfm"], 1, "64x48");
+    bad(&[&good], &["--disparity", "x=text.pfm"], 1, "text.pfm: neither a PNG nor a PFM");
+    bad(&[&good], &["--disparity", "x={scene}.pfm"], 1, "good.pfm");
+    bad(&[&good], &["--disparity", "x=a", "--disparity", "x=b"], 2, "another 'x'");
+    bad(&[&good, &scene(&path("other"), "next")], &["--disparity", "x=a"], 2, "by {scene}, as in x=maps/{scene}.pfm");
+    bad(&[&good, &scene(&path("other"), "good")], &["--disparity", "x=a"], 2, "the name of two scenes, 'good'");
+    bad(&[&good], &["--disparity", "x=a", "--csv", "no/such/folder.csv"], 1, "there is no folder 'no/such'");
+    bad(&[&good], &["--disparity", "x=a", "-o", "nan.pfm"], 1, "the results need a folder");
+    bad(&[&good], &["--disparity", "x=a", "--window", "8"], 2, "window is 8");
+    assert_eq!(names(temporary.path()), ["empty", "good", "nan.pfm", "other", "small.pfm", "text.pfm"]);
+
+    for args in [
+        &[][..],
+        &["a", "--given-only"],
+        &["a", "--fresh"],
+        &["a", "--disparity", "b"],
+        &["a", "--disparity", "hsad=b"],
+    ] {
+        hsad().args(["eval", "dense"]).args(args).assert().code(2).stderr(contains("error: ").or(contains("Usage:")));
+    }
+}
+
+#[test]
+fn finished_scenes_are_kept_until_something_changes() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let scenes = [scene(&path(""), "a"), scene(&path(""), "bb")];
+    write_pfm(&path("maps/a.pfm"), &truth());
+    write_pfm(&path("maps/bb.pfm"), &truth());
+    let (csv, out) = (path("all.csv"), path("out"));
+    let given = format!("--disparity=theirs={}/{{scene}}.pfm", path("maps").display());
+    let run = |args: &[&str]| {
+        let mut command = eval(&[&scenes[0], &scenes[1]]);
+        command.arg(&given).args(args).arg("-o").arg(&out).arg("--csv").arg(&csv);
+        let output = command.output().unwrap();
+        assert!(output.status.success());
+        let told = String::from_utf8(output.stdout).unwrap();
+        let kept = told.lines().last().unwrap().split_once("; ").map(|(_, kept)| kept[..6].to_owned());
+        (kept, fs::read_to_string(&csv).unwrap())
+    };
+    let (kept, first) = run(&[]);
+    assert_eq!(kept, None);
+    assert_eq!(run(&[]), (Some("4 of 4".into()), first.clone()));
+    assert_eq!(run(&["--fresh"]).0, None);
+    // An option that matters for what is matched only.
+    assert_eq!(run(&["--uniqueness", "20"]).0, Some("2 of 4".into()));
+    assert_eq!(run(&["--uniqueness", "20"]).0, Some("4 of 4".into()));
+    assert_eq!(run(&[]).0, Some("2 of 4".into()));
+    // A picture, and with it all methods of its scene.
+    views(&scenes[0].join("left.png"), &path("unused.png"), 77);
+    assert_eq!(run(&[]).0, Some("2 of 4".into()));
+    write_pfm(&path("maps/bb.pfm"), &Plane::filled(SIZE.0, SIZE.1, 0));
+    assert_eq!(run(&[]).0, Some("3 of 4".into()));
+    // What is kept is no longer whole, or was changed by hand.
+    fs::remove_file(out.join("a/error.png")).unwrap();
+    fs::write(out.join("bb/result.json"), "{}").unwrap();
+    assert_eq!(run(&[]).0, Some("2 of 4".into()));
+    assert!(out.join("a/error.png").is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interruption_keeps_what_is_finished() {
+    use std::{process, thread, time::Duration};
+
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let small = scene(&path(""), "small");
+    // The twins take a minute for this one.
+    let large = path("vast");
+    fs::create_dir(&large).unwrap();
+    for name in ["left.png", "right.png"] {
+        grey_png(&large.join(name), &noise(1500, 1300, 3));
+    }
+    write_pfm(&large.join("disp_left.pfm"), &Plane::filled(1500, 1300, 0));
+    let out = path("out");
+    let mut run = process::Command::new(assert_cmd::cargo::cargo_bin!("hsad"))
+        .args(["eval", "dense", "-q", "--device", "cpu", "--disparities", "1000", "--force", "-o"])
+        .args([&out, &small, &large])
+        .spawn()
+        .unwrap();
+    while !out.join("small/result.json").exists() {
+        assert!(run.try_wait().unwrap().is_none(), "ended before it was interrupted");
+        thread::sleep(Duration::from_millis(5));
+    }
+    thread::sleep(Duration::from_millis(200));
+    // What runs in the background of a shell ignores SIGINT, but not this.
+    assert!(process::Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert_eq!(names(&out), ["small"]);
+    assert_eq!(names(&out.join("small")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
+}
+
+#[test]
+fn quiet_prints_nothing() {
+    let temporary = folder();
+    let report = temporary.path().join("report.json");
+    let mut command = eval(&[shipped("planes", "").as_path()]);
+    command.args(["-q", "--json"]).arg(&report).assert().success().stdout("").stderr("");
+    // The range that was named misses the scene, which is told in the file all the same.
+    assert!(!json(&report)["results"][0]["warnings"].as_array().unwrap().is_empty());
+}
