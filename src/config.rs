@@ -98,7 +98,7 @@ pub enum Preset {
     /// Semi-global matching along three paths, checked and filled.
     #[default]
     Balanced,
-    /// Semi-global matching of both views along four paths, checked against each other, filled and refined.
+    /// Semi-global matching along four paths, checked, filled and refined further.
     Quality,
     /// The paper to the letter: the right view is the reference and is searched for in the left to
     /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
@@ -150,11 +150,7 @@ impl Preset {
         match self {
             Self::Balanced => balanced,
             Self::Quality => Config {
-                aggregation: Aggregation::Paths(SemiGlobal {
-                    paths: Paths::Four,
-                    other_view: OtherView::Searched,
-                    ..SEMI_GLOBAL
-                }),
+                aggregation: Aggregation::Paths(SemiGlobal { paths: Paths::Four, ..SEMI_GLOBAL }),
                 refinement: Some(Refinement {
                     support: 10,
                     medians_before: 1,

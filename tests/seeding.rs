@@ -66,8 +66,6 @@ fn rendered_pair_is_described_completely() {
     let right =
         |seed: &&hsad::matching::Seed| (seed.disparity - 8.0).abs() < 0.5 || (seed.disparity - 30.0).abs() < 0.5;
     assert!(found.seeds.iter().filter(right).count() * 10 >= found.seeds.len() * 9);
-    let tiles = found.tiles.as_ref().unwrap();
-    assert!((0..240).all(|y| (0..320).all(|x| tiles.at(x, y).contains(8))));
 
     assert_eq!(find(&views), found, "the same pictures give the same figures");
 }
@@ -90,7 +88,7 @@ fn shifted_rows_are_told_and_not_trusted() {
 fn pictures_that_show_nothing_give_reasons_not_ranges() {
     let found = find(&(Luma::filled(100, 80, 128), Luma::filled(100, 80, 128)));
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
-    assert_eq!((found.brightness, found.tiles, found.trust), (None, None, 0.0));
+    assert_eq!((found.brightness, found.trust), (None, 0.0));
     let error = Error::from(found.range.unwrap_err());
     assert!(matches!(error, Error::NoRange { .. }) && error.to_string().contains("0 points"), "{error}");
 }
@@ -104,14 +102,12 @@ fn unrelated_pictures_are_not_trusted() {
 }
 
 #[test]
-fn sizes_and_settings_are_checked() {
+fn sizes_are_checked() {
     let (small, large) = (Luma::filled(4, 4, 0), Luma::filled(5, 4, 0));
     let none: (&[Feature], &[Feature]) = (&[], &[]);
     let config = SeedingConfig::default();
     assert!(matches!(Seeding::find((&small, &large), none, &config), Err(Error::SizesDiffer { .. })));
-    let tileless = SeedingConfig { tile: 0, ..config };
-    assert!(Seeding::find((&small, &small), none, &tileless).unwrap_err().to_string().contains("tile"));
-    let found = Seeding::find((&small, &small), none, &SeedingConfig::default()).unwrap();
+    let found = Seeding::find((&small, &small), none, &config).unwrap();
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
 }
 

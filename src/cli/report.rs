@@ -109,7 +109,6 @@ pub fn parameters(config: &Config) -> Value {
             "mutual": matching.mutual,
             "same_contrast": matching.same_contrast,
             "max_dy_px": number(seeding.max_dy),
-            "tile_px": seeding.tile,
         },
         "strongest": strongest,
     })

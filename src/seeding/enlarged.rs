@@ -1,6 +1,6 @@
 //! What was found in reduced views, in the pixels of the whole ones.
 
-use super::{Rectification, Seeding, TileRanges};
+use super::{Rectification, Seeding};
 use crate::{disparity::DisparityRange, features::Feature, matching::Seed};
 
 /// The place, in the whole picture, of a place in one that is smaller by `factor`: the centre of a block.
@@ -40,7 +40,6 @@ impl Seeding {
         };
         Self {
             range: self.range.map(|range| enlarged_range(range, factor)),
-            tiles: self.tiles.map(|tiles| TileRanges::enlarged(tiles, factor)),
             rectification: Rectification {
                 offset: scale * rectification.offset,
                 residual: scale * rectification.residual,

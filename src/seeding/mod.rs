@@ -1,5 +1,5 @@
-//! What the matches of two views tell about the pair as a whole: the disparity range, also by tile, whether rows
-//! correspond, how the brightness differs, and how far a result can be trusted.
+//! What the matches of two views tell about the pair as a whole: the disparity range, whether rows correspond,
+//! how the brightness differs, and how far a result can be trusted.
 //!
 //! None of this makes a pixel's disparity: where seeds are thin, the whole range is searched.
 
@@ -8,13 +8,11 @@ mod enlarged;
 mod range;
 mod rectification;
 mod support;
-mod tiles;
 
 pub use brightness::Brightness;
 pub use enlarged::enlarged_feature;
 pub use range::ThinSupport;
 pub use rectification::{Rectification, Verdict};
-pub use tiles::TileRanges;
 
 use crate::{
     disparity::DisparityRange,
@@ -34,13 +32,11 @@ pub struct SeedingConfig {
     pub matching: MatchConfig,
     /// The largest difference of rows of two features in a pair that is rectified, in pixels.
     pub max_dy: f32,
-    /// Pixels on the side of a tile with its own range.
-    pub tile: u32,
 }
 
 impl Default for SeedingConfig {
     fn default() -> Self {
-        Self { matching: MatchConfig::default(), max_dy: 1.5, tile: 64 }
+        Self { matching: MatchConfig::default(), max_dy: 1.5 }
     }
 }
 
@@ -49,8 +45,6 @@ impl Default for SeedingConfig {
 pub struct Seeding {
     /// The disparities to be searched, or why they are not known.
     pub range: std::result::Result<DisparityRange, ThinSupport>,
-    /// Ranges by tile, where the range is known.
-    pub tiles: Option<TileRanges>,
     /// Whether rows correspond.
     pub rectification: Rectification,
     /// How the grey values of the views differ, where enough seeds tell.
@@ -72,9 +66,6 @@ impl Seeding {
         if views.0.size() != views.1.size() {
             return Err(Error::SizesDiffer { left: views.0.size(), right: views.1.size() });
         }
-        if config.tile == 0 {
-            return Err(Error::Parameter { name: "tile", value: "0".into(), expected: "it must be at least 1".into() });
-        }
         let (left, right) = features;
         let size = views.0.size();
 
@@ -93,7 +84,6 @@ impl Seeding {
         let seeds = support::supported(&seeds);
         let range = range::disparity_range(&seeds, count);
         Ok(Self {
-            tiles: range.ok().map(|whole| TileRanges::new(&seeds, size, whole, config.tile)),
             brightness: Brightness::new(views.0, views.1, &seeds),
             trust: range.map_or(0.0, |range| trust(&raw, range, config.max_dy)),
             range,
