@@ -67,6 +67,8 @@ pub struct Outcome {
     pub range: DisparityRange,
     /// Who named them.
     pub range_source: RangeSource,
+    /// How the right view's brightness was changed before it was matched.
+    pub brightness: Brightness,
     /// The map of the reference view.
     pub dense: Dense,
     /// What each step took, building its kernels and waiting for it included.
@@ -136,7 +138,7 @@ pub fn run(
     enter(Some(Step::Dense));
     let dense = pair.dense(&config.dense(range, brightness))?;
     enter(None);
-    Ok(Outcome { features, seeding, range, range_source, dense, times })
+    Ok(Outcome { features, seeding, range, range_source, brightness, dense, times })
 }
 
 /// The change that makes the right view as bright as the left one; none where what was found is not likely.

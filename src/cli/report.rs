@@ -34,6 +34,10 @@ impl Done {
             "range": searched(outcome.range, &outcome.range_source),
             "rectification": rectification(&outcome.seeding.rectification),
             "brightness": outcome.seeding.brightness.as_ref().map(brightness),
+            "equalised": {
+                "gain": f64::from(outcome.brightness.gain) / 256.0,
+                "offset": f64::from(outcome.brightness.offset) / 256.0,
+            },
             "trust": number(outcome.seeding.trust),
             "coverage": coverage(&outcome.dense.disparity),
             "measured": outcome.dense.measured(),

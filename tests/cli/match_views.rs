@@ -49,6 +49,7 @@ fn writes_maps_that_agree_and_a_report() {
     assert!(report["features"]["left"].as_u64().unwrap() > 100 && report["seeds"].as_u64().unwrap() > 100);
     assert!((report["coverage"].as_f64().unwrap() - coverage(&map)).abs() < 1e-9);
     assert!(report["trust"].as_f64().unwrap() > 0.5);
+    assert!(report["equalised"]["gain"].as_f64().is_some_and(|gain| (gain - 1.0).abs() < 0.1));
     assert!(report["brightness"]["gain"].as_f64().is_some_and(|gain| (gain - 1.0).abs() < 0.1));
     assert!(["luma", "features", "seeding", "dense", "total"].iter().all(|step| report["seconds"][step].is_f64()));
     assert_eq!(report["files"].as_array().unwrap().len(), files.len());
