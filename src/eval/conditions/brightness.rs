@@ -1,0 +1,53 @@
+//! Changes of brightness, a pixel at a time: nothing moves.
+
+use crate::io::Picture;
+
+/// The picture with `f` of each colour value at column `x`, rounded (halves up) and cut to 0 to 255.
+fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
+    Picture::from_fn(picture.width(), picture.height(), |x, y| {
+        let [red, green, blue, alpha] = picture.get(x, y);
+        let [red, green, blue] = [red, green, blue].map(|value| grey(f(x, value)));
+        [red, green, blue, alpha]
+    })
+}
+
+/// The nearest grey value.
+pub(super) fn grey(value: f64) -> u8 {
+    (value + 0.5).floor().clamp(0.0, 255.0) as u8
+}
+
+/// Every value times `factor`.
+pub(super) fn gain(picture: &Picture, factor: f64) -> Picture {
+    each(picture, |_, value| factor * f64::from(value))
+}
+
+/// `255 (v / 255)^exponent`.
+pub(super) fn gamma(picture: &Picture, exponent: f64) -> Picture {
+    let curve: Vec<f64> = (0..=255).map(|value| 255.0 * libm::pow(f64::from(value) / 255.0, exponent)).collect();
+    each(picture, |_, value| curve[usize::from(value)])
+}
+
+/// Times `1 - strength` in the first column to `1 + strength` in the last one, evenly.
+pub(super) fn ramp(picture: &Picture, strength: f64) -> Picture {
+    let last = f64::from(picture.width() - 1).max(1.0);
+    each(picture, |x, value| (1.0 + strength * (2.0 * f64::from(x) / last - 1.0)) * f64::from(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Picture {
+        Picture::new(3, 1, vec![[0, 100, 255, 7], [51, 200, 3, 0], [10, 20, 30, 255]]).unwrap()
+    }
+
+    #[test]
+    fn by_hand() {
+        assert_eq!(gain(&picture(), 1.5).data(), [[0, 150, 255, 7], [77, 255, 5, 0], [15, 30, 45, 255]]);
+        // (51 / 255)^2 = 0.04: 10.2; (100 / 255)^2 = 0.1538: 39.2.
+        let darker = gamma(&picture(), 2.0);
+        assert_eq!((darker.get(0, 0), darker.get(1, 0)[0]), ([0, 39, 255, 7], 10));
+        // Factors 0.5, 1 and 1.5.
+        assert_eq!(ramp(&picture(), 0.5).data(), [[0, 50, 128, 7], [51, 200, 3, 0], [15, 30, 45, 255]]);
+    }
+}
