@@ -57,6 +57,7 @@ pub mod disparity;
 pub mod error;
 pub mod eval;
 pub mod features;
+pub mod filter;
 pub mod gpu;
 pub mod image;
 pub mod io;
@@ -66,6 +67,7 @@ pub mod pair;
 pub mod pipeline;
 pub mod reference;
 pub mod seeding;
+pub mod sparse;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -2,6 +2,7 @@
 
 mod demo;
 mod devices;
+mod eval;
 mod features;
 mod job;
 mod match_views;
@@ -38,6 +39,7 @@ enum Command {
     Features(features::Features),
     Devices(devices::Devices),
     Demo(demo::Demo),
+    Eval(eval::Eval),
 }
 
 impl Cli {
@@ -49,6 +51,7 @@ impl Cli {
             Command::Features(command) => command.run(),
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
+            Command::Eval(command) => command.run(),
         }
     }
 }

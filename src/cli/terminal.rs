@@ -1,6 +1,7 @@
 //! What people see: results on stdout; errors, warnings and progress on stderr.
 
 use std::{
+    borrow::Cow,
     fmt::Display,
     io::{self, Write},
     time::Duration,
@@ -58,7 +59,7 @@ impl Progress {
     }
 
     /// Says what begins now.
-    pub fn begin(&self, what: &'static str) {
+    pub fn begin(&self, what: impl Into<Cow<'static, str>>) {
         self.0.set_message(what);
     }
 

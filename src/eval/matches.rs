@@ -7,7 +7,10 @@ use super::{
     repeatability::{Point, Repeatability, corresponding},
     truth::Truth,
 };
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    sparse::SparseMatch,
+};
 
 /// A point of the first view and where the second is said to show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,13 @@ pub struct PointMatch {
     pub confidence: f64,
     /// The indices of the interest points that it comes from, where they are known.
     pub points: Option<[usize; 2]>,
+}
+
+impl From<&SparseMatch> for PointMatch {
+    fn from(found: &SparseMatch) -> Self {
+        let SparseMatch { first, second, confidence, points } = *found;
+        Self { first, second, confidence: confidence.into(), points: Some(points) }
+    }
 }
 
 /// Matches held against the truth.

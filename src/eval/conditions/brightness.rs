@@ -1,6 +1,7 @@
 //! Changes of brightness, a pixel at a time: nothing moves.
 
-use crate::io::Picture;
+use super::random::Random;
+use crate::{filter::grey, io::Picture};
 
 /// The picture with `f` of each colour value at column `x`, rounded (halves up) and cut to 0 to 255.
 fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
@@ -9,11 +10,6 @@ fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
         let [red, green, blue] = [red, green, blue].map(|value| grey(f(x, value)));
         [red, green, blue, alpha]
     })
-}
-
-/// The nearest grey value.
-pub(super) fn grey(value: f64) -> u8 {
-    (value + 0.5).floor().clamp(0.0, 255.0) as u8
 }
 
 /// Every value times `factor`.
@@ -33,6 +29,14 @@ pub(super) fn ramp(picture: &Picture, strength: f64) -> Picture {
     each(picture, |x, value| (1.0 + strength * (2.0 * f64::from(x) / last - 1.0)) * f64::from(value))
 }
 
+/// Plus normal noise of `deviation` grey levels in each colour of each pixel, independently.
+pub(super) fn noise(picture: &Picture, deviation: f64, mut random: Random) -> Picture {
+    picture.map(|&[red, green, blue, alpha]| {
+        let [red, green, blue] = [red, green, blue].map(|value| grey(f64::from(value) + deviation * random.normal()));
+        [red, green, blue, alpha]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +53,14 @@ mod tests {
         assert_eq!((darker.get(0, 0), darker.get(1, 0)[0]), ([0, 39, 255, 7], 10));
         // Factors 0.5, 1 and 1.5.
         assert_eq!(ramp(&picture(), 0.5).data(), [[0, 50, 128, 7], [51, 200, 3, 0], [15, 30, 45, 255]]);
+    }
+
+    #[test]
+    fn noise_has_the_deviation_asked_for() {
+        let flat = Picture::filled(100, 100, [128, 128, 128, 255]);
+        let noisy = noise(&flat, 10.0, Random::new(1, 1));
+        let squares: f64 = noisy.data().iter().map(|pixel| (f64::from(pixel[1]) - 128.0).powi(2)).sum();
+        assert!(((squares / 10_000.0).sqrt() - 10.0).abs() < 0.3);
+        assert!(noisy.data().iter().any(|pixel| pixel[0] != pixel[1]), "colours are independent");
     }
 }

@@ -1,13 +1,11 @@
 //! What can happen to a picture between two views, each with a strength and an exact truth about where things went.
 //!
 //! A changed picture is the same bytes for the same seed on every machine: all is integers, or `f64` arithmetic and the
-//! functions of `libm`, which are arithmetic themselves.
+//! functions of `libm`, which are arithmetic themselves (see [`crate::filter`]).
 
 mod brightness;
 mod cover;
 mod random;
-mod resample;
-mod sharpness;
 
 use std::{fmt, str::FromStr};
 
@@ -15,6 +13,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::{
     error::{Error, Result},
+    filter,
     image::Plane,
     io::Picture,
 };
@@ -136,7 +135,7 @@ impl Condition {
             |picture| Changed { picture, map: DAffine2::IDENTITY, visible: Plane::filled(width, height, VISIBLE) };
         let covered = |(picture, visible)| Changed { picture, map: DAffine2::IDENTITY, visible };
         let moved = |map| {
-            let (picture, visible) = resample::resample(picture, map, mean(picture));
+            let (picture, visible) = filter::resample(picture, map, picture.size(), mean(picture));
             Changed { picture, map, visible }
         };
         if strength == kind.neutral() {
@@ -146,10 +145,10 @@ impl Condition {
             Kind::Gain => in_place(brightness::gain(picture, strength)),
             Kind::Gamma => in_place(brightness::gamma(picture, strength)),
             Kind::Ramp => in_place(brightness::ramp(picture, strength)),
-            Kind::Noise => in_place(sharpness::noise(picture, strength, random())),
-            Kind::Blur => in_place(sharpness::blur(picture, strength)),
-            Kind::Rotation => moved(resample::about_centre(picture.size(), strength, 1.0)),
-            Kind::Scale => moved(resample::about_centre(picture.size(), 0.0, strength)),
+            Kind::Noise => in_place(brightness::noise(picture, strength, random())),
+            Kind::Blur => in_place(filter::gaussian(picture, strength)),
+            Kind::Rotation => moved(filter::about_centre(picture.size(), strength, 1.0)),
+            Kind::Scale => moved(filter::about_centre(picture.size(), 0.0, strength)),
             Kind::Clutter => covered(cover::clutter(picture, strength, random())),
             Kind::Occlusion => covered(cover::frame(picture, strength, mean(picture))),
         }

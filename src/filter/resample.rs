@@ -1,15 +1,15 @@
-//! Pictures turned and scaled about their centre, on a canvas of the same size.
+//! Pictures turned, scaled and moved.
 
 use glam::{DAffine2, DVec2};
 
-use super::brightness::grey;
-use crate::{image::Plane, io::Picture};
+use super::grey;
+use crate::image::Plane;
 
 /// The similarity about the centre of a picture of `size`: `angle` degrees clockwise on the screen, and `scale` times as
 /// large.
 ///
 /// Whole quarter turns are exact; all else differs from them by the rounding of `f64` alone.
-pub(super) fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAffine2 {
+pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAffine2 {
     let quarters = (angle / 90.0).round();
     let rest = (angle - 90.0 * quarters).to_radians();
     let (sin, cos) = (libm::sin(rest), libm::cos(rest));
@@ -24,52 +24,51 @@ pub(super) fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) 
     DAffine2::from_mat2_translation(linear, centre - linear * centre)
 }
 
-/// The picture that shows at `map(p)` what `picture` shows at `p`, `size` large, and what of it that is: 255 where it
-/// shows the picture, 0 beyond its edge, where it is `fill`.
+/// The picture of `size` that shows at `map(p)` what `plane` shows at `p`, and what of it that is: 255 where it shows the
+/// plane, 0 beyond its edge, where it is `fill`.
 ///
 /// Interpolated by Catmull-Rom splines (Keys 1981, a = -1/2); where `map` makes things smaller, the mean of as many
-/// samples a pixel as keep pace with it.
-pub(super) fn resample(picture: &Picture, map: DAffine2, fill: [u8; 4]) -> (Picture, Plane<u8>) {
-    let (width, height) = picture.size();
+/// samples a pixel as keep pace with it, up to 8x8.
+pub fn resample<const N: usize>(
+    plane: &Plane<[u8; N]>,
+    map: DAffine2,
+    size: (u32, u32),
+    fill: [u8; N],
+) -> (Plane<[u8; N]>, Plane<u8>) {
+    let (width, height) = plane.size();
     let back = map.inverse();
     let samples = ((1.0 / map.matrix2.determinant().abs().sqrt() - 1e-9).ceil() as u32).clamp(1, 8);
     let offsets: Vec<f64> = (0..samples).map(|i| (f64::from(i) + 0.5) / f64::from(samples) - 0.5).collect();
     let inside = |p: DVec2| p.x >= -0.5 && p.y >= -0.5 && p.x < f64::from(width) - 0.5 && p.y < f64::from(height) - 0.5;
-    let visible = Plane::from_fn(width, height, |x, y| {
+    let visible = Plane::from_fn(size.0, size.1, |x, y| {
         if inside(back.transform_point2(DVec2::new(x.into(), y.into()))) { 255 } else { 0 }
     });
-    let changed = Picture::from_fn(width, height, |x, y| {
+    let changed = Plane::from_fn(size.0, size.1, |x, y| {
         if visible.get(x, y) == 0 {
             return fill;
         }
-        let mut sum = [0.0; 3];
+        let mut sum = [0.0; N];
         for dy in &offsets {
             for dx in &offsets {
                 let at = back.transform_point2(DVec2::new(f64::from(x) + dx, f64::from(y) + dy));
-                let colour = interpolate(picture, at);
-                sum.iter_mut().zip(colour).for_each(|(sum, value)| *sum += value);
+                add_interpolated(plane, at, &mut sum);
             }
         }
-        let [red, green, blue] = sum.map(|sum| grey(sum / f64::from(samples * samples)));
-        [red, green, blue, 255]
+        sum.map(|sum| grey(sum / f64::from(samples * samples)))
     });
     (changed, visible)
 }
 
-/// The colour at a place between pixels.
-fn interpolate(picture: &Picture, at: DVec2) -> [f64; 3] {
+/// Adds the values at a place between pixels.
+fn add_interpolated<const N: usize>(plane: &Plane<[u8; N]>, at: DVec2, sum: &mut [f64; N]) {
     let (left, top) = (at.x.floor(), at.y.floor());
     let (across, down) = (weights(at.x - left), weights(at.y - top));
-    let mut sum = [0.0; 3];
     for (j, weight_y) in (-1..).zip(down) {
         for (i, weight_x) in (-1..).zip(across) {
-            let pixel = picture.get_clamped(left as i64 + i, top as i64 + j);
-            for (sum, value) in sum.iter_mut().zip(pixel) {
-                *sum += weight_x * weight_y * f64::from(value);
-            }
+            let pixel = plane.get_clamped(left as i64 + i, top as i64 + j);
+            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += weight_x * weight_y * f64::from(value));
         }
     }
-    sum
 }
 
 /// What the pixels at -1, 0, 1 and 2 contribute at `t`, 0 to 1.
@@ -95,12 +94,12 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_moves_whole_pixels() {
-        let picture = Picture::from_fn(5, 5, |x, y| [(10 * x + y) as u8, 0, 0, 255]);
+        let picture = Plane::from_fn(5, 5, |x, y| [(10 * x + y) as u8, 0, 0, 255]);
         let map = about_centre((5, 5), 90.0, 1.0);
-        let (turned, visible) = resample(&picture, map, [0; 4]);
+        let (turned, visible) = resample(&picture, map, (5, 5), [0; 4]);
         // Clockwise: the top left corner goes to the top right.
         assert_eq!(map.transform_point2(DVec2::ZERO), DVec2::new(4.0, 0.0));
-        assert_eq!(turned, Picture::from_fn(5, 5, |x, y| picture.get(y, 4 - x)));
+        assert_eq!(turned, Plane::from_fn(5, 5, |x, y| picture.get(y, 4 - x)));
         assert!(visible.data().iter().all(|&v| v == 255));
     }
 
@@ -116,9 +115,9 @@ mod tests {
 
     #[test]
     fn half_the_size_is_the_mean_of_blocks_of_a_ramp() {
-        let picture = Picture::from_fn(20, 20, |x, _| [10 * x as u8, 0, 0, 255]);
+        let picture = Plane::from_fn(20, 20, |x, _| [10 * x as u8, 0, 0, 255]);
         let map = about_centre((20, 20), 0.0, 0.5);
-        let (small, visible) = resample(&picture, map, [9; 4]);
+        let (small, visible) = resample(&picture, map, (20, 20), [9; 4]);
         // Column 7 shows columns 4 and 5 of before: 9.5 + 2 (7 - 9.5) = 4.5.
         assert_eq!(
             (small.get(7, 10)[0], small.get(4, 10), visible.get(4, 10), visible.get(5, 10)),
