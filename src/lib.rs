@@ -50,6 +50,9 @@
 //! [`io`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
 //! [`pipeline`]. Each stage has one name in four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`,
 //! `src/reference/<stage>.rs` (its twin) and `tests/kernels/<stage>.rs`.
+//!
+//! Beside it, [`sparse`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
+//! results are where the truth is known.
 
 pub mod config;
 pub mod dense;

@@ -43,7 +43,7 @@ mod tests {
         let seed = |x, disparity, dy| Seed { x, y: 5.0, disparity, dy, confidence: 0.5 };
         // At 10 px 2.5 px are allowed; the third is the first again, the fourth too far, the last in another row.
         let seeds =
-            [seed(0.0, 7.0, 0.0), seed(10.0, 9.5, 0.0), seed(1.0, 7.0, 0.0), seed(90.0, 7.0, 0.0), seed(5.0, 7.0, 3.0)];
+            [seed(0.0, 7.0, 0.0), seed(10.0, 9.5, 0.0), seed(1.0, 7.2, 0.0), seed(90.0, 7.0, 0.0), seed(5.0, 7.0, 3.0)];
         assert_eq!(agreement(&seeds, 40.0), [0.125, 0.25, 0.125, 0.0, 0.0]);
     }
 

@@ -181,7 +181,7 @@ mod tests {
             descriptor: [0.0; DESCRIPTOR_LENGTH],
         };
         let (mut first, mut second) = (Vec::new(), Vec::new());
-        for i in 0..30u8 {
+        for i in 0..30u16 {
             let p = DVec2::new(f64::from(i) * 3.0, f64::from(i * 37 % 80));
             first.push(feature(p, 2.0, 5.0));
             // Every third match is wrong.

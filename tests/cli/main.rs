@@ -6,6 +6,7 @@ mod bad_input;
 mod common;
 mod demo;
 mod devices;
+mod eval_features;
 mod features;
 mod match_views;
 #[path = "../pictures/mod.rs"]
@@ -21,8 +22,8 @@ fn help_has_examples_and_exit_codes() {
         .assert()
         .success()
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
-    for command in ["match", "features", "devices", "demo"] {
-        hsad().args([command, "--help"]).assert().success().stdout(contains("Examples:").and(contains("Usage:")));
+    for command in [&["match"][..], &["features"], &["devices"], &["demo"], &["eval", "features"]] {
+        hsad().args(command).arg("--help").assert().success().stdout(contains("Examples:").and(contains("Usage:")));
     }
     hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));
 }

@@ -159,17 +159,20 @@ impl Features {
         let (pairs, mut failed) = self.read();
         if let Some(folder) = &self.write_views {
             self.write(folder, &pairs, &changes)?;
-            return complain(failed, self.folders.len());
+            return complain(&failed);
         }
         let finder = match self.matches.take() {
             None => Finder::Hsad(self.run.open()?, config),
-            Some(_) if pairs.len() + failed.len() != 1 || changes.len() != 1 => {
-                bail!(
-                    "--matches are those of one pair under one condition, not of {} under {}: name one folder, one \
-                     --condition, and of a homography set the --view",
-                    pairs.len() + failed.len(),
-                    changes.len()
-                )
+            Some(matches) if pairs.len() > 1 || self.folders.len() > 1 || changes.len() > 1 => {
+                return Err(Error::Parameter {
+                    name: "matches",
+                    value: matches.display().to_string(),
+                    expected:
+                        "they belong to one pair under one condition: name one folder, one --condition, and of a \
+                               homography set the --view"
+                            .into(),
+                }
+                .into());
             }
             Some(matches) => Finder::Other { matches, points: self.points.take() },
         };
@@ -194,7 +197,7 @@ impl Features {
         }
         drop(progress);
         self.tell(&table, &finder, &failed)?;
-        complain(failed, total)
+        complain(&failed)
     }
 
     fn check(&self) -> Result<()> {
@@ -215,7 +218,7 @@ impl Features {
         for folder in &self.folders {
             match views::read(folder, self.view) {
                 Ok(found) => pairs.extend(found),
-                Err(error) => failed.push(format!("{}: {error}", views::folder_name(folder))),
+                Err(error) => failed.push(error.to_string()),
             }
         }
         (pairs, failed)
@@ -330,10 +333,10 @@ impl Features {
 }
 
 /// One line about all that failed.
-fn complain(failed: Vec<String>, total: usize) -> anyhow::Result<()> {
-    match &failed[..] {
+fn complain(failed: &[String]) -> anyhow::Result<()> {
+    match failed {
         [] => Ok(()),
-        [only] if total == 1 => bail!("{only}"),
-        _ => bail!("{} of {total} failed: {}", failed.len(), failed.join("; ")),
+        [only] => bail!("{only}"),
+        _ => bail!("{} failed: {}", failed.len(), failed.join("; ")),
     }
 }

@@ -50,7 +50,9 @@ pub fn read(folder: &Path, view: Option<u32>) -> Result<Vec<Views>> {
     }
     let pair = |&k: &u32| {
         let second = load::load(&file(&format!("img{k}.png")))?;
-        let truth = Truth::homography(matrix(&matrix_file(folder, k))?, first.size(), second.size())?;
+        let file = matrix_file(folder, k);
+        let truth = Truth::homography(matrix(&file)?, first.size(), second.size())
+            .map_err(|error| Error::Format { path: file, reason: error.to_string() })?;
         Ok(Views { name: format!("{name} 1-{k}"), first: first.clone(), second, truth })
     };
     numbers.iter().map(pair).collect()
@@ -65,8 +67,9 @@ pub fn folder_name(folder: &Path) -> String {
 fn stereo(folder: &Path, name: String) -> Result<Views> {
     let [first, second] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)));
     let (first, second) = (first?, second?);
+    let misfit = |error: Error| Error::Format { path: folder.into(), reason: error.to_string() };
     if first.size() != second.size() {
-        return Err(Error::SizesDiffer { left: first.size(), right: second.size() });
+        return Err(misfit(Error::SizesDiffer { left: first.size(), right: second.size() }));
     }
     let disparities = pfm::read(&folder.join("disp_left.pfm"))?;
     if disparities.size() != first.size() {
@@ -77,7 +80,8 @@ fn stereo(folder: &Path, name: String) -> Result<Views> {
     }
     let mask = folder.join("nonocc.png");
     let mask = if mask.is_file() { Some(load::load(&mask)?.luma()) } else { None };
-    Ok(Views { name, first, second, truth: Truth::stereo(disparities, mask.as_ref())? })
+    let truth = Truth::stereo(disparities, mask.as_ref()).map_err(misfit)?;
+    Ok(Views { name, first, second, truth })
 }
 
 fn matrix_file(folder: &Path, view: u32) -> PathBuf {
