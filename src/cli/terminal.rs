@@ -63,6 +63,11 @@ impl Progress {
         self.0.set_message(what);
     }
 
+    /// Prints results while work goes on.
+    pub fn print(&self, text: &str) -> io::Result<()> {
+        self.0.suspend(|| print(text))
+    }
+
     /// Says which step of the pipeline begins now.
     pub fn step(&self, step: Step) {
         self.begin(match step {

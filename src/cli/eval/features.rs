@@ -26,56 +26,65 @@ use hsad::{
 use serde_json::json;
 
 use crate::cli::{
-    options::{FeatureOptions, RunOptions},
-    terminal::{self, Progress},
+    options::{FeatureOptions, RunOptions, with_default},
+    terminal::Progress,
 };
 use table::{Column, Row, Table, Unit};
 use views::Views;
 
 const DETAILS: &str = "\
-A folder is a stereo scene (left.png, right.png, disp_left.pfm, and nonocc.png: 255 where both views show the pixel) or a
-homography set (img1.png, and img2.png with H1to2p, img3.png with H1to3p, ...: nine numbers that take a pixel of the first
-to the other).
+A folder is a stereo scene (left.png, right.png, disp_left.pfm, and nonocc.png: 255 where both views show the pixel) \
+or a homography set (img1.png, and img2.png with H1to2p, img3.png with H1to3p, ...: nine numbers that take a pixel of \
+the first to the other).
 
-What is measured, of each pair and in the mean:
-  points     interest points in what both views show, of the view that has fewer
-  matches    those whose truth is known; only they count
-  right      precision: the share of matches that lie within the tolerance of the true place, in pixels of the second
-             view; none where the second view does not show the point
-  recall     right matches by what could have been found: pairs of points that correspond, and right matches besides
-  F          harmonic mean of precision and recall
-  of N       precision among the N most confident matches, or all where there are fewer
-  cover      coverage: the share of the first view's points that both views show that have a match
-  repeat     repeatability: pairs of points that correspond, by points
-  score      matching score: matches of points that correspond, by points
-Points correspond if the overlap error of their regions is at most 40 %, both enlarged until that of the first view has
-a radius of 30 px, each with one other at most (Mikolajczyk et al., IJCV 65, 2005).
+What is measured, of each pair and in the mean, shares in per cent:
+  points   interest points in what both views show, of the view with fewer
+  matches  those whose truth is known; only they count
+  right    precision: matches within the tolerance of the true place
+  recall   right matches by what could have been found
+  F        harmonic mean of precision and recall
+  of N     precision among the N most confident, or all where there are fewer
+  cover    points of the first view that have a match, right or not
+  repeat   repeatability: pairs of points that correspond, by points
+  score    matching score: matches of points that correspond, by points
+
+Places are compared in pixels of the second view; where it does not show a point, no match of it is right. Two points \
+correspond if the overlap error of their regions is at most 40 %, both enlarged until that of the first view has a \
+radius of 30 px, each with one other at most (Mikolajczyk et al., IJCV 65, 2005). What could have been found are these, \
+and right matches of others.
 
 Conditions change the second view, and the truth with it: NAME or NAME=STRENGTH, several in a row joined by '+', or none:";
 
 const EXAMPLES: &str = "\
-Matches of another program (--matches): CSV with a header; columns x1, y1, x2, y2 in pixels of the first and the second
-view, and, if there is one, confidence, the greater the surer (without it the surest come first). Its points (--points):
-x, y and scale, as `hsad features` writes them; without them recall and what is measured by points are unknown.
+Matches of another program (--matches): CSV with a header, columns x1, y1, x2, y2 in pixels of the first and the second \
+view, and, if there is one, confidence, the greater the surer; without it the surest come first. Its points \
+(--points): x, y and scale, as `hsad features` writes them; without them only precision is known. --write-views gives \
+it the changed views.
 
 Examples:
   hsad eval features data/planes data/curved
-  hsad eval features data/planes --condition none --condition rotation=30 --condition blur=1+noise=5
-  hsad eval features ../shared/data/homography/boat --json boat.json
-  hsad eval features data/planes --matches theirs.csv --points left.csv right.csv";
+  hsad eval features data/planes --condition rotation=30 --condition blur=1+noise=5
+  hsad eval features boat --view 3 --json boat.json
+  hsad eval features data/planes --matches theirs.csv --points l.csv r.csv";
 
 fn details() -> String {
     let kinds = Kind::ALL.map(|kind| {
         let [least, greatest] = kind.range();
         let (name, usual, neutral) = (kind.name(), kind.usual(), kind.neutral());
-        format!("  {name:<11}{least} to {greatest}, {usual} if none is named; {neutral} changes nothing")
+        format!("  {name:<11}{least} to {greatest}; {neutral} changes nothing, {usual} if none is named")
     });
     format!("{DETAILS}\n{}\n\n{EXAMPLES}", kinds.join("\n"))
 }
 
+/// The default here is not that of the other subcommands.
+fn threshold_help() -> String {
+    let default = SparseConfig::default().features.threshold;
+    with_default("Least determinant of the Hessian, with grey values of 0 to 1", default)
+}
+
 /// Measure how good matches of interest points are
 #[derive(Args)]
-#[command(after_help = details())]
+#[command(after_help = details(), mut_arg("threshold", |option| option.help(threshold_help())))]
 pub struct Features {
     /// Folders with two or more views and the truth about them
     #[arg(required = true, value_name = "FOLDER")]
@@ -113,8 +122,8 @@ pub struct Features {
     /// Match the views as they are: do not turn, scale or smooth them, nor ask neighbours
     #[arg(long)]
     plain: bool,
-    /// Largest ratio of the distances of the best and the second descriptor, up to 1 [default: 0.85]
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
+        descriptor, up to 1", SparseConfig::default().matching.ratio))]
     ratio: Option<f32>,
     #[command(flatten)]
     run: RunOptions,
@@ -153,7 +162,7 @@ impl Features {
         config.matching.ratio = self.ratio.unwrap_or(config.matching.ratio);
         config.validate()?;
         self.check()?;
-        let changes = self.conditions.iter().map(|text| Change::parse(text)).collect::<Result<Vec<_>>>()?;
+        let changes = self.changes()?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("reading");
         let (pairs, mut failed) = self.read();
@@ -178,26 +187,42 @@ impl Features {
         };
 
         let mut table = Table { columns: self.columns(), rows: Vec::new() };
+        let width = pairs.iter().map(|views| views.name.chars().count()).fold("mean".len(), usize::max);
         let total = pairs.len() * changes.len();
+        let mut done = 0;
         for change in &changes {
+            let before = table.rows.len();
             for views in &pairs {
-                progress.begin(format!(
-                    "{} of {total}: {}, {}",
-                    table.rows.len() + failed.len() + 1,
-                    views.name,
-                    change.name
-                ));
+                done += 1;
+                progress.begin(format!("{done} of {total}: {}, {}", views.name, change.name));
                 match self.figures(views, change, &finder) {
                     Ok(figures) => {
-                        table.rows.push(Row { scene: views.name.clone(), condition: change.name.clone(), figures })
+                        let (scene, condition) = (views.name.clone(), change.name.clone());
+                        table.rows.push(Row { scene, condition, figures });
                     }
                     Err(error) => failed.push(format!("{}, {}: {error}", views.name, change.name)),
                 }
             }
+            if table.rows.len() > before && !self.run.quiet {
+                let gap = if before == 0 { "" } else { "\n" };
+                progress.print(&format!("{gap}{}", table.text(&change.name, width)))?;
+            }
         }
         drop(progress);
-        self.tell(&table, &finder, &failed)?;
+        self.write_figures(&table, &finder, &failed)?;
         complain(&failed)
+    }
+
+    /// What is asked for, each once.
+    fn changes(&self) -> Result<Vec<Change>> {
+        let mut changes: Vec<Change> = Vec::new();
+        for text in &self.conditions {
+            let change = Change::parse(text)?;
+            if changes.iter().all(|known| known.name != change.name) {
+                changes.push(change);
+            }
+        }
+        Ok(changes)
     }
 
     fn check(&self) -> Result<()> {
@@ -300,7 +325,8 @@ impl Features {
         Ok(figures)
     }
 
-    fn tell(&self, table: &Table, finder: &Finder, failed: &[String]) -> anyhow::Result<()> {
+    /// The files that were asked for.
+    fn write_figures(&self, table: &Table, finder: &Finder, failed: &[String]) -> Result<()> {
         if let Some(path) = &self.csv {
             write_whole(path, |out| out.write_all(table.csv().as_bytes()))?;
         }
@@ -323,10 +349,6 @@ impl Features {
                 report.append(figures);
             }
             write_whole(path, |out| writeln!(out, "{report:#}"))?;
-        }
-        if !self.run.quiet && !table.rows.is_empty() {
-            terminal::print(&table.text())?;
-            terminal::print("\nshares in per cent; `hsad eval features --help` says what they are of\n")?;
         }
         Ok(())
     }

@@ -31,46 +31,46 @@ pub struct Table {
 }
 
 impl Table {
-    /// The means of each condition's rows, in the order of the conditions. A figure that only some rows have counts as 0
-    /// in the others: who finds nothing is not right about it.
+    /// The mean of each condition, in the order of the conditions. A figure that only some rows have counts as 0 in the
+    /// others: who finds nothing is not right about it.
     pub fn means(&self) -> Vec<Row> {
         let mut conditions: Vec<&str> = self.rows.iter().map(|row| &*row.condition).collect();
         conditions.dedup();
-        let mean = |condition: &str| {
-            let rows: Vec<&Row> = self.rows.iter().filter(|row| row.condition == condition).collect();
-            let figure = |column: usize| {
-                let figures: Vec<f64> = rows.iter().map(|row| row.figures[column]).collect();
-                let known: f64 = figures.iter().filter(|figure| !figure.is_nan()).sum();
-                if figures.iter().all(|figure| figure.is_nan()) { f64::NAN } else { known / rows.len() as f64 }
-            };
-            let figures = (0..self.columns.len()).map(figure).collect();
-            Row { scene: "mean".into(), condition: condition.into(), figures }
-        };
-        conditions.into_iter().map(mean).collect()
+        conditions.into_iter().map(|condition| self.mean(condition)).collect()
     }
 
-    /// For a terminal: a block for each condition, its mean below, shares in per cent.
-    pub fn text(&self) -> String {
-        let means = self.means();
-        let width = self.rows.iter().map(|row| row.scene.chars().count()).max().unwrap_or(0).max(4);
-        let mut text = String::new();
-        for mean in &means {
-            text += &format!("{}{}\n{:width$}", if text.is_empty() { "" } else { "\n" }, mean.condition, "");
-            self.columns.iter().for_each(|column| text += &format!("  {:>6}", column.title));
-            text.push('\n');
-            let rows = self.rows.iter().filter(|row| row.condition == mean.condition);
-            for row in rows.chain([mean]) {
-                text += &format!("{:width$}", row.scene);
-                for (column, &figure) in self.columns.iter().zip(&row.figures) {
-                    let cell = match column.unit {
-                        _ if figure.is_nan() => "-".into(),
-                        Unit::Count => format!("{figure:.0}"),
-                        Unit::Share => format!("{:.1}", 100.0 * figure),
-                    };
-                    text += &format!("  {cell:>w$}", w = column.title.chars().count().max(6));
-                }
-                text.push('\n');
+    fn of<'a>(&'a self, condition: &'a str) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.condition == condition)
+    }
+
+    fn mean(&self, condition: &str) -> Row {
+        let figure = |column: usize| {
+            let figures: Vec<f64> = self.of(condition).map(|row| row.figures[column]).collect();
+            let known: f64 = figures.iter().filter(|figure| !figure.is_nan()).sum();
+            if figures.iter().all(|figure| figure.is_nan()) { f64::NAN } else { known / figures.len() as f64 }
+        };
+        let figures = (0..self.columns.len()).map(figure).collect();
+        Row { scene: "mean".into(), condition: condition.into(), figures }
+    }
+
+    /// A condition's rows for a terminal, their mean below; shares in per cent, and scenes in `width` columns at least.
+    pub fn text(&self, condition: &str, width: usize) -> String {
+        let cells = |name: &str, cells: Vec<String>| {
+            let mut line = format!("{name:width$}");
+            for (column, cell) in self.columns.iter().zip(cells) {
+                line += &format!("  {cell:>width$}", width = column.title.chars().count().max(6));
             }
+            line + "\n"
+        };
+        let mut text = format!("{condition}\n");
+        text += &cells("", self.columns.iter().map(|column| column.title.clone()).collect());
+        for row in self.of(condition).chain([&self.mean(condition)]) {
+            let cell = |(column, &figure): (&Column, &f64)| match column.unit {
+                _ if figure.is_nan() => "-".into(),
+                Unit::Count => format!("{figure:.0}"),
+                Unit::Share => format!("{:.1}", 100.0 * figure),
+            };
+            text += &cells(&row.scene, self.columns.iter().zip(&row.figures).map(cell).collect());
         }
         text
     }
@@ -137,22 +137,13 @@ mod tests {
     fn missing_figures_count_as_0_in_means_and_are_shown_as_missing() {
         let means = table().means();
         assert_eq!((means.len(), &means[0].figures[..2], means[0].figures[2].is_nan()), (2, &[15.0, 0.25][..], true));
-        let text = table().text();
+        let text = table().text("none", 6);
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
-        assert_eq!(
-            lines[..5],
-            [
-                vec!["none"],
-                vec!["n", "p", "q"],
-                vec!["a,b", "10", "50.0", "-"],
-                vec!["c", "20", "-", "-"],
-                vec!["mean", "15", "25.0", "-"]
-            ]
-        );
-        assert_eq!(
-            lines[6..],
-            [vec!["noise=3"], vec!["n", "p", "q"], vec!["c", "7", "100.0", "25.0"], vec!["mean", "7", "100.0", "25.0"]]
-        );
+        let expected = ["none", "n p q", "a,b 10 50.0 -", "c 20 - -", "mean 15 25.0 -"];
+        assert_eq!(lines, expected.map(|line| line.split(' ').collect::<Vec<_>>()));
+        let widths: Vec<usize> = text.lines().skip(1).map(str::len).collect();
+        assert_eq!(widths, [6 + 3 * 8; 4]);
+        assert!(table().text("noise=3", 6).ends_with("mean         7   100.0    25.0\n"));
     }
 
     #[test]
