@@ -2,15 +2,13 @@
 
 use rayon::prelude::*;
 
-use crate::matching::Seed;
+use crate::{
+    matching::Seed,
+    seeding::{GRADIENT, SLACK},
+};
 
 /// Neighbours that are asked.
 const NEIGHBOURS: usize = 8;
-/// What a disparity or a row may differ at no distance, in pixels.
-const SLACK: f32 = 1.0;
-/// The largest change of a disparity per pixel of distance on one surface (see the seeds' support, where it is the same).
-const GRADIENT: f32 = 0.15;
-
 /// By seed the share of its eight nearest neighbours that agree with it. Those further away than `reach` do not, nor do
 /// those at the same place, which are other detections of the same thing.
 pub(super) fn agreement(seeds: &[Seed], reach: f32) -> Vec<f32> {

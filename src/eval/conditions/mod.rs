@@ -324,6 +324,17 @@ mod tests {
         assert_eq!(value_at(&changed.visible, place), Some(VISIBLE));
     }
 
+    /// FNV-1a of all bytes of all conditions: what is promised of every machine.
+    #[test]
+    fn changed_pictures_are_the_same_bytes_everywhere() {
+        let picture = texture(64, 48);
+        let changed = Kind::ALL.map(|kind| Condition::new(kind, kind.usual()).unwrap().apply(&picture, 1));
+        let bytes = changed.iter().flat_map(|changed| changed.picture.rgba().iter().chain(changed.visible.data()));
+        let hash =
+            bytes.fold(0xcbf2_9ce4_8422_2325u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+        assert_eq!(hash, 0x7b65_594b_715c_07e9, "{hash:#x}");
+    }
+
     #[test]
     fn conditions_are_named_with_or_without_their_strength() {
         assert_eq!("noise".parse::<Condition>().unwrap().to_string(), "noise=10");
