@@ -57,6 +57,7 @@ pub(super) fn align(
         let seeds: Vec<Seed> =
             matches.iter().map(|found| Seed::from_match(&first.features, &aligned.view.features, found)).collect();
         let rows = Rectification::new(&seeds, first.luma.size());
+        log::debug!("turned {round} times: {rows}");
         aligned.rectified = rows.is_rectified();
         if round == ROUNDS || aligned.rectified && (round == 0 || rows.largest <= EXACT) {
             break;
