@@ -3,6 +3,9 @@
 //!
 //! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
 //! from either view -> confirmed by their neighbours.
+//!
+//! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
+//! were found to correspond after the views were turned alike.
 
 mod agreement;
 mod align;
