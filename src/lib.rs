@@ -50,6 +50,9 @@
 //! [`io`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
 //! [`pipeline`]. Each stage has one name in four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`,
 //! `src/reference/<stage>.rs` (its twin) and `tests/kernels/<stage>.rs`.
+//!
+//! Beside it, [`sparse`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
+//! results are where the truth is known.
 
 pub mod config;
 pub mod dense;
@@ -57,6 +60,7 @@ pub mod disparity;
 pub mod error;
 pub mod eval;
 pub mod features;
+pub mod filter;
 pub mod gpu;
 pub mod image;
 pub mod io;
@@ -66,6 +70,7 @@ pub mod pair;
 pub mod pipeline;
 pub mod reference;
 pub mod seeding;
+pub mod sparse;
 
 pub use error::{Error, Result};
 pub use wgpu;

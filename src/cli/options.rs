@@ -77,7 +77,7 @@ impl FeatureOptions {
 }
 
 /// An option's help with the value that the library takes where it is not given.
-fn with_default(help: &str, value: impl Display) -> String {
+pub fn with_default(help: &str, value: impl Display) -> String {
     format!("{help} [default: {value}]")
 }
 

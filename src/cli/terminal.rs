@@ -1,6 +1,7 @@
 //! What people see: results on stdout; errors, warnings and progress on stderr.
 
 use std::{
+    borrow::Cow,
     fmt::Display,
     io::{self, Write},
     time::Duration,
@@ -63,8 +64,13 @@ impl Progress {
     }
 
     /// Says what begins now.
-    pub fn begin(&self, what: &'static str) {
+    pub fn begin(&self, what: impl Into<Cow<'static, str>>) {
         self.0.set_message(what);
+    }
+
+    /// Prints results while work goes on.
+    pub fn print(&self, text: &str) -> io::Result<()> {
+        self.0.suspend(|| print(text))
     }
 
     /// Says which step of the pipeline begins now.

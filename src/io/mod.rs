@@ -11,6 +11,7 @@
 pub mod atomic;
 pub mod calibration;
 pub mod color;
+pub mod csv;
 #[cfg(feature = "cli")]
 pub mod disparities;
 #[cfg(feature = "cli")]

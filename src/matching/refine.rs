@@ -103,7 +103,8 @@ fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
     let (before, at, after) = (costs[least - 1], costs[least], costs[least + 1]);
     let rival = (0..PLACES).filter(|i| i.abs_diff(least) > 1).map(|i| costs[i]).min_by(f32::total_cmp)?;
     let slope = before.max(after) - at;
-    if at > before || at > after || slope <= 0.0 || at > CLEAR * rival {
+    // A rival that fits as exactly as can be leaves nothing clear, and no ratio either.
+    if at > before || at > after || slope <= 0.0 || at > CLEAR * rival || rival == 0.0 {
         return None;
     }
     Some((least as f32 + (before - after) / (2.0 * slope), at / rival))
@@ -185,5 +186,6 @@ mod tests {
         assert_eq!(clear_minimum(&[90.0, 40.0, 10.0, 20.0, 60.0, 12.0, 90.0]), None, "the rival is as good");
         assert_eq!(clear_minimum(&[5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), None, "lowest at the end");
         assert_eq!(clear_minimum(&[7.0; PLACES]), None);
+        assert_eq!(clear_minimum(&[9.0, 0.0, 5.0, 0.0, 5.0, 9.0, 9.0]), None, "two places without any difference");
     }
 }

@@ -13,6 +13,7 @@ pub use brightness::Brightness;
 pub use enlarged::enlarged_feature;
 pub use range::ThinSupport;
 pub use rectification::{Rectification, Verdict};
+pub(crate) use support::{GRADIENT, SLACK};
 
 use crate::{
     disparity::DisparityRange,

@@ -10,9 +10,9 @@ const NEIGHBOURS: usize = 6;
 const AGREEING: usize = 2;
 /// The largest change of a disparity per pixel of distance between neighbours on one surface: far below the limit of
 /// human vision, 1 (Pollard, Mayhew, Frisby: 'PMF', Perception 14, 1985), as most surfaces of a scene are.
-const GRADIENT: f32 = 0.15;
+pub(crate) const GRADIENT: f32 = 0.15;
 /// What a disparity may differ at no distance, in pixels.
-const SLACK: f32 = 1.0;
+pub(crate) const SLACK: f32 = 1.0;
 
 /// The seeds that agree with at least two of their six nearest neighbours, in their order.
 ///

@@ -7,6 +7,7 @@ mod common;
 mod demo;
 mod devices;
 mod eval_dense;
+mod eval_features;
 mod features;
 mod match_views;
 #[path = "../pictures/mod.rs"]
@@ -22,7 +23,7 @@ fn help_has_examples_and_exit_codes() {
         .assert()
         .success()
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
-    for command in [&["match"][..], &["features"], &["devices"], &["demo"], &["eval", "dense"]] {
+    for command in [&["match"][..], &["features"], &["devices"], &["demo"], &["eval", "dense"], &["eval", "features"]] {
         hsad().args(command).arg("--help").assert().success().stdout(contains("Examples:").and(contains("Usage:")));
     }
     hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));

@@ -1,10 +1,9 @@
-//! `hsad eval`: how good results are, on data with known truth.
-
 mod dense;
+mod features;
 
 use clap::{Args, Subcommand};
 
-/// Measure how good results are, on data with known truth
+/// Tell how good results are, on data with known truth
 #[derive(Args)]
 pub struct Eval {
     #[command(subcommand)]
@@ -14,6 +13,7 @@ pub struct Eval {
 #[derive(Subcommand)]
 enum What {
     Dense(Box<dense::Dense>),
+    Features(features::Features),
 }
 
 impl Eval {
@@ -21,6 +21,7 @@ impl Eval {
     pub fn run(self) -> anyhow::Result<()> {
         match self.what {
             What::Dense(command) => command.run(),
+            What::Features(command) => command.run(),
         }
     }
 }

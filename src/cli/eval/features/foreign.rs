@@ -1,0 +1,84 @@
+//! Matches and points that another program found.
+
+use std::path::Path;
+
+use glam::DVec2;
+use hsad::{
+    Result,
+    eval::{Point, PointMatch},
+    io::csv,
+};
+
+/// A match is of a point if it is this close to it, in pixels: a place rounded to a pixel is 0.71 off at most.
+const SAME: f64 = 0.75;
+
+/// The matches of a file: columns x1, y1, x2, y2 and, if it has one, confidence. Without it the order of the lines is that
+/// of confidence, the surest first.
+pub fn matches(path: &Path, sizes: [(u32, u32); 2]) -> Result<Vec<PointMatch>> {
+    let table = csv::read(path, &["x1", "y1", "x2", "y2"], &["confidence"])?;
+    let matches = table.rows.iter().enumerate().map(|(i, (line, values))| {
+        let &[x1, y1, x2, y2, ..] = &values[..] else { unreachable!("four columns were asked for") };
+        inside(path, *line, [("x1", x1), ("y1", y1)], sizes[0])?;
+        inside(path, *line, [("x2", x2), ("y2", y2)], sizes[1])?;
+        let confidence = values.get(4).copied().unwrap_or(-(i as f64));
+        Ok(PointMatch { first: DVec2::new(x1, y1), second: DVec2::new(x2, y2), confidence, points: None })
+    });
+    matches.collect()
+}
+
+/// The points of a file, as `hsad features` writes them: columns x, y and scale.
+pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
+    let table = csv::read(path, &["x", "y", "scale"], &[])?;
+    let points = table.rows.iter().map(|(line, values)| {
+        let &[x, y, scale] = &values[..] else { unreachable!("three columns were asked for") };
+        inside(path, *line, [("x", x), ("y", y)], size)?;
+        if scale <= 0.0 {
+            return Err(csv::at(path, *line, format!("scale is {scale}, but it must be above 0")));
+        }
+        Ok(Point { at: DVec2::new(x, y), scale })
+    });
+    points.collect()
+}
+
+/// Tells every match which points it joins: in each view the nearest one.
+pub fn join(matches: &mut [PointMatch], points: [&[Point]; 2]) {
+    let nearest = |points: &[Point], place: DVec2| {
+        let distances = points.iter().map(|point| point.at.distance_squared(place));
+        let (distance, index) = distances.zip(0..).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (distance <= SAME * SAME).then_some(index)
+    };
+    for found in matches {
+        found.points = match (nearest(points[0], found.first), nearest(points[1], found.second)) {
+            (Some(first), Some(second)) => Some([first, second]),
+            _ => None,
+        };
+    }
+}
+
+fn inside(path: &Path, line: usize, [x, y]: [(&str, f64); 2], (width, height): (u32, u32)) -> Result<()> {
+    for ((name, value), side, what) in [(x, width, "wide"), (y, height, "high")] {
+        if !(-0.5..=f64::from(side) - 0.5).contains(&value) {
+            return Err(csv::at(path, line, format!("{name} is {value}, but the picture is {side} px {what}")));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matches_join_the_nearest_points_that_are_close() {
+        let points = |x: f64| [0.0, 1.0, 5.0].map(|dx| Point { at: DVec2::new(x + dx, 7.0), scale: 1.0 });
+        let found = |x1, x2| PointMatch {
+            first: DVec2::new(x1, 7.5),
+            second: DVec2::new(x2, 7.0),
+            confidence: 0.0,
+            points: None,
+        };
+        let mut matches = [found(10.9, 25.3), found(10.0, 22.0), found(17.0, 20.0)];
+        join(&mut matches, [&points(10.0), &points(20.0)]);
+        assert_eq!(matches.map(|found| found.points), [Some([1, 2]), None, None]);
+    }
+}

@@ -1,0 +1,202 @@
+//! The second view turned and scaled like the first, so that what is upright in one is upright in the other, and rows
+//! correspond where the views are those of a rectified pair.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DAffine2, DMat2, DVec2};
+
+use super::View;
+use crate::{
+    error::Result,
+    features::{Feature, FeatureConfig},
+    filter::resample,
+    image::Luma,
+    matching::{Match, MatchConfig, Seed, match_features},
+    pair::Backend,
+    seeding::{Rectification, Verdict},
+};
+
+/// Times that the second view is turned, each time by what is still missing.
+const ROUNDS: usize = 4;
+/// Rows of a view that was turned are corrected until they differ by no more than this, in pixels: refinement along rows
+/// keeps what they are off.
+const EXACT: f32 = 0.25;
+/// Matches whose orientations differ by so much less or more than the others' show another turn.
+const SAME_TURN: f64 = PI / 18.0;
+/// The same of the natural logarithm of their scales.
+const SAME_SCALE: f64 = 0.3;
+/// Matches that have to show the same turn and scale.
+const NEEDED: usize = 10;
+
+/// The second view as the first one's camera would have it.
+pub(super) struct Aligned {
+    pub(super) view: View,
+    /// From the second view's pixels to those of `view`.
+    pub(super) map: DAffine2,
+    /// Whether rows correspond now. Never of a plane or a scene seen from elsewhere.
+    pub(super) rectified: bool,
+}
+
+/// Turns and scales the second view by what matches show, over and over until rows correspond.
+///
+/// Upright points tell small turns and all scales by their rows, which depth does not move ([`Rectification`]); where they
+/// tell nothing, points with orientations are asked. Where rows do not correspond in the end, the views stay turned
+/// alike as far as is known.
+pub(super) fn align(
+    backend: &Backend,
+    first: &View,
+    second: &Luma,
+    features: &FeatureConfig,
+    matching: &MatchConfig,
+) -> Result<Aligned> {
+    let mut aligned =
+        Aligned { view: View::new(backend, second.clone(), features)?, map: DAffine2::IDENTITY, rectified: false };
+    let mut asked_orientations = false;
+    for round in 0..=ROUNDS {
+        let matches = match_features(&first.features, &aligned.view.features, matching)?;
+        let seeds: Vec<Seed> =
+            matches.iter().map(|found| Seed::from_match(&first.features, &aligned.view.features, found)).collect();
+        let rows = Rectification::new(&seeds, first.luma.size());
+        log::debug!("turned {round} times: {rows}");
+        aligned.rectified = rows.is_rectified();
+        if round == ROUNDS || aligned.rectified && (round == 0 || rows.largest <= EXACT) {
+            break;
+        }
+        let missing = if rows.verdict != Verdict::Unknown {
+            let similarity = Similarity {
+                turn: f64::from(rows.rotation).to_radians(),
+                scale: rows.scale.into(),
+                dy: rows.offset.into(),
+            };
+            similarity.undone(centre(&first.luma), centre(&first.luma)) * aligned.map
+        } else if asked_orientations {
+            break;
+        } else {
+            asked_orientations = true;
+            let oriented = FeatureConfig { upright: false, ..features.clone() };
+            let views = [backend.features(&first.luma, &oriented)?, backend.features(second, &oriented)?];
+            let matches = match_features(&views[0], &views[1], matching)?;
+            let centres = [centre(&first.luma), centre(second)];
+            let Some(similarity) = Similarity::shown([&views[0], &views[1]], &matches, centres) else { break };
+            similarity.undone(centres[0], centres[1])
+        };
+        aligned = Aligned { rectified: false, ..turned(backend, &first.luma, second, missing, features)? };
+    }
+    Ok(aligned)
+}
+
+/// The second view under `map`, in the rows of the first, and as many columns as it has there, up to one width more on
+/// either side.
+fn turned(backend: &Backend, first: &Luma, second: &Luma, map: DAffine2, features: &FeatureConfig) -> Result<Aligned> {
+    let [width, height] = [second.width(), second.height()].map(|side| f64::from(side - 1));
+    let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
+    let columns = corners.map(|(x, y)| map.transform_point2(DVec2::new(x, y)).x);
+    let reach = f64::from(first.width());
+    let left = columns.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-reach, reach);
+    let right = columns.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().clamp(left, 2.0 * reach);
+    let map = DAffine2::from_translation(DVec2::new(-left, 0.0)) * map;
+    let size = ((right - left) as u32 + 1, first.height());
+    let fill = mean(second);
+    let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
+    Ok(Aligned { view: View::new(backend, luma, features)?, map, rectified: false })
+}
+
+fn mean(luma: &Luma) -> u8 {
+    (luma.data().iter().map(|&grey| u64::from(grey)).sum::<u64>() / luma.data().len() as u64) as u8
+}
+
+fn centre(luma: &Luma) -> DVec2 {
+    DVec2::new(f64::from(luma.width() - 1), f64::from(luma.height() - 1)) / 2.0
+}
+
+/// How the second view is turned, scaled and moved down against the first, about the centres of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Similarity {
+    /// Radians, clockwise on the screen.
+    turn: f64,
+    scale: f64,
+    dy: f64,
+}
+
+impl Similarity {
+    /// What takes the second view's pixels to where the first has the same.
+    fn undone(self, first: DVec2, second: DVec2) -> DAffine2 {
+        let linear = DMat2::from_angle(-self.turn) * (1.0 / self.scale);
+        DAffine2::from_mat2_translation(linear, first - linear * second - DVec2::new(0.0, self.dy))
+    }
+
+    /// What most matches of points with orientations show; `dy` in pixels of the first view.
+    fn shown([first, second]: [&[Feature]; 2], matches: &[Match], centres: [DVec2; 2]) -> Option<Self> {
+        let pairs: Vec<(&Feature, &Feature)> =
+            matches.iter().map(|found| (&first[found.left], &second[found.right])).collect();
+        let turn = |(a, b): &(&Feature, &Feature)| f64::from(b.orientation - a.orientation);
+        let growth = |(a, b): &(&Feature, &Feature)| f64::from(b.scale / a.scale).ln();
+        let agreeing = |angle: f64| pairs.iter().filter(move |pair| half_turn(turn(pair) - angle).abs() < SAME_TURN);
+        let most = pairs.iter().map(turn).max_by_key(|&angle| agreeing(angle).count())?;
+        let alike: Vec<_> = agreeing(most).collect();
+        let scale = median(alike.iter().map(|pair| growth(pair)).collect())?;
+        let alike: Vec<_> = alike.into_iter().filter(|pair| (growth(pair) - scale).abs() < SAME_SCALE).collect();
+        if alike.len() < NEEDED {
+            return None;
+        }
+        let found = Self {
+            turn: most + median(alike.iter().map(|pair| half_turn(turn(pair) - most)).collect())?,
+            scale: median(alike.iter().map(|pair| growth(pair)).collect())?.exp(),
+            dy: 0.0,
+        };
+        let undone = found.undone(centres[0], centres[1]);
+        let place = |feature: &Feature| DVec2::new(feature.x.into(), feature.y.into());
+        let rows = alike.iter().map(|(a, b)| undone.transform_point2(place(b)).y - place(a).y);
+        Some(Self { dy: median(rows.collect())?, ..found })
+    }
+}
+
+/// An angle as one from -pi to below pi.
+fn half_turn(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// The middle value, the upper one of two; none of nothing.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::DESCRIPTOR_LENGTH;
+
+    #[test]
+    fn what_most_matches_show_is_found_and_undone() {
+        let (first_centre, second_centre) = (DVec2::new(50.0, 40.0), DVec2::new(60.0, 70.0));
+        let true_map =
+            |p: DVec2| DMat2::from_angle(2.8) * (p - first_centre - DVec2::new(0.0, -3.0)) * 1.25 + second_centre;
+        let feature = |p: DVec2, scale, orientation| Feature {
+            x: p.x as f32,
+            y: p.y as f32,
+            scale,
+            response: 1.0,
+            dark: false,
+            orientation,
+            descriptor: [0.0; DESCRIPTOR_LENGTH],
+        };
+        let (mut first, mut second) = (Vec::new(), Vec::new());
+        for i in 0..30u16 {
+            let p = DVec2::new(f64::from(i) * 3.0, f64::from(i * 37 % 80));
+            first.push(feature(p, 2.0, 5.0));
+            // Every third match is wrong.
+            let wrong = if i % 3 == 0 { f32::from(i) * 0.2 } else { 0.0 };
+            second.push(feature(true_map(p), 2.5, (5.0 + 2.8 + wrong) % (TAU as f32)));
+        }
+        let matches: Vec<Match> =
+            (0..30).map(|i| Match { left: i, right: i, distance: 0.1, confidence: 0.5 }).collect();
+        let found = Similarity::shown([&first, &second], &matches, [first_centre, second_centre]).unwrap();
+        assert!((half_turn(found.turn - 2.8)).abs() < 1e-3 && (found.scale - 1.25).abs() < 1e-3, "{found:?}");
+        assert!((found.dy - 3.0).abs() < 0.1, "{found:?}");
+        let p = DVec2::new(10.0, 20.0);
+        let back = found.undone(first_centre, second_centre).transform_point2(true_map(p));
+        assert!((back.y - p.y).abs() < 0.1, "{back}");
+        assert_eq!(Similarity::shown([&first, &second], &matches[..9], [first_centre, second_centre]), None);
+    }
+}

@@ -1,0 +1,322 @@
+//! Points of one view found in another of which nothing is known: it may be turned, larger or smaller, blurred, noisy, or
+//! of another size.
+//!
+//! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
+//! from either view -> confirmed by their neighbours.
+//!
+//! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
+//! were found to correspond after the views were turned alike.
+
+mod agreement;
+mod align;
+
+use glam::{DAffine2, DVec2};
+use rayon::prelude::*;
+
+use crate::{
+    error::Result,
+    features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    filter::gaussian,
+    image::Luma,
+    matching::{Match, MatchConfig, Rows, Seed, match_features, refine},
+    pair::Backend,
+};
+
+/// How points are found and matched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SparseConfig {
+    /// How interest points are found and described.
+    pub features: FeatureConfig,
+    /// How they are matched. Its `max_dy` is set to 1.5 px where rows turn out to correspond.
+    pub matching: MatchConfig,
+    /// Turn, scale and smooth the views so that they become alike. Without it they are matched as they are, in any row.
+    pub adapt: bool,
+}
+
+impl Default for SparseConfig {
+    /// Weaker points than for seeds: of more matches the best ones are better.
+    fn default() -> Self {
+        let features = FeatureConfig { threshold: 0.000_03, ..FeatureConfig::default() };
+        Self { features, matching: MatchConfig::default(), adapt: true }
+    }
+}
+
+impl SparseConfig {
+    /// Refuses what no step could work with.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] with the accepted range.
+    pub fn validate(&self) -> Result<()> {
+        self.features.validate()?;
+        self.matching.validate()
+    }
+}
+
+/// A point of the first view and where the second shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SparseMatch {
+    /// Place in the first view, in pixels.
+    pub first: DVec2,
+    /// Place in the second view, in pixels.
+    pub second: DVec2,
+    /// 0 to 1.
+    pub confidence: f32,
+    /// The indices of the features that were matched.
+    pub points: [usize; 2],
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Sparse {
+    /// Interest points of both views, in their pixels. Scales and directions of the second are those of the picture in
+    /// which they were found.
+    pub features: [Vec<Feature>; 2],
+    /// Matches, the most confident first.
+    pub matches: Vec<SparseMatch>,
+    /// From the second view's pixels to those of the picture that was made of it to be like the first.
+    pub alignment: DAffine2,
+    /// Whether rows correspond after that.
+    pub rectified: bool,
+    /// Standard deviations, in pixels, of the Gaussians that both pictures were smoothed by.
+    pub smoothing: [f64; 2],
+}
+
+/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy;
+/// 0, for none, is the first.
+const SIGMAS: [f64; 3] = [0.0, 1.0, 2.0];
+/// By view which of them, besides none.
+const PAIRS: [[usize; 2]; 5] = [[1, 0], [2, 0], [0, 1], [0, 2], [1, 1]];
+/// Smoothing must bring so many times the matches to be better than none: it takes away details.
+const CLEARLY_MORE: f64 = 1.25;
+/// Rows of features in corresponding rows differ by so much at most, in pixels.
+const MAX_DY: f32 = 1.5;
+/// What a point may be off after it was sought in the other view and back, in pixels.
+const MAX_RETURN: f32 = 1.0;
+/// Neighbours confirm a match up to this part of the first view's larger side.
+const NEIGHBOURHOOD: f32 = 1.0 / 12.0;
+/// The least share of its neighbours that agree with a match.
+const LEAST_AGREEMENT: f32 = 0.25;
+
+/// A picture and its features.
+struct View {
+    luma: Luma,
+    features: Vec<Feature>,
+}
+
+impl View {
+    fn new(backend: &Backend, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = backend.features(&luma, config)?;
+        Ok(Self { luma, features })
+    }
+}
+
+/// A match's place and the indices of its features.
+type Indexed = (Seed, [usize; 2]);
+
+/// Finds the points of `first` in `second`.
+///
+/// # Errors
+/// [`crate::Error::Parameter`]; and as [`Backend::features`].
+pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &SparseConfig) -> Result<Sparse> {
+    config.validate()?;
+    let SparseConfig { features, matching, adapt } = config;
+    let first = View::new(backend, first.clone(), features)?;
+    if !adapt {
+        let second = View::new(backend, second.clone(), features)?;
+        let found = match_features(&first.features, &second.features, matching)?;
+        let seeds = refined(&first, &second, &found, Rows::Matched);
+        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false, [0.0; 2]));
+    }
+
+    let align::Aligned { view: second, map, rectified } = align::align(backend, &first, second, features, matching)?;
+    let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
+    let matching = MatchConfig { max_dy, ..matching.clone() };
+    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
+    let mut firsts = smoothed(backend, first, features)?;
+    let mut seconds = smoothed(backend, second, features)?;
+    let found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
+        let (first, second) = (&firsts[a], &seconds[b]);
+        let found = match_features(&first.features, &second.features, &matching)?;
+        let mut seeds = refined(first, second, &found, rows);
+        seeds.retain(|(seed, _)| returns(first, second, seed, rows));
+        Ok(confirmed(seeds, reach))
+    };
+    let mut chosen = [0, 0];
+    let mut seeds = found(chosen)?;
+    let mut needed = CLEARLY_MORE * seeds.len() as f64;
+    for pair in PAIRS {
+        let other = found(pair)?;
+        if other.len() as f64 > needed {
+            needed = other.len() as f64;
+            (chosen, seeds) = (pair, other);
+        }
+    }
+    let views = [firsts.swap_remove(chosen[0]), seconds.swap_remove(chosen[1])];
+    Ok(finished(views, seeds, map, rectified, chosen.map(|index| SIGMAS[index])))
+}
+
+/// A view smoothed by each of [`SIGMAS`].
+fn smoothed(backend: &Backend, view: View, config: &FeatureConfig) -> Result<Vec<View>> {
+    let mut views = Vec::new();
+    for sigma in &SIGMAS[1..] {
+        let luma = gaussian(&view.luma.map(|&grey| [grey]), *sigma).map(|&[grey]| grey);
+        views.push(View::new(backend, luma, config)?);
+    }
+    views.insert(0, view);
+    Ok(views)
+}
+
+/// The matches that have a clear place, with the indices of their features.
+fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<Indexed> {
+    let refine_one = |found: &Match| {
+        let features = (&first.features[..], &second.features[..]);
+        let seed = refine((&first.luma, &second.luma), features, std::slice::from_ref(found), rows).first().copied()?;
+        Some((seed, [found.left, found.right]))
+    };
+    matches.par_iter().filter_map(refine_one).collect()
+}
+
+/// Whether the window around the place in the second view is found again where it comes from. At the edge of a surface,
+/// or where one view shows what the other hides, it is not.
+fn returns(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
+    let feature = |x, y| Feature { x, y, ..NOWHERE };
+    let back = refine(
+        (&second.luma, &first.luma),
+        (&[feature(seed.right_x(), seed.right_y())], &[feature(seed.x, seed.y)]),
+        &[Match { left: 0, right: 0, distance: 0.0, confidence: 1.0 }],
+        rows,
+    );
+    // Both disparities, whose signs differ: places are on whole pixels, each of its own view.
+    back.first().is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
+}
+
+/// A feature of which only the place matters.
+const NOWHERE: Feature = Feature {
+    x: 0.0,
+    y: 0.0,
+    scale: 1.0,
+    response: 0.0,
+    dark: false,
+    orientation: 0.0,
+    descriptor: [0.0; DESCRIPTOR_LENGTH],
+};
+
+/// Those that enough neighbours agree with, as confident as these agree.
+fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
+    let places: Vec<Seed> = seeds.iter().map(|(seed, _)| *seed).collect();
+    let each = seeds.into_iter().zip(agreement::agreement(&places, reach));
+    each.filter(|(_, share)| *share >= LEAST_AGREEMENT)
+        .map(|((seed, points), share)| (Seed { confidence: seed.confidence * share, ..seed }, points))
+        .collect()
+}
+
+/// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
+fn finished(
+    [first, second]: [View; 2],
+    seeds: Vec<Indexed>,
+    map: DAffine2,
+    rectified: bool,
+    smoothing: [f64; 2],
+) -> Sparse {
+    let back = map.inverse();
+    let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
+    let growth = back.matrix2.determinant().abs().sqrt() as f32;
+    let mut matches: Vec<SparseMatch> = seeds
+        .into_iter()
+        .map(|(seed, points)| SparseMatch {
+            first: DVec2::new(seed.x.into(), seed.y.into()),
+            second: place(seed.right_x(), seed.right_y()),
+            confidence: seed.confidence,
+            points,
+        })
+        .collect();
+    matches.sort_by(|a, b| b.confidence.total_cmp(&a.confidence).then(a.points.cmp(&b.points)));
+    let moved = |feature: Feature| {
+        let at = place(feature.x, feature.y);
+        Feature { x: at.x as f32, y: at.y as f32, scale: growth * feature.scale, ..feature }
+    };
+    let features = [first.features, second.features.into_iter().map(moved).collect()];
+    Sparse { features, matches, alignment: map, rectified, smoothing }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        eval::{Judged, PointMatch, Truth, conditions::Changed},
+        gpu::DeviceChoice,
+        image::Plane,
+        io::Picture,
+    };
+
+    /// Blobs of several sizes, everywhere others.
+    fn picture() -> Picture {
+        let mut state = 5u32;
+        let mut grey = vec![0.0f64; 200 * 160];
+        for _ in 0..700 {
+            let mut random = |end: u32| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (state >> 8) % end
+            };
+            let (x, y, radius) = (random(200) as i32, random(160) as i32, 2 + random(6) as i32);
+            let value = f64::from(random(200)) - 100.0;
+            for j in (y - radius).max(0)..(y + radius).min(160) {
+                for i in (x - radius).max(0)..(x + radius).min(200) {
+                    if (i - x).pow(2) + (j - y).pow(2) < radius * radius {
+                        grey[(j * 200 + i) as usize] += value;
+                    }
+                }
+            }
+        }
+        Picture::new(200, 160, grey.iter().map(|v| [(128.0 + v).clamp(0.0, 255.0) as u8; 4]).collect()).unwrap()
+    }
+
+    /// Matches of the picture with itself, changed, and the share that is right within 1.5 px.
+    fn matched(condition: &str, adapt: bool) -> (Sparse, f64) {
+        let picture = picture();
+        let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
+        let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
+        let config = SparseConfig { adapt, ..SparseConfig::default() };
+        let found = match_views(&backend, &picture.luma(), &changed.picture.luma(), &config).unwrap();
+        let truth = Truth::stereo(Plane::filled(200, 160, 0.0), None).unwrap().changed(&changed);
+        let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
+        let judged = Judged::new(&matches, &truth, 1.5).unwrap();
+        (found, judged.precision())
+    }
+
+    #[test]
+    fn turned_views_are_turned_back() {
+        for condition in ["rotation=90", "rotation=-37", "scale=1.4", "scale=0.7"] {
+            let (found, precision) = matched(condition, true);
+            assert!(found.rectified && found.matches.len() > 40 && precision > 0.97, "{condition}: {precision}");
+        }
+        let (found, _) = matched("rotation=90", false);
+        assert!(found.matches.len() < 10);
+    }
+
+    #[test]
+    fn what_is_blurred_is_compared_with_what_is_as_blurred() {
+        let (found, precision) = matched("blur=2.5", true);
+        assert!(found.smoothing[0] > 0.0 && found.smoothing[1] == 0.0, "{:?}", found.smoothing);
+        assert!(precision > 0.97, "{precision}");
+        let (plain, _) = matched("blur=2.5", false);
+        assert!(found.matches.len() > 2 * plain.matches.len());
+    }
+
+    #[test]
+    fn alike_views_stay_as_they_are() {
+        let (found, precision) = matched("gain=0.8", true);
+        assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
+        assert!(found.rectified && precision > 0.97 && found.matches.len() > 100);
+        assert!(found.matches.is_sorted_by(|a, b| a.confidence >= b.confidence));
+    }
+
+    #[test]
+    fn nothing_is_found_in_nothing() {
+        let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
+        let (flat, tiny) = (Luma::filled(60, 50, 7), Luma::filled(1, 1, 0));
+        for (first, second) in [(&flat, &flat), (&flat, &tiny), (&tiny, &flat)] {
+            assert!(match_views(&backend, first, second, &SparseConfig::default()).unwrap().matches.is_empty());
+        }
+    }
+}

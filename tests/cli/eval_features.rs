@@ -1,0 +1,274 @@
+//! `hsad eval features`.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use assert_cmd::Command;
+use hsad::{
+    eval::conditions::Changed,
+    image::Plane,
+    io::{Picture, load, pfm, png},
+};
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+use serde_json::Value;
+
+use crate::common::{fails, folder, grey_png, hsad, names};
+
+fn scene(name: &str) -> PathBuf {
+    [env!("CARGO_MANIFEST_DIR"), "data", name].iter().collect()
+}
+
+/// `hsad eval features FOLDER... --device cpu`.
+fn evaluate(folders: &[&Path]) -> Command {
+    let mut command = hsad();
+    command.args(["eval", "features", "--device", "cpu"]).args(folders);
+    command
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The only pair's figures after `command`.
+fn figures(mut command: Command, json_file: &Path) -> Value {
+    command.arg("--json").arg(json_file).arg("-q").assert().success().stdout("").stderr("");
+    json(json_file)["pairs"][0].clone()
+}
+
+/// Right matches of the shipped scene, each `off` px to the right of its true place, as lines of CSV without a header.
+fn matches(off: f32) -> Vec<String> {
+    let truth = pfm::read(&scene("planes").join("disp_left.pfm")).unwrap();
+    let shown = load::load(&scene("planes").join("nonocc.png")).unwrap().luma();
+    let places = (20..240).step_by(12).flat_map(|y| (80..320).step_by(12).map(move |x| (x, y)));
+    places
+        .filter(|&(x, y)| shown.get(x, y) == 255)
+        .map(|(x, y)| format!("{x},{y},{},{y}", x as f32 - truth.get(x, y) + off))
+        .collect()
+}
+
+fn write_lines(path: &Path, header: &str, lines: &[String]) {
+    fs::write(path, format!("{header}\n{}\n", lines.join("\n"))).unwrap();
+}
+
+#[test]
+fn own_matches_are_good_on_a_shipped_scene_also_where_it_is_turned() {
+    let temporary = folder();
+    let [csv, json_file] = ["t.csv", "t.json"].map(|name| temporary.path().join(name));
+    let mut command = evaluate(&[&scene("planes")]);
+    command.args(["--condition", "none", "--condition", "rotation=90", "--first", "10,100", "--csv"]);
+    command.arg(&csv).arg("--json").arg(&json_file);
+    let told = contains("none\n").and(contains("rotation=90\n")).and(contains("of 100")).and(contains("\nmean "));
+    command.assert().success().stdout(told).stderr("");
+
+    let report = json(&json_file);
+    assert_eq!((&report["tolerance_px"], &report["matches_of"]), (&1.5.into(), &"hsad".into()));
+    let pairs = report["pairs"].as_array().unwrap();
+    assert_eq!((pairs.len(), report["means"].as_array().unwrap().len()), (2, 2));
+    let text = fs::read_to_string(&csv).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    for (pair, line) in pairs.iter().zip(lines) {
+        assert!(
+            pair["precision_of_100"].as_f64().unwrap() >= 0.97 && pair["matches"].as_f64().unwrap() > 200.0,
+            "{pair}"
+        );
+        for name in ["precision", "recall", "f_measure", "coverage", "repeatability", "matching_score"] {
+            let figure = pair[name].as_f64().unwrap();
+            assert!(figure > 0.2 && figure <= 1.0, "{name}: {figure}");
+            let column = header.iter().position(|column| *column == name).unwrap();
+            assert_eq!(line.split(',').nth(column).unwrap().parse::<f64>().unwrap(), figure);
+        }
+    }
+    assert_eq!(report["means"][1]["precision"], pairs[1]["precision"]);
+}
+
+#[test]
+fn plain_matching_is_lost_where_the_view_is_turned() {
+    let temporary = folder();
+    let mut command = evaluate(&[&scene("planes")]);
+    command.args(["--plain", "--condition", "rotation=90"]);
+    let plain = figures(command, &temporary.path().join("t.json"));
+    assert!(plain["recall"].as_f64().unwrap() < 0.05, "{plain}");
+}
+
+#[test]
+fn right_matches_of_another_program_score_1_and_wrong_ones_0() {
+    let temporary = folder();
+    let file = |name: &str| temporary.path().join(name);
+    for (off, expected) in [(0.0, 1.0), (1.25, 1.0), (5.0, 0.0)] {
+        write_lines(&file("m.csv"), "x1,y1,x2,y2", &matches(off));
+        let mut command = evaluate(&[&scene("planes")]);
+        command.arg("--matches").arg(file("m.csv"));
+        let found = figures(command, &file("t.json"));
+        assert_eq!((&found["precision"], &found["precision_of_100"]), (&expected.into(), &expected.into()));
+        assert!(found["matches"].as_f64().unwrap() > 200.0);
+        for unknown in ["points", "recall", "f_measure", "coverage", "repeatability", "matching_score"] {
+            assert_eq!(found[unknown], Value::Null, "{unknown} without points");
+        }
+    }
+
+    // The confident half is right, and its points are known in both views.
+    let [right, wrong] = [matches(0.0), matches(9.0)];
+    let lines = right.iter().map(|line| format!("{line},0.9")).chain(wrong.iter().map(|line| format!("{line},0.1")));
+    write_lines(&file("m.csv"), "x1,y1,x2,y2,confidence", &lines.collect::<Vec<_>>());
+    let column = |i: usize| -> Vec<String> {
+        let place = |line: &String| line.split(',').map(String::from).collect::<Vec<_>>()[i..i + 2].join(",") + ",2";
+        right.iter().map(place).collect()
+    };
+    write_lines(&file("left.csv"), "x,y,scale", &column(0));
+    write_lines(&file("right.csv"), "x,y,scale", &column(2));
+    let mut command = evaluate(&[&scene("planes")]);
+    command.arg("--matches").arg(file("m.csv")).arg("--points").args([file("left.csv"), file("right.csv")]);
+    let found = figures(command, &file("t.json"));
+    assert_eq!((&found["precision"], &found["precision_of_100"]), (&0.5.into(), &1.0.into()));
+    for name in ["recall", "coverage", "repeatability", "matching_score"] {
+        assert_eq!(found[name], 1.0, "{name}");
+    }
+    assert_eq!(found["f_measure"], 2.0 / 3.0);
+}
+
+#[test]
+fn a_homography_set_has_a_pair_for_each_view() {
+    let temporary = folder();
+    let set = temporary.path().join("set");
+    fs::create_dir(&set).unwrap();
+    let picture = load::load(&scene("curved").join("left.png")).unwrap();
+    let write = |name: &str, picture: &Picture| {
+        let mut bytes = Vec::new();
+        png::write_rgb8(&mut bytes, &picture.map(|&[r, g, b, _]| [r, g, b])).unwrap();
+        fs::write(set.join(name), bytes).unwrap();
+    };
+    write("img1.png", &picture);
+    for (k, condition) in [(2, "rotation=20"), (4, "scale=0.8")] {
+        let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
+        write(&format!("img{k}.png"), &changed.picture);
+        let (m, t) = (changed.map.matrix2, changed.map.translation);
+        let rows = [m.x_axis.x, m.y_axis.x, t.x, m.x_axis.y, m.y_axis.y, t.y, 0.0, 0.0, 1.0];
+        fs::write(set.join(format!("H1to{k}p")), rows.map(|n| n.to_string()).join(" \n")).unwrap();
+    }
+    let json_file = temporary.path().join("t.json");
+    evaluate(&[&set])
+        .arg("--json")
+        .arg(&json_file)
+        .assert()
+        .success()
+        .stdout(contains("set 1-2").and(contains("set 1-4")));
+    for pair in json(&json_file)["pairs"].as_array().unwrap() {
+        assert!(pair["precision"].as_f64().unwrap() > 0.97 && pair["repeatability"].as_f64().unwrap() > 0.5, "{pair}");
+    }
+    evaluate(&[&set])
+        .args(["--view", "4"])
+        .assert()
+        .success()
+        .stdout(contains("set 1-4").and(contains("set 1-2").not()));
+
+    fails(
+        {
+            let mut c = evaluate(&[&set]);
+            c.args(["--view", "3"]);
+            c
+        },
+        1,
+        "there is no H1to3p",
+    );
+    fs::write(set.join("H1to4p"), "1 0 0 0 1 0 0 0").unwrap();
+    fails(evaluate(&[&set]), 1, "a homography is nine numbers");
+    fs::write(set.join("H1to4p"), "1 0 0 0 1 0 0 0 0").unwrap();
+    fails(evaluate(&[&set]), 1, "have an inverse");
+}
+
+#[test]
+fn changed_views_are_written_for_other_programs() {
+    let temporary = folder();
+    let out = temporary.path().join("views");
+    let mut command = evaluate(&[&scene("weak")]);
+    command.args(["--condition", "none", "--condition", "gain=0.5+noise", "--write-views"]).arg(&out);
+    command.assert().success().stdout("");
+    assert_eq!(names(&out), ["weak gain=0.5+noise=10.png", "weak none.png"]);
+    let right = load::load(&scene("weak").join("right.png")).unwrap();
+    assert!(load::load(&out.join("weak none.png")).unwrap() == right);
+    let conditions = ["gain=0.5", "noise"].map(|text| text.parse().unwrap());
+    assert!(
+        load::load(&out.join("weak gain=0.5+noise=10.png")).unwrap() == Changed::by(&conditions, &right, 1).picture
+    );
+}
+
+#[test]
+fn what_fails_does_not_lose_the_rest() {
+    let missing = Path::new("nowhere");
+    let output = evaluate(&[missing, &scene("weak")]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8(output.stdout).unwrap().contains("\nweak "));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.starts_with("error: nowhere: no truth is here") && stderr.lines().count() == 1, "{stderr}");
+    fails(evaluate(&[missing, Path::new("neither")]), 1, "2 failed: nowhere");
+}
+
+#[test]
+fn bad_options_are_named() {
+    for (args, expected) in [
+        (&["--condition", "fog"][..], "condition is fog, but there are only: gain, gamma, ramp"),
+        (&["--condition", "rotation=30+scale=9"], "scale is 9, but its strength must be 0.5 to 2"),
+        (&["--condition", "noise=-1"], "noise is -1, but its strength must be 0 to 100"),
+        (&["--condition", "blur="], "its strength must be a number"),
+        (&["--tolerance", "-1"], "tolerance is -1"),
+        (&["--first", "10,0"], "first is 0"),
+        (&["--threshold", "2"], "threshold is 2"),
+        (&["--ratio", "0"], "ratio is 0"),
+        (&["--matches", "m.csv", "--condition", "none", "--condition", "gain"], "they belong to one pair"),
+    ] {
+        let mut command = evaluate(&[&scene("weak")]);
+        command.args(args);
+        fails(command, 2, expected);
+    }
+    hsad().args(["eval", "features"]).assert().code(2);
+    hsad().arg("eval").assert().code(2);
+}
+
+#[test]
+fn bad_tables_are_named_with_their_line() {
+    let temporary = folder();
+    let [m, left, right] = ["m.csv", "left.csv", "right.csv"].map(|name| temporary.path().join(name));
+    for (text, expected) in [
+        ("", "the file is empty"),
+        ("x1,y1,x2\n1,2,3\n", "no column 'y2'"),
+        ("x1,y1,x2,y2\n1,2,3,4\n1,2,c,4\n", "m.csv: line 3: x2 is 'c', but it must be a number"),
+        ("x1,y1,x2,y2\n1,2,3\n", "line 2: it has no y2"),
+        ("x1,y1,x2,y2\n287,2,3,4\n", "line 2: x1 is 287, but the picture is 287 px wide"),
+        ("x1,y1,x2,y2\n1,2,3,4\n1,2,3,-7\n", "line 3: y2 is -7, but the picture is 215 px high"),
+        ("x1,y1,x2,y2,confidence\n1,2,3,4,NaN\n", "line 2: confidence is 'NaN'"),
+    ] {
+        fs::write(&m, text).unwrap();
+        let mut command = evaluate(&[&scene("weak")]);
+        command.arg("--matches").arg(&m);
+        fails(command, 1, expected);
+    }
+    fs::write(&m, "x1,y1,x2,y2\n1,2,3,4\n").unwrap();
+    fs::write(&right, "x,y,scale\n3,4,2\n").unwrap();
+    for (text, expected) in [("x,y\n1,2\n", "no column 'scale'"), ("x,y,scale\n1,2,0\n", "line 2: scale is 0")] {
+        fs::write(&left, text).unwrap();
+        let mut command = evaluate(&[&scene("weak")]);
+        command.arg("--matches").arg(&m).arg("--points").args([&left, &right]);
+        fails(command, 1, expected);
+    }
+}
+
+#[test]
+fn scenes_whose_files_do_not_fit_are_named() {
+    let temporary = folder();
+    let copy = temporary.path();
+    for file in ["left.png", "right.png", "disp_left.pfm"] {
+        fs::copy(scene("weak").join(file), copy.join(file)).unwrap();
+    }
+    evaluate(&[copy]).assert().success();
+    grey_png(&copy.join("nonocc.png"), &Plane::filled(9, 9, 255));
+    fails(evaluate(&[copy]), 1, "the mask is 9x9 pixels, but the truth has 287x215");
+    grey_png(&copy.join("right.png"), &Plane::filled(9, 9, 255));
+    fails(evaluate(&[copy]), 1, "287x215 and the right view 9x9");
+    for file in ["left.png", "right.png"] {
+        grey_png(&copy.join(file), &Plane::filled(9, 9, 255));
+    }
+    fails(evaluate(&[copy]), 1, "it has 287x215 values, but left.png 9x9 pixels");
+}
