@@ -13,7 +13,7 @@ pub struct Eval {
 #[derive(Subcommand)]
 enum What {
     Dense(Box<dense::Dense>),
-    Features(features::Features),
+    Features(Box<features::Features>),
 }
 
 impl Eval {
