@@ -58,6 +58,7 @@ pub mod error;
 pub mod eval;
 pub mod features;
 pub mod gpu;
+pub mod hybrid;
 pub mod image;
 pub mod io;
 pub mod luma;
@@ -75,5 +76,6 @@ pub fn stages() -> Vec<gpu::Stage> {
     let mut stages = vec![luma::stage()];
     stages.extend(features::stages());
     stages.extend(dense::stages());
+    stages.extend(hybrid::stages());
     stages
 }
