@@ -40,7 +40,7 @@ impl Default for HybridParameters {
             cost: WindowCost {
                 radius: 1,
                 color: Difference { weight: 12, limit: 20 },
-                gradient: Difference { weight: 24, limit: 12 },
+                gradient: Difference { weight: 24, limit: 8 },
             },
             smoothness: Smoothness { slope: 14, limit: 100 },
             links: LinkWeights { halving: 8, least: 2, inside: 8, across: 4 },

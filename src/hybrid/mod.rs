@@ -22,10 +22,10 @@
 //!   2006), and truncates both. Without gradients half as many pixels again are wrong.
 //! - Belief propagation is min-sum on a truncated linear model (Felzenszwalb and Huttenlocher, IJCV 2006). The
 //!   segments weaken the links that cross their outlines.
-//! - The disparity of a segment is the median of those of its pixels that the other view confirms, as far as the
-//!   reference view's beliefs tell: of the claims to one pixel the best holds. A pixel keeps its own disparity
-//!   where that is near the segment's, since few surfaces face the cameras: with one disparity for all of a
-//!   segment's pixels twice as many are wrong.
+//! - The disparities of a segment are a plane through those of its pixels that the other view confirms, as far as
+//!   the reference view's beliefs tell: of the claims to one pixel the best holds. Few surfaces face the cameras,
+//!   and with one disparity for all of a segment twice as many pixels are wrong. A pixel keeps its own disparity
+//!   where that is near the plane.
 //! - Pixels that the other view does not confirm take the smaller of the nearest confirmed disparities of their
 //!   row, or the segment's where that is far from it.
 //! - Pictures whose messages do not fit in 128 MiB are solved in strips of rows that overlap by [`OVERLAP`] rows.
@@ -43,6 +43,7 @@ mod mean_shift;
 mod method;
 mod segment_disparity;
 mod segments;
+mod surface;
 
 use crate::{dense::Difference, gpu::Stage};
 

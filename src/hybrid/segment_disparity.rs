@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{Segments, Winner};
+use super::{
+    Segments, Winner,
+    surface::{Sample, Surface},
+};
 use crate::{
     dense::{Dense, View},
     disparity::{DisparityRange, NONE, SCALE},
@@ -18,15 +21,14 @@ pub struct Conclusion {
     pub confirmation: u32,
     /// The sixteenths of a segment's pixels that have to be confirmed for it to have a disparity.
     pub least_confirmed: u32,
-    /// By how much a pixel's disparity may differ from its segment's, in pixels; 0: all of a segment's pixels
-    /// have one disparity.
+    /// By how much a pixel's disparity may differ from its segment's, in pixels.
     pub tolerance: u32,
 }
 
-/// What the confirmed pixels of a segment say, all in whole pixels.
+/// What the confirmed pixels of a segment say.
 struct Segment {
-    /// The lower median of their disparities; `None` where they are too few.
-    disparity: Option<i32>,
+    /// Their disparities; `None` where they are too few.
+    surface: Option<Surface>,
     /// 0 to 127: the share of the segment's pixels that are confirmed and near that disparity.
     agreement: u8,
 }
@@ -57,8 +59,9 @@ pub(super) fn conclude(
     };
 
     let labels = segments.labels();
-    let near = |a: i32, b: i32| a.abs_diff(b) <= conclusion.tolerance;
-    let found = segment_disparities(labels, confirmed_at, conclusion, near);
+    let tolerance = i64::from(conclusion.tolerance) * i64::from(SCALE);
+    let found = segment_surfaces(labels, confirmed_at, conclusion.least_confirmed, tolerance);
+    let span = i64::from(range.min * SCALE)..=i64::from(range.last() * SCALE);
     let mut dense =
         Dense { disparity: Plane::filled(width, height, NONE), confidence: Plane::filled(width, height, 0) };
     for y in 0..height {
@@ -68,36 +71,43 @@ pub(super) fn conclude(
             let segment = &found[&labels.get(x, y)];
             // What a pixel would have without its segment.
             let alone = row[x as usize].or(beside[x as usize]).unwrap_or(own.get(x, y));
-            let disparity = segment.disparity.filter(|&disparity| !near(alone, disparity)).unwrap_or(alone);
-            dense.disparity.set(x, y, disparity * SCALE);
-            if row[x as usize] == Some(disparity) {
-                dense.confidence.set(x, y, 1 + segment.agreement + confirmed.confidence.get(x, y));
+            match segment.surface.filter(|surface| surface.distance(&(x, y, alone)) > tolerance) {
+                Some(surface) => {
+                    dense.disparity.set(x, y, surface.at(x, y).clamp(*span.start(), *span.end()) as i32);
+                }
+                None => {
+                    dense.disparity.set(x, y, alone * SCALE);
+                    if row[x as usize].is_some() {
+                        dense.confidence.set(x, y, 1 + segment.agreement + confirmed.confidence.get(x, y));
+                    }
+                }
             }
         }
     }
     dense
 }
 
-fn segment_disparities(
+/// The surface of each segment; `tolerance` in 1/256 px is what agrees with it.
+fn segment_surfaces(
     labels: &Plane<u32>,
     confirmed_at: impl Fn(u32, u32) -> Option<i32>,
-    conclusion: &Conclusion,
-    near: impl Fn(i32, i32) -> bool,
+    least_confirmed: u32,
+    tolerance: i64,
 ) -> BTreeMap<u32, Segment> {
-    let mut members: BTreeMap<u32, (usize, Vec<i32>)> = BTreeMap::new();
+    let mut members: BTreeMap<u32, (usize, Vec<Sample>)> = BTreeMap::new();
     for y in 0..labels.height() {
         for x in 0..labels.width() {
-            let (count, disparities) = members.entry(labels.get(x, y)).or_default();
+            let (count, samples) = members.entry(labels.get(x, y)).or_default();
             *count += 1;
-            disparities.extend(confirmed_at(x, y));
+            samples.extend(confirmed_at(x, y).map(|disparity| (x, y, disparity)));
         }
     }
-    let segment = |(label, (count, mut disparities)): (u32, (usize, Vec<i32>))| {
-        disparities.sort_unstable();
-        let enough = 16 * disparities.len() >= conclusion.least_confirmed as usize * count;
-        let median = disparities.get(disparities.len().saturating_sub(1) / 2).copied();
-        let agreeing = disparities.iter().filter(|&&d| median.is_some_and(|median| near(d, median))).count();
-        (label, Segment { disparity: median.filter(|_| enough), agreement: (127 * agreeing / count) as u8 })
+    let segment = |(label, (count, samples)): (u32, (usize, Vec<Sample>))| {
+        let enough = 16 * samples.len() >= least_confirmed as usize * count;
+        let surface = Surface::of(&samples).filter(|_| enough);
+        let agreeing =
+            surface.map_or(0, |surface| samples.iter().filter(|sample| surface.distance(sample) <= tolerance).count());
+        (label, Segment { surface, agreement: (127 * agreeing / count) as u8 })
     };
     members.into_iter().map(segment).collect()
 }
