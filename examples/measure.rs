@@ -7,12 +7,13 @@
 use std::path::{Path, PathBuf};
 
 use hsad::{
-    config::Preset,
+    config::{Config, Method, Preset},
     dense::{Dense, DenseConfig},
     disparity::{DisparityMap, DisparityRange, SCALE},
     eval::score,
     features::Feature,
     gpu::DeviceChoice,
+    hybrid::HybridParameters,
     image::Plane,
     io::{Picture, load, pfm},
     matching::{MatchConfig, Rows, Seed, match_features, refine},
@@ -114,9 +115,15 @@ fn main() -> Result<(), AnyError> {
         let dense = Pair::new(&backend, &scene.left, &scene.right)?.dense(&config)?;
         scene.bad(&dense.disparity)
     })?;
-    for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
-        table(&format!("preset {preset:?}, the range found"), &DENSE, &scenes, |scene| {
-            let outcome = pipeline::run(&backend, (&scene.left, &scene.right), &preset.config(), |_| ())?;
+    let hybrid = Method::Kamencay(HybridParameters::default());
+    for (name, config) in [
+        ("preset fast", Preset::Fast.config()),
+        ("preset balanced", Preset::Balanced.config()),
+        ("preset quality", Preset::Quality.config()),
+        ("method kamencay", Config { method: hybrid, ..Preset::Balanced.config() }),
+    ] {
+        table(&format!("{name}, the range found"), &DENSE, &scenes, |scene| {
+            let outcome = pipeline::run(&backend, (&scene.left, &scene.right), &config, |_| ())?;
             let known = scene.truth.data().iter().filter(|d| d.is_finite()).collect::<Vec<_>>();
             let inside = known.iter().filter(|d| outcome.range.contains(d.round() as i32)).count();
             println!(

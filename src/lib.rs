@@ -48,8 +48,9 @@
 //! # The way through
 //!
 //! [`io`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
-//! [`pipeline`]. Each stage has one name in four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`,
-//! `src/reference/<stage>.rs` (its twin) and `tests/kernels/<stage>.rs`.
+//! [`pipeline`]; where its method is asked for, [`hybrid`] stands in the place of [`dense`]. Each stage has one name in
+//! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/reference/<stage>.rs` (its twin) and
+//! `tests/kernels/<stage>.rs`.
 
 pub mod config;
 pub mod dense;

@@ -36,7 +36,7 @@ struct Segment {
 /// The map of the left view, in which the winners' disparities were searched in `range`.
 ///
 /// A confidence is 0 where the disparity is not the pixel's own. Else it is 1 and the agreement in its segment, 0 to
-/// 127, and the margin of its belief, at most 127.
+/// 127, and how clearly the pixel's belief is the best, 0 to 127.
 pub(super) fn conclude(
     winners: &Plane<Winner>,
     segments: &Segments,
@@ -47,7 +47,7 @@ pub(super) fn conclude(
     let own = winners.map(|winner| range.min + winner.index() as i32);
     let mut confirmed = Dense {
         disparity: own.map(|&disparity| disparity * SCALE),
-        confidence: winners.map(|winner| winner.margin().min(127) as u8),
+        confidence: winners.map(|winner| sureness(winner.margin())),
     };
     let claims = Plane::from_fn(width, height, |x, y| Some((winners.get(x, y).belief(), own.get(x, y))));
     let others = claimed(&claims, View::Left);
@@ -85,6 +85,13 @@ pub(super) fn conclude(
         }
     }
     dense
+}
+
+/// How clearly a belief is the best, 0 to 127, where all others but its neighbours' are worse by so much.
+fn sureness(margin: u32) -> u8 {
+    /// The margin that is half sure: the difference of colours that weighs as much is a large one.
+    const HALF: u64 = 64;
+    (127 * u64::from(margin) / (u64::from(margin) + HALF)) as u8
 }
 
 /// The surface of each segment; `tolerance` in 1/256 px is what agrees with it.
@@ -151,7 +158,8 @@ mod tests {
         // Partners: 0, 1, 1, 3, 0, 5, 3; a tie goes to the smaller disparity. Confirmed are four zeros.
         let dense = conclude(0);
         assert_eq!(dense.disparity.data(), [0; 7]);
-        let sure = 1 + (127 * 4 / 7_u32) as u8 + 50;
+        // Of seven pixels four agree; 50 of 50 + 64.
+        let sure = 1 + (127 * 4 / 7_u32) as u8 + (127 * 50 / 114_u32) as u8;
         assert_eq!(dense.confidence.data(), [sure, sure, 0, sure, 0, sure, 0]);
         let loose = Conclusion { confirmation: 1, least_confirmed: 2, tolerance: 1 };
         let dense = super::conclude(&winners, &segments, range, &loose);
