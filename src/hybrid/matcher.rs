@@ -12,8 +12,7 @@ use crate::{
     io::Picture,
 };
 
-/// Matches a pair on `gpu` and waits for the result. With `message_bytes` the strips are those of a device that
-/// could bind so much only; [`MAX_MESSAGE_BYTES`] is the largest that counts.
+/// Matches a pair on `gpu` and waits for the result.
 ///
 /// # Errors
 /// [`crate::Error::SizesDiffer`]; [`crate::Error::Parameter`] for a configuration that cannot be;
@@ -23,7 +22,8 @@ pub fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &HybridConfig
     compute_within(gpu, left, right, config, MAX_MESSAGE_BYTES)
 }
 
-/// As [`compute`], in strips whose messages take at most `message_bytes`.
+/// As [`compute`], in strips whose messages take at most `message_bytes`, of which no more than
+/// [`MAX_MESSAGE_BYTES`] count: less memory for more work, and a slightly different result.
 ///
 /// # Errors
 /// As [`compute`].
