@@ -8,12 +8,13 @@
 use std::path::Path;
 
 use hsad::{
-    config::{Config, Preset},
+    config::{Config, Method, Preset},
     dense::{Aggregation, CellBand, Dense, DenseConfig, Search, View},
     disparity::{self, DisparityRange, SCALE},
     eval::scene::{self, SceneFiles},
     features::Feature,
     gpu::DeviceChoice,
+    hybrid::HybridParameters,
     matching::{MatchConfig, Rows, Seed, match_features, refine},
     pair::{Backend, Pair},
     pipeline, reference,
@@ -95,11 +96,17 @@ fn main() -> Result<(), AnyError> {
         let shares = [visible.of_known, all.of_known, visible.of_estimated, all.of_estimated, scores.all.coverage()];
         Ok(shares.map(|share| 100.0 * share))
     })?;
-    for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
+    let hybrid = Method::Kamencay(HybridParameters::default());
+    for (name, config) in [
+        ("preset fast", Preset::Fast.config()),
+        ("preset balanced", Preset::Balanced.config()),
+        ("preset quality", Preset::Quality.config()),
+        ("method kamencay", Config { method: hybrid, ..Preset::Balanced.config() }),
+    ] {
         let columns = ["from px", "to px", "inside", "half bad"];
-        table(&format!("preset {preset:?}, the range found"), &columns, &scenes, |scene| {
+        table(&format!("{name}, the range found"), &columns, &scenes, |scene| {
             let views = (&scene.data.left, &scene.data.right);
-            let outcome = pipeline::run(&backend, views, &preset.config(), |_| ())?;
+            let outcome = pipeline::run(&backend, views, &config, |_| ())?;
             let range = outcome.range;
             let inside = scene.known().filter(|d| range.contains(d.round() as i32)).count();
             let share = 100.0 * inside as f64 / scene.known().count() as f64;

@@ -8,8 +8,19 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     features::FeatureConfig,
+    hybrid::{HybridConfig, HybridParameters},
     seeding::SeedingConfig,
 };
+
+/// How disparities for all pixels are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// As [`crate::dense`] does it.
+    Hsad,
+    /// As [`crate::hybrid`] does it, for comparison: what aggregates, interpolates, checks and refines there is not
+    /// asked for then. [`Config::reference`] and [`Config::equalise`] are.
+    Kamencay(HybridParameters),
+}
 
 /// All parameters of the pipeline.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +37,8 @@ pub struct Config {
     /// How many interest points and matches a figure shows, the strongest ones; `None`: all. All
     /// conclusions are drawn from all of them.
     pub strongest: Option<usize>,
+    /// How the dense half works.
+    pub method: Method,
     /// The view whose pixels get a disparity.
     pub reference: View,
     /// How matching costs are put together.
@@ -61,15 +74,25 @@ impl Config {
         }
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
-        self.dense(range, Brightness::SAME).validate()
+        match &self.method {
+            Method::Hsad => self.dense(range, Brightness::SAME).validate(),
+            Method::Kamencay(parameters) => self.hybrid(parameters, range, Brightness::SAME).validate(),
+        }
     }
 
-    /// The side of the matching window, or of the census transform's where paths put the costs together.
+    /// The side of the matching window, or of the census transform's where paths put the costs together: smaller
+    /// pictures are refused. The hybrid method's windows may lie outside.
     pub fn window(&self) -> u32 {
-        match self.aggregation {
-            Aggregation::Window { side, .. } => side,
-            Aggregation::Paths(_) => 5,
+        match (&self.method, self.aggregation) {
+            (Method::Kamencay(_), _) => 1,
+            (Method::Hsad, Aggregation::Window { side, .. }) => side,
+            (Method::Hsad, Aggregation::Paths(_)) => 5,
         }
+    }
+
+    /// What the hybrid method is asked to do in `range`, with the right view's brightness changed first.
+    pub fn hybrid(&self, parameters: &HybridParameters, range: DisparityRange, brightness: Brightness) -> HybridConfig {
+        HybridConfig { range, reference: self.reference, brightness, parameters: *parameters }
     }
 
     /// What the dense half is asked to do in `range`, with the right view's brightness changed first.
@@ -132,6 +155,7 @@ impl Preset {
             range: None,
             least: None,
             strongest: None,
+            method: Method::Hsad,
             reference: View::Left,
             aggregation: Aggregation::Paths(SEMI_GLOBAL),
             interpolation: Interpolation::Equiangular,

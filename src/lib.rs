@@ -48,8 +48,9 @@
 //! # The way through
 //!
 //! [`io`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
-//! [`pipeline`]. Each stage has one name in four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`,
-//! `src/reference/<stage>.rs` (its twin) and `tests/kernels/<stage>.rs`.
+//! [`pipeline`]; where its method is asked for, [`hybrid`] stands in the place of [`dense`]. Each stage has one name in
+//! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/reference/<stage>.rs` (its twin) and
+//! `tests/kernels/<stage>.rs`.
 //!
 //! Beside it, [`sparse`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
 //! results are where the truth is known.
@@ -62,6 +63,7 @@ pub mod eval;
 pub mod features;
 pub mod filter;
 pub mod gpu;
+pub mod hybrid;
 pub mod image;
 pub mod io;
 pub mod luma;
@@ -80,5 +82,6 @@ pub fn stages() -> Vec<gpu::Stage> {
     let mut stages = vec![luma::stage()];
     stages.extend(features::stages());
     stages.extend(dense::stages());
+    stages.extend(hybrid::stages());
     stages
 }

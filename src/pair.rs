@@ -5,6 +5,7 @@ use crate::{
     error::{Error, Result},
     features::{self, Detector, Feature, FeatureConfig},
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
+    hybrid::{self, HybridConfig},
     image::{Luma, reduced},
     io::Picture,
     luma::{MAX_SIDE, RgbaToLuma, packed_bytes, unpack, upload},
@@ -64,6 +65,17 @@ impl Backend {
         match self {
             Self::Gpu(gpu) => features::detect(gpu, luma, config),
             Self::Cpu => reference::detector::detect(luma, config),
+        }
+    }
+
+    /// The disparities of a pair by the hybrid method, which sees the colours of the pictures.
+    ///
+    /// # Errors
+    /// As [`hybrid::compute`].
+    pub fn hybrid(&self, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
+        match self {
+            Self::Gpu(gpu) => hybrid::compute(gpu, left, right, config),
+            Self::Cpu => reference::compute_hybrid(left, right, config),
         }
     }
 }

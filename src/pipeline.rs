@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use crate::{
-    config::Config,
-    dense::{Brightness, Dense},
+    config::{Config, Method},
+    dense::{Brightness, Dense, DenseConfig},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
+    hybrid::HybridConfig,
     io::Picture,
     pair::{Backend, Pair},
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
@@ -134,9 +135,20 @@ pub fn run(
         Some(found) if config.equalise => equalising(&found),
         _ => Brightness::SAME,
     };
-    let range = config.dense(range, brightness).searched(left.width())?;
-    enter(Some(Step::Dense));
-    let dense = pair.dense(&config.dense(range, brightness))?;
+    let (range, dense) = match &config.method {
+        Method::Hsad => {
+            let dense = config.dense(range, brightness);
+            let range = dense.searched(left.width())?;
+            enter(Some(Step::Dense));
+            (range, pair.dense(&DenseConfig { range, ..dense })?)
+        }
+        Method::Kamencay(parameters) => {
+            let hybrid = config.hybrid(parameters, range, brightness);
+            let range = hybrid.searched(left.width())?;
+            enter(Some(Step::Dense));
+            (range, backend.hybrid(left, right, &HybridConfig { range, ..hybrid })?)
+        }
+    };
     enter(None);
     Ok(Outcome { features, seeding, range, range_source, brightness, dense, times })
 }

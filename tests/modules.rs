@@ -71,7 +71,10 @@ fn stages_are_named_the_same_everywhere() {
         let name = stage.name;
         assert!(is_in("src/reference", name), "{name} has no twin");
         assert!(is_in("tests/kernels", name), "{name} has no test");
-        assert!(["src", "src/features", "src/dense"].iter().any(|half| is_in(half, name)), "{name} has no Rust side");
+        assert!(
+            ["src", "src/features", "src/dense", "src/hybrid"].iter().any(|half| is_in(half, name)),
+            "{name} has no Rust side"
+        );
     }
     let mut shaders: Vec<_> = std::fs::read_dir(root.join("shaders"))
         .expect("the folder of the shaders")

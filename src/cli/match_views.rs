@@ -26,6 +26,7 @@ use super::{
   hsad match left.png right.png -o out --focal 1400 --baseline 0.12
   hsad match im0.png im1.png -o out --calib calib.txt --device cpu
   hsad match left.png right.png -o out --preset paper --figures
+  hsad match left.png right.png -o out --method kamencay
 
 Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified (--force goes on all the same)"))]
 pub struct Match {

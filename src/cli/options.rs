@@ -5,11 +5,12 @@ use std::{fmt::Display, path::PathBuf};
 use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
-    config::{Config, Preset},
+    config::{Config, Method, Preset},
     dense::{Aggregation, Interpolation, OtherView, Search, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
+    hybrid::HybridParameters,
     io::Calibration,
     matching::MatchConfig,
     pair::Backend,
@@ -85,9 +86,12 @@ pub fn with_default(help: &str, value: impl Display) -> String {
 #[derive(Args)]
 #[command(next_help_heading = "Matching")]
 pub struct MatchOptions {
-    /// Where parameters come from that no option names
-    #[arg(long, value_enum, default_value = "balanced")]
-    preset: PresetName,
+    /// How disparities are found
+    #[arg(long, value_enum, default_value = "hsad")]
+    method: MethodName,
+    /// Where parameters come from that no option names [default: balanced]
+    #[arg(long, value_enum)]
+    preset: Option<PresetName>,
     /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 11, paper: 7; balanced and quality
     /// match semi-globally instead]
     #[arg(long, value_name = "PX")]
@@ -147,7 +151,11 @@ impl MatchOptions {
     /// # Errors
     /// [`Error::Parameter`] for a value out of its range.
     pub fn config(&self, features: &FeatureOptions) -> Result<Config> {
-        let mut config = Preset::from(self.preset).config();
+        let mut config = self.preset.map_or(Preset::default(), Preset::from).config();
+        if let MethodName::Kamencay = self.method {
+            self.refuse_what_only_hsad_does()?;
+            config.method = Method::Kamencay(HybridParameters::default());
+        }
         config.features = features.over(config.features);
         config.seeding.matching.ratio = self.ratio.unwrap_or(config.seeding.matching.ratio);
         config.least = self.min_disparity.or(config.least);
@@ -183,6 +191,29 @@ impl MatchOptions {
         config.force = self.force;
         config.validate()?;
         Ok(config)
+    }
+}
+
+impl MatchOptions {
+    /// The options that the hybrid method has no use for.
+    fn refuse_what_only_hsad_does(&self) -> Result<()> {
+        let given = [
+            ("--preset", self.preset.is_some()),
+            ("--window", self.window.is_some()),
+            ("--uniqueness", self.uniqueness.is_some()),
+            ("--max-lr-difference", self.max_lr_difference.is_some()),
+            ("--no-lr-check", self.no_lr_check),
+            ("--no-fill", self.no_fill),
+            ("--interpolation", self.interpolation.is_some()),
+        ];
+        match given.into_iter().find(|&(_, is_given)| is_given) {
+            None => Ok(()),
+            Some((name, _)) => Err(Error::Parameter {
+                name: "--method",
+                value: "kamencay".into(),
+                expected: format!("{name} is for --method hsad: leave one of them out"),
+            }),
+        }
     }
 }
 
@@ -236,6 +267,14 @@ impl DepthOptions {
         };
         Ok(Some(calibration))
     }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum MethodName {
+    /// Block matching or semi-global matching, as a preset says
+    Hsad,
+    /// Mean-shift segments and belief propagation, after Kamencay and others: for comparison
+    Kamencay,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -1,9 +1,10 @@
 //! `report.json`: everything about a run, for programs.
 
 use hsad::{
-    config::Config,
+    config::{Config, Method},
     dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
+    hybrid::HybridParameters,
     io::Calibration,
     pair::Backend,
     pipeline::RangeSource,
@@ -59,46 +60,13 @@ fn number(value: f32) -> Value {
 
 /// What was asked for.
 pub fn parameters(config: &Config) -> Value {
-    let Config {
-        features,
-        seeding,
-        range,
-        least,
-        strongest,
-        reference,
-        aggregation,
-        interpolation,
-        uniqueness,
-        consistency,
-        refinement,
-        equalise,
-        force,
-    } = config;
+    let Config { features, seeding, range, least, strongest, method, reference, equalise, force, .. } = config;
     let matching = &seeding.matching;
-    json!({
+    let mut parameters = json!({
+        "method": match method { Method::Hsad => "hsad", Method::Kamencay(_) => "kamencay" },
         "reference": match reference { View::Left => "left", View::Right => "right" },
-        "aggregation": aggregation_of(aggregation),
-        "window": match aggregation { Aggregation::Window { side, .. } => Some(side), Aggregation::Paths(_) => None },
-        "search": match aggregation {
-            Aggregation::Window { search: Search::CoarseToFine, .. } => "coarse to fine",
-            Aggregation::Window { search: Search::Whole, .. } | Aggregation::Paths(_) => "whole",
-        },
         "range": range.map(ends),
         "min_disparity": least,
-        "interpolation": match interpolation {
-            Interpolation::None => "none",
-            Interpolation::Parabola => "parabola",
-            Interpolation::Equiangular => "equiangular",
-        },
-        "uniqueness_percent": uniqueness,
-        "max_lr_difference_px": consistency.map(|difference| f64::from(difference) / f64::from(SCALE)),
-        "refinement": refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| json!({
-            "support": support,
-            "medians_before": medians_before,
-            "fill": fill,
-            "median_of_filled": median_of_filled,
-            "medians_after": medians_after,
-        })),
         "equalise": equalise,
         "force": force,
         "features": {
@@ -115,14 +83,92 @@ pub fn parameters(config: &Config) -> Value {
             "max_dy_px": number(seeding.max_dy),
         },
         "strongest": strongest,
-    })
+    });
+    let of_method = match method {
+        Method::Hsad => dense(config),
+        Method::Kamencay(parameters) => hybrid(parameters),
+    };
+    for (name, value) in of_method {
+        parameters[name] = value;
+    }
+    parameters
+}
+
+/// What only the project's own dense half is told.
+fn dense(config: &Config) -> Vec<(&'static str, Value)> {
+    let Config { aggregation, interpolation, uniqueness, consistency, refinement, .. } = config;
+    let window = match aggregation {
+        Aggregation::Window { side, .. } => Some(side),
+        Aggregation::Paths(_) => None,
+    };
+    let search = match aggregation {
+        Aggregation::Window { search: Search::CoarseToFine, .. } => "coarse to fine",
+        Aggregation::Window { search: Search::Whole, .. } | Aggregation::Paths(_) => "whole",
+    };
+    let interpolation = match interpolation {
+        Interpolation::None => "none",
+        Interpolation::Parabola => "parabola",
+        Interpolation::Equiangular => "equiangular",
+    };
+    let max_lr_difference = consistency.map(|difference| f64::from(difference) / f64::from(SCALE));
+    let refinement = refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| {
+        json!({
+            "support": support,
+            "medians_before": medians_before,
+            "fill": fill,
+            "median_of_filled": median_of_filled,
+            "medians_after": medians_after,
+        })
+    });
+    vec![
+        ("aggregation", aggregation_of(aggregation)),
+        ("window", json!(window)),
+        ("search", json!(search)),
+        ("interpolation", json!(interpolation)),
+        ("uniqueness_percent", json!(uniqueness)),
+        ("max_lr_difference_px", json!(max_lr_difference)),
+        ("refinement", json!(refinement)),
+    ]
+}
+
+/// What only the hybrid method is told.
+fn hybrid(parameters: &HybridParameters) -> Vec<(&'static str, Value)> {
+    let HybridParameters { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } = parameters;
+    vec![
+        ("mean_shift", json!({ "radius_px": mean_shift.radius, "range": mean_shift.range, "turns": mean_shift.turns })),
+        ("segments", json!({ "join": segmentation.join, "least_px": segmentation.least })),
+        ("cost", json!({ "window": 2 * cost.radius + 1, "color": part(cost.color), "gradient": part(cost.gradient) })),
+        (
+            "belief_propagation",
+            json!({
+                "slope": smoothness.slope,
+                "limit": smoothness.limit,
+                "links": {
+                    "halving": links.halving, "least": links.least, "inside": links.inside, "across": links.across,
+                },
+                "levels": levels,
+                "turns": turns,
+            }),
+        ),
+        (
+            "conclusion",
+            json!({
+                "confirmation_px": conclusion.confirmation,
+                "least_confirmed": conclusion.least_confirmed,
+                "tolerance_px": conclusion.tolerance,
+            }),
+        ),
+    ]
+}
+
+fn part(Difference { weight, limit }: Difference) -> Value {
+    json!({ "weight": weight, "limit": limit })
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
     let Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }) = aggregation else {
         return "window".into();
     };
-    let part = |Difference { weight, limit }: Difference| json!({ "weight": weight, "limit": limit });
     json!({
         "paths": paths.directions().len(),
         "other_view": match other_view { OtherView::Searched => "searched", OtherView::Claimed => "claimed" },

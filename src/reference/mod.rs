@@ -3,6 +3,10 @@
 //! They are what the kernels are tested against, and what computes where there is no adapter.
 //! Integer stages equal their kernels bit for bit.
 
+mod belief;
+mod belief_cost;
+mod belief_reduce;
+mod belief_select;
 mod block_match;
 mod cell_ranges;
 mod census;
@@ -15,10 +19,12 @@ pub mod detector;
 mod fill;
 pub mod haar;
 pub mod hessian;
+mod hybrid;
 pub mod integral;
 pub mod integral_columns;
 pub mod integral_rows;
 pub mod luma;
+mod mean_shift;
 pub mod nonmax;
 pub mod orientation;
 mod pad;
@@ -28,6 +34,10 @@ mod support;
 mod weighted_median;
 pub mod workgroups;
 
+pub use belief::{Grid, belief};
+pub use belief_cost::belief_cost;
+pub use belief_reduce::belief_reduced;
+pub use belief_select::belief_select;
 pub use block_match::{block_match, cost, winners};
 pub use cell_ranges::{CellPlane, cell_ranges, partner_ranges};
 pub use census::census;
@@ -36,6 +46,8 @@ pub use consistency::check_consistency;
 pub use cost::cost_volume;
 pub use dense::compute_dense;
 pub use fill::filled;
+pub use hybrid::{compute_hybrid, compute_hybrid_within};
+pub use mean_shift::mean_shift;
 pub use pad::{brightened, padded};
 pub use path::path;
 pub use select::{path_winners, select};

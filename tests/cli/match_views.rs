@@ -10,7 +10,9 @@ use hsad::{
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::json;
 
-use crate::common::{folder, grey_png, hsad, hsad_without_driver, match_on_cpu, names, noise, report, scene, views};
+use crate::common::{
+    fails, folder, grey_png, hsad, hsad_without_driver, match_on_cpu, names, noise, report, scene, views,
+};
 
 #[test]
 fn writes_maps_that_agree_and_a_report() {
@@ -89,7 +91,7 @@ fn options_override_the_preset() {
     let report = report(out);
     assert_eq!(report["range"], json!({ "min": -3, "max": 36, "count": 40, "source": "asked" }));
     let expected = json!({
-        "reference": "right", "aggregation": "window", "window": 5, "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
+        "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
         "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "force": false,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },
@@ -98,6 +100,83 @@ fn options_override_the_preset() {
     assert_eq!(report["parameters"], expected);
     let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
     assert!(map.data().iter().all(|&d| d == NONE || (d % 256 == 0 && (-768..=36 * 256).contains(&d))));
+}
+
+#[test]
+fn the_hybrid_method_finds_disparities_too() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let run = |device: &str| {
+        let out = temporary.path().join(device);
+        let mut command = hsad();
+        command.arg("match").args([&left, &right]).arg("-o").arg(&out);
+        command.args(["--method", "kamencay", "--device", device]);
+        command.assert().success().stdout(contains("found from").and(contains("coverage"))).stderr("");
+        (fs::read(out.join("disparity.pfm")).unwrap(), fs::read(out.join("confidence.png")).unwrap())
+    };
+    assert!(run("cpu") == run("0"), "the device and the twins differ");
+    let out = temporary.path().join("0");
+    let found = report(&out);
+    let parameters = &found["parameters"];
+    assert_eq!([&parameters["method"], &parameters["reference"]], ["kamencay", "left"]);
+    assert_eq!((&parameters["belief_propagation"]["levels"], &parameters["cost"]["window"]), (&json!(5), &json!(3)));
+    assert_eq!((&parameters["aggregation"], &found["range"]["source"]), (&json!(null), &json!("seeds")));
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    let truth = pfm::read(&scene("planes", "disp_left.pfm")).unwrap();
+    let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
+    assert!(score.bad[0].of_known < 0.15 && score.coverage() == 1.0, "{score:?}");
+}
+
+#[test]
+fn the_hybrid_method_searches_what_it_is_told_from_either_view() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path();
+    let mut command = match_on_cpu(&left, &right, out);
+    command.args(["--method", "kamencay", "--reference", "right", "--min-disparity", "-3", "--disparities", "72"]);
+    command.args(["--no-equalise", "-q"]).assert().success().stdout("").stderr("");
+    let found = report(out);
+    assert_eq!(found["range"], json!({ "min": -3, "max": 68, "count": 72, "source": "asked" }));
+    assert_eq!((&found["parameters"]["equalise"], &found["parameters"]["reference"]), (&json!(false), &json!("right")));
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    let truth = pfm::read(&scene("planes", "disp_right.pfm")).unwrap();
+    let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
+    assert!(score.bad[0].of_known < 0.15 && score.coverage() == 1.0, "{score:?}");
+}
+
+#[test]
+fn the_hybrid_method_takes_any_picture() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    for (width, height) in [(1, 1), (3, 1), (1, 40), (50, 30)] {
+        grey_png(&path("black.png"), &Plane::filled(width, height, 0));
+        grey_png(&path("noise.png"), &noise(width, height, 3));
+        for (left, right) in [("black.png", "black.png"), ("black.png", "noise.png"), ("noise.png", "noise.png")] {
+            let mut command = match_on_cpu(&path(left), &path(right), &path("out"));
+            command.args(["--method", "kamencay"]).assert().success();
+        }
+    }
+}
+
+#[test]
+fn options_of_the_other_method_are_refused() {
+    let temporary = folder();
+    for args in [
+        &["--preset", "fast"][..],
+        &["--window", "7"],
+        &["--uniqueness", "1"],
+        &["--max-lr-difference", "1"],
+        &["--no-lr-check"],
+        &["--no-fill"],
+        &["--interpolation", "none"],
+    ] {
+        let [left, right] = views("planes");
+        let mut command = match_on_cpu(&left, &right, temporary.path());
+        command.args(["--method", "kamencay"]).args(args);
+        fails(command, 2, &format!("{} is for --method hsad: leave one of them out", args[0]));
+    }
+    let [left, right] = views("planes");
+    let mut command = match_on_cpu(&left, &right, temporary.path());
+    command.args(["--method", "kamencay", "--disparities", "600", "--min-disparity", "-300"]);
+    fails(command, 2, "belief propagation takes at most 512");
 }
 
 #[test]

@@ -4,6 +4,10 @@
 //! A device is part of these tests: without any they fail. Mesa's lavapipe needs no GPU.
 #![cfg(feature = "cli")]
 
+mod belief;
+mod belief_cost;
+mod belief_reduce;
+mod belief_select;
 mod block_match;
 mod cell_ranges;
 mod census;
@@ -16,10 +20,12 @@ mod detector;
 mod fill;
 mod halve;
 mod hessian;
+mod hybrid;
 mod integral_columns;
 mod integral_rows;
 mod luma;
 mod matcher;
+mod mean_shift;
 mod nonmax;
 mod orientation;
 mod pad;

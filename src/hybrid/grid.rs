@@ -1,0 +1,92 @@
+//! The grids of belief propagation: strips of the picture, each halved again and again.
+
+use crate::error::{Error, Result};
+
+/// More than any belief: the data cost of a disparity beyond the last, which only fills a word.
+pub const FAR: u32 = 0xffff;
+
+/// The messages of a strip take at most these bytes: what a device must be able to bind at least. It is not the
+/// device's own limit, so that the strips, which do show in the result, are the same everywhere.
+pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
+
+/// Rows that a strip sees beyond those that it decides, above and below.
+pub const OVERLAP: u32 = 16;
+
+/// Rows of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Strip {
+    /// The first one.
+    pub first_row: u32,
+    /// How many.
+    pub rows: u32,
+}
+
+/// Strips with the rows among theirs that each decides, for pictures of `size` with so many `disparities`: one strip
+/// where its messages take at most `bytes`.
+///
+/// # Errors
+/// [`Error::TooLarge`] where not even as many rows as two strips share fit.
+pub fn strips((width, height): (u32, u32), disparities: u32, bytes: u64) -> Result<Vec<(Strip, Strip)>> {
+    let row_bytes = 16 * u64::from(width) * u64::from(disparities.div_ceil(4));
+    let most = bytes / row_bytes;
+    if most >= height.into() {
+        let whole = Strip { first_row: 0, rows: height };
+        return Ok(vec![(whole, whole)]);
+    }
+    if most < u64::from(3 * OVERLAP) {
+        return Err(Error::TooLarge {
+            what: format!(
+                "belief propagation in {} rows of a picture {width} px wide with {disparities} disparities",
+                3 * OVERLAP
+            ),
+            needed: row_bytes * u64::from(3 * OVERLAP),
+            limit: bytes,
+            way_out: "search fewer disparities, scale the pictures down, or use --method hsad".into(),
+        });
+    }
+    let step = most as u32 - 2 * OVERLAP;
+    let strip = |first: u32| {
+        let decided = Strip { first_row: first, rows: step.min(height - first) };
+        let begin = first.saturating_sub(OVERLAP);
+        let end = (first + decided.rows + OVERLAP).min(height);
+        (Strip { first_row: begin, rows: end - begin }, decided)
+    };
+    Ok((0..height).step_by(step as usize).map(strip).collect())
+}
+
+/// The sizes of the grids of a strip, from the finest on: each half the last, rounded up.
+pub fn levels(size: (u32, u32), count: u32) -> Vec<(u32, u32)> {
+    let sizes = std::iter::successors(Some(size), |&(w, h)| (w.max(h) > 1).then_some((w.div_ceil(2), h.div_ceil(2))));
+    sizes.take(count as usize).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_decide_each_row_once_and_see_beyond() {
+        let row = 16 * 10 * 2;
+        assert_eq!(strips((10, 200), 7, 200 * row).unwrap().len(), 1);
+        for most in [48, 50, 120, 199] {
+            let mut next = 0;
+            for (seen, decided) in strips((10, 200), 7, most * row).unwrap() {
+                assert_eq!(decided.first_row, next);
+                next += decided.rows;
+                assert!(u64::from(seen.rows) <= most && decided.rows > 0);
+                assert_eq!(seen.first_row, decided.first_row.saturating_sub(OVERLAP));
+                assert_eq!(seen.first_row + seen.rows, (next + OVERLAP).min(200));
+            }
+            assert_eq!(next, 200);
+        }
+        let error = strips((10, 200), 7, 47 * row).unwrap_err().to_string();
+        assert!(error.contains("48 rows") && error.contains("search fewer disparities"), "{error}");
+    }
+
+    #[test]
+    fn grids_are_halved_down_to_one_node() {
+        assert_eq!(levels((5, 3), 9), [(5, 3), (3, 2), (2, 1), (1, 1)]);
+        assert_eq!(levels((5, 3), 2), [(5, 3), (3, 2)]);
+        assert_eq!(levels((1, 1), 5), [(1, 1)]);
+    }
+}
