@@ -1,7 +1,5 @@
 //! Block matching: SAD, winner-take-all, uniqueness and sub-pixel. `shaders/block_match.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{
     config::{DenseConfig, View},
     pad::{Brightness, PadParams},
@@ -10,7 +8,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -48,20 +46,20 @@ impl Tile {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    stride: u32,
-    reference_start: u32,
-    searched_start: u32,
-    min_disparity: i32,
-    disparities: u32,
-    skipped: u32,
-    steps: u32,
-    uniqueness: u32,
-    confidence_offset: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        stride: u32,
+        reference_start: u32,
+        searched_start: u32,
+        min_disparity: i32,
+        disparities: u32,
+        skipped: u32,
+        steps: u32,
+        uniqueness: u32,
+        confidence_offset: u32,
+    }
 }
 
 /// What is wanted of a view.
@@ -103,7 +101,7 @@ impl BlockMatch {
                 include_str!("../../shaders/shared/selection.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: [
                 ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
                 ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
