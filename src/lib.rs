@@ -66,6 +66,8 @@ pub mod pair;
 pub mod pipeline;
 pub mod reference;
 pub mod seeding;
+#[cfg(feature = "verify")]
+pub mod verify;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -11,6 +11,7 @@ mod products;
 mod report;
 mod summary;
 pub mod terminal;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -38,6 +39,7 @@ enum Command {
     Features(features::Features),
     Devices(devices::Devices),
     Demo(demo::Demo),
+    Verify(verify::Verify),
 }
 
 impl Cli {
@@ -49,6 +51,7 @@ impl Cli {
             Command::Features(command) => command.run(),
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
+            Command::Verify(command) => command.run(),
         }
     }
 }

@@ -62,6 +62,11 @@ impl Progress {
         self.0.set_message(what);
     }
 
+    /// Prints something meanwhile, without it and what is shown getting in each other's way.
+    pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
+    }
+
     /// Says which step of the pipeline begins now.
     pub fn step(&self, step: Step) {
         self.begin(match step {

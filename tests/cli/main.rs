@@ -10,6 +10,7 @@ mod features;
 mod match_views;
 #[path = "../pictures/mod.rs"]
 mod pictures;
+mod verify;
 
 use common::hsad;
 use predicates::{prelude::PredicateBooleanExt, str::contains};
@@ -21,7 +22,7 @@ fn help_has_examples_and_exit_codes() {
         .assert()
         .success()
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
-    for command in ["match", "features", "devices", "demo"] {
+    for command in ["match", "features", "devices", "demo", "verify"] {
         hsad().args([command, "--help"]).assert().success().stdout(contains("Examples:").and(contains("Usage:")));
     }
     hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));

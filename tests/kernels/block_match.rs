@@ -1,35 +1,13 @@
 //! Block matching.
 
 use hsad::{
-    dense::{BlockMatch, Brightness, DenseConfig, Interpolation, Layout, Pad, Tile, View, Wanted},
+    dense::{DenseConfig, Interpolation, Tile, View},
     disparity::{DisparityRange, SCALE},
     image::Luma,
-    luma::pack,
-    reference,
+    verify::blocks::BlockMatchTrial,
 };
 
 use crate::common::*;
-
-/// Padding and block matching of one view, nothing else: the words written.
-fn on_device(left: &Luma, right: &Luma, view: View, config: &DenseConfig, wanted: Wanted, tile: Tile) -> Vec<i32> {
-    let device = &gpu().device;
-    let (width, height) = left.size();
-    let layout = Layout::new(left.size(), 0, height, config, &[tile]).expect("a layout");
-    let planes = upload(&vec![0_u32; layout.words() as usize]);
-    let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
-    let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
-    let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
-    let [left_padding, right_padding] = layout.padding(Brightness::SAME);
-    let dispatches = [
-        pad.prepare(device, left_padding, &upload_luma(left), &planes),
-        pad.prepare(device, right_padding, &upload_luma(right), &planes),
-        kernel.prepare(device, &layout, &planes, &matches, width * height),
-    ];
-    poison(&planes);
-    poison(&matches);
-    run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
-    download(&matches)
-}
 
 /// A pair with a step in it, its right view noisier than its left.
 fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
@@ -52,15 +30,8 @@ fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) 
 }
 
 fn compare_tiled(what: &str, (left, right): (&Luma, &Luma), view: View, config: &DenseConfig, tile: Tile) {
-    let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
-    let expected = reference::block_match(left, right, view, &searched);
-    let actual = on_device(left, right, view, config, Wanted::Matches, tile);
-    let (disparities, confidences) = actual.split_at(left.data().len());
-    assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
-    let expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
-    assert_same(&format!("{what}, confidences"), confidences, &expected);
-    let winners = on_device(left, right, view, config, Wanted::Winners, tile);
-    assert_same(&format!("{what}, winners"), &winners, reference::winners(left, right, view, &searched).data());
+    let (left, right, config) = (left.clone(), right.clone(), config.clone());
+    assert_twin(what, &BlockMatchTrial { left, right, view, config, tile });
 }
 
 #[test]
@@ -131,10 +102,12 @@ fn by_hand() {
     // and a window without it costs nothing at any disparity that does not see it either.
     let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
     let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
-    let winners = on_device(&view(5), &view(3), View::Left, &config, Wanted::Winners, Tile::HARDWARE);
+    let (left, right) = (view(5), view(3));
+    let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, tile: Tile::HARDWARE });
     let d = |whole: i32| whole * SCALE;
     // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
     // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
-    let expected = [d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
-    assert_eq!(winners, expected);
+    let expected = vec![d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
+    // The disparities, the confidences, and the winners.
+    assert_eq!(left[2], expected.into());
 }

@@ -220,7 +220,7 @@ fn a_changed_copy_disagrees() {
     let larger = changed(&|s| s.bindings = &[Binding::Uniform(Shape::Struct(12, &[])), Binding::Read, Binding::Write]);
     assert!(larger[0].contains("it has 8 bytes, Rust's 12"), "{larger:?}");
     let [params, ..] = *good.bindings else { unreachable!("it has three") };
-    let bound = |rest: &[Binding]| Vec::from([&[params], rest].concat()).leak();
+    let bound = |rest: &[Binding]| [&[params], rest].concat().leak();
     assert_eq!(changed(&|s| s.bindings = bound(&[Binding::Write, Binding::Write])).len(), 1);
     assert_eq!(changed(&|s| s.bindings = bound(&[Binding::Read])).len(), 1);
     assert_eq!(changed(&|s| s.source = "fn other() {}").len(), 2);
