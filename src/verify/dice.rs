@@ -30,7 +30,7 @@ impl Dice {
 
     /// A number below `count`.
     pub fn below(&mut self, count: u32) -> u32 {
-        (u64::from(self.word()) * u64::from(count) >> 32) as u32
+        ((u64::from(self.word()) * u64::from(count)) >> 32) as u32
     }
 
     /// A number from `least` to `most`.

@@ -1,6 +1,6 @@
 //! Any kernel, at any size, with anything that follows from a seed.
 //!
-//! `HSAD_RANDOM_CASES=2000 cargo test --release --test kernels random` takes an hour or two on a software driver.
+//! `PROPTEST_CASES=2000 cargo test --test kernels anything` takes half an hour on a software driver.
 
 use hsad::verify::{Case, Subject, subjects};
 use proptest::{
@@ -17,7 +17,7 @@ fn side() -> impl Strategy<Value = u32> {
 
 #[test]
 fn anything_equals_the_twin() {
-    let cases = std::env::var("HSAD_RANDOM_CASES").map_or(24, |cases| cases.parse().expect("a number of cases"));
+    let cases = std::env::var("PROPTEST_CASES").map_or(24, |cases| cases.parse().expect("a number of cases"));
     let all: Vec<&'static Subject> = subjects().collect();
     let strategy = (proptest::sample::select(all), (side(), side()), any::<u32>());
     // The command that repeats a failure is the record of it.

@@ -28,7 +28,7 @@ impl Trial for Wrong {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let words = match self {
+        let words: Vec<u32> = match self {
             Self::Word => bench.download(&bench.upload(&[1_u32, 2, 4])?)?,
             Self::Length => bench.download(&bench.upload(&[1_u32, 2])?)?,
             Self::Command => {
