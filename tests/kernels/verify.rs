@@ -4,7 +4,6 @@ use hsad::{
     Result,
     error::Error,
     verify::{Array, Bench, Case, Subject, Trial},
-    wgpu,
 };
 
 use crate::common::bench;
@@ -34,8 +33,7 @@ impl Trial for Wrong {
             Self::Command => {
                 // Copies more than there is.
                 let buffers = [bench.output(1)?, bench.output(1)?];
-                let encoder = &mut bench.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                encoder.copy_buffer_to_buffer(&buffers[0], 0, &buffers[1], 0, Some(64));
+                bench.run(|encoder| encoder.copy_buffer_to_buffer(&buffers[0], 0, &buffers[1], 0, Some(64)));
                 vec![1, 2, 3]
             }
             Self::Error => return Err(Error::DeviceLost("it fell off the bus".into())),
