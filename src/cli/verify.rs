@@ -180,7 +180,7 @@ fn described(gpu: &Gpu) -> String {
 fn head() -> String {
     let [kernel, size, seed, difference] = ["kernel", "size", "seed", "difference"];
     let [tolerance, golden, device, twin] = ["tolerance", "golden", "device", "twin"];
-    format!("{kernel:<17}{size:<9}{seed:>4}  {difference:<18}{tolerance:<26}{golden:<7}{device:>9}{twin:>10}\n")
+    format!("{kernel:<17}{size:<9}{seed:>4}  {difference:<20}{tolerance:<26}{golden:<7}{device:>9}{twin:>10}\n")
 }
 
 /// What people read of a case: of its arrays the one that is nearest to its tolerance or furthest beyond.
@@ -201,7 +201,7 @@ fn row(outcome: &Outcome) -> String {
     };
     let (width, height) = case.size;
     let mut text = format!(
-        "{:<17}{:<9}{:>4}  {difference:<18}{tolerance:<26}{:<7}{:>9}{:>10}\n",
+        "{:<17}{:<9}{:>4}  {difference:<20}{tolerance:<26}{:<7}{:>9}{:>10}\n",
         case.subject.name,
         format!("{width}x{height}"),
         case.seed,
