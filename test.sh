@@ -3,6 +3,9 @@
 #
 # Needs a Rust toolchain and a Vulkan driver. Where there is no driver it installs Mesa's lavapipe,
 # which needs no GPU (apt only). Without any adapter it fails: nothing is skipped in silence.
+#
+# `hsad verify` runs on a second driver as well, SwiftShader, whose compiler and subgroups are others; Debian's package
+# chromium has it. HSAD_SWIFTSHADER names its ICD file elsewhere. Where it is not installed, root and apt install it.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -50,3 +53,18 @@ RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 say 'tests'
 [ -d ../shared/data ] || echo 'without the real pairs of ../shared/data: what needs them is skipped'
 cargo test
+
+say 'regression suite'
+verify() { "$hsad" verify -o "$(mktemp -d)/hsad-verify" "$@"; }
+verify
+
+say 'regression suite, quick, on SwiftShader'
+swiftshader="${HSAD_SWIFTSHADER:-/usr/lib/chromium/vk_swiftshader_icd.json}"
+if [ ! -f "$swiftshader" ] && [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium || true
+fi
+if [ -f "$swiftshader" ]; then
+    VK_DRIVER_FILES="$swiftshader" verify --quick --device swiftshader
+else
+    echo "NOT RUN: there is no $swiftshader (Debian: apt-get install chromium), so one driver is all that was tested"
+fi

@@ -92,6 +92,20 @@ pub enum Error {
     #[error("the device cannot run this: {0}")]
     Unsupported(String),
 
+    /// The device does not compute what the CPU twins do.
+    #[error(
+        "{device} computes wrong results ({what}): use another device (hsad devices) or --device cpu, and repeat it \
+         with {command}"
+    )]
+    WrongResults {
+        /// The device's name.
+        device: String,
+        /// Which kernel, and in what it is wrong.
+        what: String,
+        /// What repeats it.
+        command: String,
+    },
+
     /// The device ran out of memory.
     #[error("the device ran out of memory for {0}: use a smaller picture or another device")]
     OutOfMemory(String),

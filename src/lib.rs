@@ -43,7 +43,7 @@
 //! - Ties go to the smaller disparity; lists are in raster order of their scale.
 //! - The dense half, the integral image, the determinant of the Hessian and the list of interest points are integer
 //!   arithmetic: the same bytes on every device and on none. Sub-sample positions, orientations and descriptors are
-//!   `f32`, with tolerances stated where they are tested.
+//!   `f32`, with tolerances stated where they are verified: the feature `verify` holds a device against the twins.
 //!
 //! # The way through
 //!
@@ -73,6 +73,8 @@ pub mod pipeline;
 pub mod reference;
 pub mod seeding;
 pub mod sparse;
+#[cfg(feature = "verify")]
+pub mod verify;
 
 pub use error::{Error, Result};
 pub use wgpu;

@@ -5,17 +5,17 @@
 
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Gpu, Kernel, Stage, guarded, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, guarded, shader_struct, storage_buffer, uniform_buffer},
     image::Luma,
 };
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+    }
 }
 
 /// The stage that turns RGBA8 into packed luma.
@@ -23,7 +23,7 @@ pub fn stage() -> Stage {
     Stage {
         name: "luma",
         source: include_str!("../shaders/luma.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }
 }

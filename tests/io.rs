@@ -21,6 +21,11 @@ use proptest::prelude::*;
 const FORMATS: [ImageFormat; 6] =
     [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
 
+/// How many cases each property is tried with: `PROPTEST_CASES=100000 cargo test --test io` for a long search.
+fn cases_or(usual: u32) -> u32 {
+    std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("a number of cases"))
+}
+
 /// A decoded picture's largest layout, with room for what a codec keeps beside it.
 const MAX_PICTURE_BYTES: usize = 9 * MAX_PIXELS as usize;
 
@@ -45,6 +50,14 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
 fn photograph() -> DynamicImage {
     let pixel = |x: u32, y: u32| image::Rgb([(x * 10) as u8, (y * 15) as u8, (200 - 3 * x - 5 * y) as u8]);
     DynamicImage::ImageRgb8(image::RgbImage::from_fn(24, 16, pixel))
+}
+
+/// 24x16 disparities, some of them none, as a 16-bit PNG.
+fn disparities() -> Vec<u8> {
+    let map = DisparityMap::from_fn(24, 16, |x, y| if x == y { NONE } else { (x * 700 + y * 11 + 1) as i32 });
+    let mut bytes = Vec::new();
+    disparity_png::write(&mut bytes, &map).unwrap();
+    bytes
 }
 
 fn plane<T: std::fmt::Debug + Clone>(value: impl Strategy<Value = T>) -> impl Strategy<Value = Plane<T>> {
@@ -130,12 +143,33 @@ proptest! {
 
     #[test]
     fn calibration_of_random_text(text in "\\PC{0,200}", lines in "((cam[01]|doffs|baseline|width)=?[-0-9.eENainf;\\[\\] ]{0,40}\n){0,8}") {
-        for text in [text, lines] {
-            if let Ok(calibration) = Calibration::parse(&text, path()) {
-                prop_assert!(calibration.validate().is_ok(), "{:?}", calibration);
-            }
-        }
+        check_calibration(&text)?;
+        check_calibration(&lines)?;
     }
+
+    #[test]
+    fn calibration_of_mutated_bytes(bytes in mutated(CALIBRATION.into())) {
+        check_calibration(&String::from_utf8_lossy(&bytes))?;
+    }
+}
+
+const CALIBRATION: &str = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]
+cam1=[999.421 0 326.96; 0 999.421 252.932; 0 0 1]
+doffs=32.778
+baseline=193.001
+width=741
+height=497
+ndisp=64
+";
+
+fn check_calibration(text: &str) -> Result<(), TestCaseError> {
+    let (result, allocated) = largest_allocation(|| Calibration::parse(text, path()));
+    // Each line is an entry of a table, at the most.
+    prop_assert!(allocated <= 64 * text.len() + 4096, "{} bytes reserved for {}", allocated, text.len());
+    if let Ok(calibration) = result {
+        prop_assert!(calibration.validate().is_ok(), "{:?}", calibration);
+    }
+    Ok(())
 }
 
 fn check_pfm(bytes: &[u8]) -> Result<(), TestCaseError> {
@@ -149,7 +183,7 @@ fn check_pfm(bytes: &[u8]) -> Result<(), TestCaseError> {
 
 proptest! {
     // Each case encodes a picture, or decodes one in six formats.
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases_or(64)))]
 
     #[test]
     fn disparity_png_comes_back(map in plane(prop_oneof![1..65536_i32, Just(NONE)])) {
@@ -178,6 +212,11 @@ proptest! {
     }
 
     #[test]
+    fn disparity_png_of_mutated_bytes(bytes in mutated(disparities())) {
+        check_picture(&bytes)?;
+    }
+
+    #[test]
     fn pictures_of_mutated_bytes(files in FORMATS.map(|format| mutated(encoded(&photograph(), format)))) {
         for bytes in files {
             check_picture(&bytes)?;
@@ -192,7 +231,11 @@ fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {
         prop_assert!(picture.data().iter().all(|pixel| pixel[3] == 255));
     }
     // Both read the same files, but only one of them 16-bit grey.
-    let _ = disparity_png::decode(bytes, path());
+    let (map, allocated) = largest_allocation(|| disparity_png::decode(bytes, path()));
+    prop_assert!(allocated <= MAX_PICTURE_BYTES, "{} bytes reserved", allocated);
+    if let Ok(map) = map {
+        prop_assert!(map.data().iter().all(|&disparity| disparity == NONE || (1..=65535).contains(&disparity)));
+    }
     Ok(())
 }
 

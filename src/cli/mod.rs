@@ -13,6 +13,7 @@ mod report;
 mod score;
 mod summary;
 pub mod terminal;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -41,6 +42,7 @@ enum Command {
     Devices(devices::Devices),
     Demo(demo::Demo),
     Eval(eval::Eval),
+    Verify(verify::Verify),
 }
 
 impl Cli {
@@ -53,6 +55,7 @@ impl Cli {
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
             Command::Eval(command) => command.run(),
+            Command::Verify(command) => command.run(),
         }
     }
 }

@@ -14,9 +14,10 @@ use hsad::{
     io::Calibration,
     matching::MatchConfig,
     pair::Backend,
+    verify::self_test,
 };
 
-use super::terminal;
+use super::terminal::{self, Progress};
 
 /// How a subcommand runs.
 #[derive(Args)]
@@ -24,14 +25,28 @@ pub struct RunOptions {
     /// What computes: best, cpu, or index or part of the name of a device (see hsad devices)
     #[arg(long, default_value = "best")]
     device: DeviceChoice,
+    /// First run every kernel once on the device, and refuse it if any differs from its CPU twin (see hsad verify)
+    #[arg(long)]
+    self_test: bool,
     /// Print nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
 }
 
 impl RunOptions {
-    /// Opens the device. The best there is can be none at all, and then the CPU works.
+    /// Opens the device, and tests it if that is asked for.
     pub fn open(&self) -> Result<Backend> {
+        let backend = self.open_untested()?;
+        if let (true, Backend::Gpu(gpu)) = (self.self_test, &backend) {
+            let progress = Progress::new(self.quiet);
+            progress.begin("testing the device");
+            self_test(gpu)?;
+        }
+        Ok(backend)
+    }
+
+    /// The best device there is can be none at all, and then the CPU works.
+    fn open_untested(&self) -> Result<Backend> {
         match Backend::open(&self.device) {
             Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if self.device == DeviceChoice::Best => {
                 if !self.quiet {
@@ -200,6 +215,8 @@ impl MatchOptions {
         let given = [
             ("--preset", self.preset.is_some()),
             ("--window", self.window.is_some()),
+            ("--whole-range", self.whole_range),
+            ("--search-both-views", self.search_both_views),
             ("--uniqueness", self.uniqueness.is_some()),
             ("--max-lr-difference", self.max_lr_difference.is_some()),
             ("--no-lr-check", self.no_lr_check),

@@ -68,9 +68,9 @@ impl Progress {
         self.0.set_message(what);
     }
 
-    /// Prints results while work goes on.
-    pub fn print(&self, text: &str) -> io::Result<()> {
-        self.0.suspend(|| print(text))
+    /// Prints something meanwhile, without it and what is shown getting in each other's way.
+    pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
     }
 
     /// Says which step of the pipeline begins now.

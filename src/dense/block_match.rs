@@ -1,7 +1,5 @@
 //! Block matching: SAD, winner-take-all, uniqueness and sub-pixel. `shaders/block_match.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{
     cells::Ranges,
     config::{DenseConfig, View},
@@ -11,7 +9,9 @@ use super::{
 use crate::{
     disparity::{DisparityRange, SCALE},
     error::Result,
-    gpu::{Bindable, Binding, Dispatch, Kernel, ROW_BITS, Stage, WordTexture, uniform_buffer},
+    gpu::{
+        Bindable, Binding, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct, uniform_buffer,
+    },
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -30,11 +30,11 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// For drivers that compute on the CPU: measured on lavapipe, where loads are the bottleneck and
-    /// registers spill into the first cache.
+    /// For lavapipe, where loads are the bottleneck and registers spill into the first cache. Other drivers that
+    /// compute on the CPU take minutes to compile it: SwiftShader five for a window of 11.
     pub const SOFTWARE: Self = Self { quads: 2, height: 8 };
 
-    /// For GPUs, which would rather run many threads of few registers.
+    /// For all others: GPUs would rather run many threads of few registers.
     pub const HARDWARE: Self = Self { quads: 1, height: 4 };
 
     /// The same where only winners are wanted, of which there is less to remember.
@@ -42,29 +42,29 @@ impl Tile {
 
     /// The tile for `device`.
     pub fn of(device: &wgpu::Device, wanted: Wanted) -> Self {
-        match (device.adapter_info().device_type, wanted) {
-            (wgpu::DeviceType::Cpu, Wanted::Matches) => Self::SOFTWARE,
-            (wgpu::DeviceType::Cpu, Wanted::Winners) => Self::SOFTWARE_WINNERS,
-            _ => Self::HARDWARE,
+        match (device.adapter_info().driver == "llvmpipe", wanted) {
+            (true, Wanted::Matches) => Self::SOFTWARE,
+            (true, Wanted::Winners) => Self::SOFTWARE_WINNERS,
+            (false, _) => Self::HARDWARE,
         }
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    stride: u32,
-    reference_start: u32,
-    searched_start: u32,
-    min_disparity: i32,
-    skipped: u32,
-    cell_shift: u32,
-    cell_columns: u32,
-    uniqueness: u32,
-    confidence_offset: u32,
-    max_difference: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        stride: u32,
+        reference_start: u32,
+        searched_start: u32,
+        min_disparity: i32,
+        skipped: u32,
+        cell_shift: u32,
+        cell_columns: u32,
+        uniqueness: u32,
+        confidence_offset: u32,
+        max_difference: u32,
+    }
 }
 
 /// What is wanted of a view.
@@ -109,7 +109,7 @@ impl BlockMatch {
                 include_str!("../../shaders/block_match.wgsl")
             ),
             bindings: &[
-                Binding::Uniform(size_of::<Params>() as u64),
+                Binding::Uniform(Params::SHAPE),
                 Binding::Texture,
                 Binding::Read,
                 Binding::Read,

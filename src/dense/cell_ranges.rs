@@ -1,11 +1,9 @@
 //! The range of each cell, from a map of half the size. `shaders/cell_ranges.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::cells::{CELL, CellBand, REACH};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 /// Per cent of a cell's smallest disparities, and of its largest, that are taken for wrong.
@@ -25,18 +23,18 @@ pub fn bin_bits(disparities: u32) -> u32 {
     (0..32).find(|bits| (disparities - 1) >> bits < BINS).unwrap_or(0)
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    first_row: i32,
-    columns: u32,
-    coarse_min: i32,
-    coarse_disparities: u32,
-    bin_bits: u32,
-    min_disparity: i32,
-    disparities: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        first_row: i32,
+        columns: u32,
+        coarse_min: i32,
+        coarse_disparities: u32,
+        bin_bits: u32,
+        min_disparity: i32,
+        disparities: u32,
+    }
 }
 
 /// The kernel that finds each cell's range.
@@ -48,7 +46,7 @@ impl CellRanges {
         Stage {
             name: "cell_ranges",
             source: include_str!("../../shaders/cell_ranges.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("SIDE", (CELL / 2).into()),
                 ("REACH", (REACH / 2).into()),

@@ -1,18 +1,16 @@
 //! The census transform, with the luma beside it. `shaders/census.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::pad::{Brightness, PadParams};
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    stride: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        stride: u32,
+    }
 }
 
 /// The census kernel.
@@ -24,7 +22,7 @@ impl Census {
         Stage {
             name: "census",
             source: include_str!("../../shaders/census.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
         }
     }

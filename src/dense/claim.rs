@@ -1,20 +1,18 @@
 //! What the other view sees, told from one view's winners. `shaders/claim.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{band::VolumeBand, config::View, select::INDEX_BITS};
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    min_disparity: i32,
-    direction: i32,
-    key_offset: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        min_disparity: i32,
+        direction: i32,
+        key_offset: u32,
+    }
 }
 
 /// The kernel that lets each pixel claim its partner.
@@ -26,7 +24,7 @@ impl Claim {
         Stage {
             name: "claim",
             source: include_str!("../../shaders/claim.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,24 +1,22 @@
 //! Left-right consistency. `shaders/consistency.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{config::View, select::INDEX_BITS};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    direction: i32,
-    max_difference: u32,
-    confidence_offset: u32,
-    min_disparity: i32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        direction: i32,
+        max_difference: u32,
+        confidence_offset: u32,
+        min_disparity: i32,
+    }
 }
 
 /// What is known of the other view.
@@ -45,7 +43,7 @@ impl Consistency {
                 include_str!("../../shaders/shared/consistent.wgsl"),
                 include_str!("../../shaders/consistency.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,9 +1,7 @@
 //! The matching cost of each pixel and disparity. `shaders/cost.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{band::VolumeBand, config::View};
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -34,14 +32,14 @@ pub struct Cost {
     pub gradient: Difference,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    rows: u32,
-    first_row: u32,
-    min_disparity: i32,
-    words: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        first_row: u32,
+        min_disparity: i32,
+        words: u32,
+    }
 }
 
 /// The kernel of the matching cost, for one view as the reference.
@@ -58,7 +56,7 @@ impl CostVolume {
         Stage {
             name: "cost",
             source: include_str!("../../shaders/cost.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,10 +1,8 @@
 //! Filling holes along their rows. `shaders/fill.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -21,13 +19,13 @@ pub mod surface {
     pub const FARTHEST: i32 = 1024;
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    least: i32,
-    most: i32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        least: i32,
+        most: i32,
+    }
 }
 
 /// The kernel that fills holes.
@@ -39,7 +37,7 @@ impl Fill {
         Stage {
             name: "fill",
             source: include_str!("../../shaders/fill.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,16 +1,14 @@
-//! A picture of half the size. `shaders/halve.wgsl`; its twin is [`crate::image::reduced`].
+//! A picture of half the size. `shaders/halve.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+    }
 }
 
 /// The halving kernel.
@@ -22,7 +20,7 @@ impl Halve {
         Stage {
             name: "halve",
             source: include_str!("../../shaders/halve.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
         }
     }

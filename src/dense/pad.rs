@@ -1,17 +1,14 @@
 //! Padding: a picture with its edges continued, laid out for block matching. `shaders/pad.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
 /// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Brightness {
     /// In 1/256, up to 2^20 either way.
     pub gain: i32,
@@ -40,8 +37,7 @@ impl Brightness {
 
 /// Where a padded plane lies: in the picture, and in the buffer. All words and rows are those of
 /// the picture, and may lie outside of it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug)]
 pub struct PadParams {
     /// Width of the picture in pixels.
     pub width: u32,
@@ -61,6 +57,21 @@ pub struct PadParams {
     pub brightness: Brightness,
 }
 
+shader_struct! {
+    /// [`PadParams`] as the shader declares them.
+    struct Params {
+        width: u32,
+        height: u32,
+        first_word: i32,
+        first_row: i32,
+        rows: u32,
+        stride: u32,
+        offset: u32,
+        gain: i32,
+        brightness: i32,
+    }
+}
+
 /// The padding kernel.
 pub struct Pad(Kernel);
 
@@ -70,7 +81,7 @@ impl Pad {
         Stage {
             name: "pad",
             source: include_str!("../../shaders/pad.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<PadParams>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
         }
     }
@@ -88,7 +99,10 @@ impl Pad {
         luma: &wgpu::Buffer,
         padded: &wgpu::Buffer,
     ) -> Dispatch {
-        let groups = [params.stride.div_ceil(WORKGROUP[0]), params.rows.div_ceil(WORKGROUP[1]), 1];
+        let PadParams { width, height, first_word, first_row, rows, stride, offset, brightness } = params;
+        let Brightness { gain, offset: brightness } = brightness;
+        let params = Params { width, height, first_word, first_row, rows, stride, offset, gain, brightness };
+        let groups = [stride.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(device, &[&uniform_buffer(device, "pad", &params), luma, padded], groups)
     }
 }

@@ -1,22 +1,20 @@
 //! What is to be searched in the other view, so that it can answer. `shaders/partner_ranges.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{
     cells::{CELL, CellBand},
     config::View,
 };
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: u32 = 64;
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    columns: u32,
-    rows: u32,
-    min_disparity: i32,
-    direction: i32,
+shader_struct! {
+    struct Params {
+        columns: u32,
+        rows: u32,
+        min_disparity: i32,
+        direction: i32,
+    }
 }
 
 /// The kernel that finds the ranges of the other view's cells.
@@ -28,7 +26,7 @@ impl PartnerRanges {
         Stage {
             name: "partner_ranges",
             source: include_str!("../../shaders/partner_ranges.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![("WORKGROUP_WIDTH", WORKGROUP.into()), ("CELL", CELL.into())],
         }
     }

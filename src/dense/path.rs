@@ -1,11 +1,9 @@
 //! A path of semi-global matching. `shaders/path.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{band::VolumeBand, cost::MAX_COST};
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: u32 = 16;
@@ -68,24 +66,24 @@ impl Direction {
     };
 }
 
-/// The uniforms of all kernels that follow lines: `shaders/shared/line.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct Params {
-    pub(super) width: u32,
-    pub(super) rows: u32,
-    pub(super) first_row: u32,
-    pub(super) path_start: u32,
-    pub(super) goes_on: u32,
-    pub(super) dx: i32,
-    pub(super) dy: i32,
-    pub(super) volumes_start: u32,
-    pub(super) volume_words: u32,
-    pub(super) min_disparity: i32,
-    pub(super) disparities: u32,
-    pub(super) uniqueness: u32,
-    pub(super) confidence_offset: u32,
-    pub(super) key_offset: u32,
+shader_struct! {
+    /// The uniforms of all kernels that follow lines: `shaders/shared/line.wgsl`.
+    pub(super) struct Params {
+        pub(super) width: u32,
+        pub(super) rows: u32,
+        pub(super) first_row: u32,
+        pub(super) path_start: u32,
+        pub(super) goes_on: u32,
+        pub(super) dx: i32,
+        pub(super) dy: i32,
+        pub(super) volumes_start: u32,
+        pub(super) volume_words: u32,
+        pub(super) min_disparity: i32,
+        pub(super) disparities: u32,
+        pub(super) uniqueness: u32,
+        pub(super) confidence_offset: u32,
+        pub(super) key_offset: u32,
+    }
 }
 
 impl Params {
@@ -102,7 +100,7 @@ impl Params {
             dy: direction.dy,
             min_disparity: band.range.min,
             disparities: band.range.count,
-            ..Self::zeroed()
+            ..bytemuck::Zeroable::zeroed()
         }
     }
 
@@ -138,7 +136,7 @@ impl Path {
                 include_str!("../../shaders/shared/line.wgsl"),
                 include_str!("../../shaders/path.wgsl")
             ),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: line_constants(penalties, words),
         }
     }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
 };
 
 /// The bits of a key that hold the disparity's index.
@@ -86,13 +86,7 @@ impl Select {
                 include_str!("../../shaders/shared/line.wgsl"),
                 include_str!("../../shaders/select.wgsl")
             ),
-            bindings: &[
-                Binding::Uniform(size_of::<Params>() as u64),
-                Binding::Read,
-                Binding::Read,
-                Binding::Write,
-                Binding::Write,
-            ],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write, Binding::Write],
             constants,
         }
     }

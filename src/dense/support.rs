@@ -1,10 +1,8 @@
 //! Disparities that their neighbours share. `shaders/support.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -15,12 +13,12 @@ pub const SUPPORT_RADIUS: u32 = 3;
 /// By how much disparities may differ that support each other.
 pub const SUPPORT_TOLERANCE: i32 = SCALE;
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    confidence_offset: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        confidence_offset: u32,
+    }
 }
 
 /// The kernel that takes speckles away.
@@ -33,7 +31,7 @@ impl Support {
         Stage {
             name: "support",
             source: include_str!("../../shaders/support.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

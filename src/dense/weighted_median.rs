@@ -1,10 +1,8 @@
 //! The weighted median of a map. `shaders/weighted_median.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::{
     disparity::NONE,
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -23,12 +21,12 @@ pub struct Median {
     pub holes_only: bool,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    luma_start: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        luma_start: u32,
+    }
 }
 
 /// The kernel of a weighted median.
@@ -41,13 +39,7 @@ impl WeightedMedian {
         Stage {
             name: "weighted_median",
             source: include_str!("../../shaders/weighted_median.wgsl"),
-            bindings: &[
-                Binding::Uniform(size_of::<Params>() as u64),
-                Binding::Read,
-                Binding::Read,
-                Binding::Read,
-                Binding::Write,
-            ],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

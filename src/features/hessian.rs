@@ -4,7 +4,7 @@
 use super::FeatureConfig;
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
 };
 
 /// Layers of an octave.
@@ -48,13 +48,13 @@ impl Grid {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Layer {
-    lobe: u32,
-    scale_xx: f32,
-    scale_xy: f32,
-    padding: u32,
+shader_struct! {
+    struct Layer {
+        lobe: u32,
+        scale_xx: f32,
+        scale_xy: f32,
+        padding: u32,
+    }
 }
 
 impl Layer {
@@ -64,18 +64,18 @@ impl Layer {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    step: u32,
-    grid_width: u32,
-    grid_height: u32,
-    finer_width: u32,
-    finer_height: u32,
-    shared_layers: u32,
-    layers: [Layer; LAYERS as usize],
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        step: u32,
+        grid_width: u32,
+        grid_height: u32,
+        finer_width: u32,
+        finer_height: u32,
+        shared_layers: u32,
+        layers: [Layer; LAYERS as usize],
+    }
 }
 
 /// The stage, for a grid with a point for every pixel (`dense`) or for any other.
@@ -83,7 +83,7 @@ pub fn stage(dense: bool) -> Stage {
     Stage {
         name: "hessian",
         source: include_str!("../../shaders/hessian.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
         constants: vec![
             ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
             ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

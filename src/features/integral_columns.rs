@@ -1,15 +1,15 @@
 //! The second half of the integral image: the row sums, summed along columns.
 //! `shaders/integral_columns.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: u32 = 64;
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+    }
 }
 
 /// The stage.
@@ -17,7 +17,7 @@ pub fn stage() -> Stage {
     Stage {
         name: "integral_columns",
         source: include_str!("../../shaders/integral_columns.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Write],
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Write],
         constants: vec![("WORKGROUP", WORKGROUP.into())],
     }
 }

@@ -3,16 +3,16 @@
 
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
 };
 
 const WORKGROUP: u32 = 64;
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+    }
 }
 
 /// The stage.
@@ -20,7 +20,7 @@ pub fn stage() -> Stage {
     Stage {
         name: "integral_rows",
         source: include_str!("../../shaders/integral_rows.wgsl"),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
         constants: vec![("WORKGROUP", WORKGROUP.into())],
     }
 }

@@ -2,27 +2,28 @@
 
 use crate::{
     error::Result,
-    gpu::{Binding, storage_buffer},
+    gpu::{Binding, ShaderType, shader_struct, storage_buffer},
 };
 
-/// A maximum of the determinant, as found on the device; `shaders/shared/keypoint.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Keypoint {
-    /// Column in pixels.
-    pub x: f32,
-    /// Row in pixels.
-    pub y: f32,
-    /// Scale in pixels; 1.2 for the 9x9 filter.
-    pub scale: f32,
-    /// Radians, 0 to 2 pi; 0 until it is known, and in upright mode.
-    pub orientation: f32,
-    /// The response word of the sample: `determinant << 1 | (trace > 0)`.
-    pub response: i32,
-    /// The octave.
-    pub octave: u32,
-    /// The sample within its octave: `((layer - 1) * rows + row) * columns + column` of the grid.
-    pub index: u32,
+shader_struct! {
+    /// A maximum of the determinant, as found on the device; `shaders/shared/keypoint.wgsl`.
+    #[derive(PartialEq)]
+    pub struct Keypoint {
+        /// Column in pixels.
+        pub x: f32,
+        /// Row in pixels.
+        pub y: f32,
+        /// Scale in pixels; 1.2 for the 9x9 filter.
+        pub scale: f32,
+        /// Radians, 0 to 2 pi; 0 until it is known, and in upright mode.
+        pub orientation: f32,
+        /// The response word of the sample: `determinant << 1 | (trace > 0)`.
+        pub response: i32,
+        /// The octave.
+        pub octave: u32,
+        /// The sample within its octave: `((layer - 1) * rows + row) * columns + column` of the grid.
+        pub index: u32,
+    }
 }
 
 impl Keypoint {
@@ -35,16 +36,16 @@ impl Keypoint {
 /// Keypoints in a row of workgroups, where each has a workgroup of its own.
 pub(crate) const DISPATCH_WIDTH: u32 = 256;
 
-/// Width and height of the picture, as `haar.wgsl` declares them.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Params {
-    pub(crate) width: u32,
-    pub(crate) height: u32,
+shader_struct! {
+    /// Width and height of the picture, as `haar.wgsl` declares them.
+    pub(crate) struct Params {
+        pub(crate) width: u32,
+        pub(crate) height: u32,
+    }
 }
 
 /// The uniform that `haar.wgsl` declares.
-pub(crate) const PARAMS: Binding = Binding::Uniform(size_of::<Params>() as u64);
+pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 
 /// Room for the keypoints of a picture, on the device.
 pub struct KeypointList {

@@ -8,23 +8,23 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    step: u32,
-    grid_width: u32,
-    grid_height: u32,
-    octave: u32,
-    threshold: i32,
-    padding: u32,
-    sizes: [u32; 4],
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        step: u32,
+        grid_width: u32,
+        grid_height: u32,
+        octave: u32,
+        threshold: i32,
+        padding: u32,
+        sizes: [u32; 4],
+    }
 }
 
 /// The stage.
@@ -32,7 +32,7 @@ pub fn stage() -> Stage {
     Stage {
         name: "nonmax",
         source: concat!(include_str!("../../shaders/shared/keypoint.wgsl"), include_str!("../../shaders/nonmax.wgsl")),
-        bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write, Binding::Write],
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }
 }

@@ -2,14 +2,14 @@
 
 use wgpu::util::DeviceExt;
 
-use super::unroll::unrolled;
+use super::{shader_struct::Shape, unroll::unrolled};
 use crate::error::{Error, Result};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
-    /// A uniform buffer of this many bytes.
-    Uniform(u64),
+    /// A uniform buffer that holds this.
+    Uniform(Shape),
     /// A storage buffer that is only read.
     Read,
     /// A storage buffer that is written.

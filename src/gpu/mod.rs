@@ -3,6 +3,7 @@
 mod device;
 mod kernel;
 mod readback;
+mod shader_struct;
 mod unroll;
 mod words;
 
@@ -10,5 +11,7 @@ pub use device::{DeviceChoice, Gpu, list_adapters};
 pub(crate) use kernel::{Bindable, Kernel, guarded, storage_buffer, store, uniform_buffer};
 pub use kernel::{Binding, Dispatch, Stage};
 pub(crate) use readback::Readback;
+pub(crate) use shader_struct::shader_struct;
+pub use shader_struct::{Member, ShaderType, Shape};
 pub use words::WordTexture;
 pub(crate) use words::{ROW_BITS, in_rows, most_words};

@@ -1,9 +1,7 @@
 //! Belief propagation: half of the nodes send. `shaders/belief.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::grid::FAR;
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -25,13 +23,13 @@ pub struct Turn {
     pub from_parents: bool,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    parity: u32,
-    from_parents: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        parity: u32,
+        from_parents: u32,
+    }
 }
 
 /// The kernel of a turn, for one number of disparities.
@@ -56,13 +54,7 @@ impl Belief {
         Stage {
             name: "belief",
             source: include_str!("../../shaders/belief.wgsl"),
-            bindings: &[
-                Binding::Uniform(size_of::<Params>() as u64),
-                Binding::Read,
-                Binding::Read,
-                Binding::Read,
-                Binding::Write,
-            ],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,12 +1,10 @@
 //! The data cost of belief propagation. `shaders/belief_cost.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::grid::{FAR, Strip};
 use crate::{
     dense::Difference,
     disparity::DisparityRange,
-    gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -26,16 +24,16 @@ pub struct WindowCost {
     pub gradient: Difference,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    first_row: u32,
-    rows: u32,
-    min_disparity: i32,
-    disparities: u32,
-    fours: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        first_row: u32,
+        rows: u32,
+        min_disparity: i32,
+        disparities: u32,
+        fours: u32,
+    }
 }
 
 /// The kernel of the data cost.
@@ -48,7 +46,7 @@ impl BeliefCost {
         Stage {
             name: "belief_cost",
             source: include_str!("../../shaders/belief_cost.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,18 +1,16 @@
 //! The data costs of a coarser grid. `shaders/belief_reduce.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use super::grid::FAR;
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    words: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        words: u32,
+    }
 }
 
 /// The kernel that halves a grid.
@@ -24,7 +22,7 @@ impl BeliefReduce {
         Stage {
             name: "belief_reduce",
             source: include_str!("../../shaders/belief_reduce.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

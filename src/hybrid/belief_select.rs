@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -40,13 +40,13 @@ impl Winner {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
-    disparities: u32,
-    fours: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        disparities: u32,
+        fours: u32,
+    }
 }
 
 /// The kernel of the selection.
@@ -58,7 +58,7 @@ impl BeliefSelect {
         Stage {
             name: "belief_select",
             source: include_str!("../../shaders/belief_select.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -1,8 +1,6 @@
 //! Mean-shift filtering. `shaders/mean_shift.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -20,11 +18,11 @@ pub struct ModeSeeking {
     pub turns: u32,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Params {
-    width: u32,
-    height: u32,
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+    }
 }
 
 /// The kernel of mean-shift filtering.
@@ -36,7 +34,7 @@ impl MeanShift {
         Stage {
             name: "mean_shift",
             source: include_str!("../../shaders/mean_shift.wgsl"),
-            bindings: &[Binding::Uniform(size_of::<Params>() as u64), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

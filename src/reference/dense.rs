@@ -1,14 +1,14 @@
 //! The dense half in one call.
 
 use super::{
-    CellPlane, block_match, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled,
+    CellPlane, block_match, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled, halved,
     partner_ranges, path, path_winners, select, supported, weighted_median, winners,
 };
 use crate::{
     dense::{Aggregation, Dense, DenseConfig, OtherView, Refinement, Search, SemiGlobal, View, cells::halved_config},
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
-    image::{Luma, reduced},
+    image::Luma,
 };
 
 /// What [`crate::dense::compute`] computes, on the CPU.
@@ -65,7 +65,7 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
 
 /// What is to be searched in the cells of the reference view, from a map of half the size.
 fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlane {
-    let [left_half, right_half] = [left, right].map(|luma| reduced(luma, 2));
+    let [left_half, right_half] = [left, right].map(|luma| halved(luma));
     let right_half = right_half.map(|&luma| brightened(luma, config.brightness));
     let half = halved_config(config, config.range);
     let map = block_match(&left_half, &right_half, config.reference, &half, None).disparity;

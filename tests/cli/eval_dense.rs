@@ -102,7 +102,7 @@ fn scores_a_folder_of_scenes_in_every_form() {
 
     let report = json(&report);
     assert_eq!((&report["device"]["name"], report["failed"].as_array().unwrap().len()), (&"CPU twins".into(), 0));
-    assert_eq!(report["parameters"]["window"], 11);
+    assert_eq!(report["parameters"]["window"], 9);
     assert_eq!((&report["results"][1]["scene"], &report["results"][1]["range"]["count"]), (&"b".into(), &8.into()));
     let [first, second] = [0, 1].map(|i| report["results"][i]["all"]["density"].as_f64().unwrap());
     assert_eq!(report["means"][1]["region"], "all");

@@ -12,6 +12,7 @@ mod features;
 mod match_views;
 #[path = "../pictures/mod.rs"]
 mod pictures;
+mod verify;
 
 use common::hsad;
 use predicates::{prelude::PredicateBooleanExt, str::contains};
@@ -23,7 +24,9 @@ fn help_has_examples_and_exit_codes() {
         .assert()
         .success()
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
-    for command in [&["match"][..], &["features"], &["devices"], &["demo"], &["eval", "dense"], &["eval", "features"]] {
+    for command in
+        [&["match"][..], &["features"], &["devices"], &["demo"], &["verify"], &["eval", "dense"], &["eval", "features"]]
+    {
         hsad().args(command).arg("--help").assert().success().stdout(contains("Examples:").and(contains("Usage:")));
     }
     hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));

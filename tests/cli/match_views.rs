@@ -91,7 +91,7 @@ fn options_override_the_preset() {
     let report = report(out);
     assert_eq!(report["range"], json!({ "min": -3, "max": 36, "count": 40, "source": "asked" }));
     let expected = json!({
-        "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
+        "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "search": "whole", "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
         "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "force": false,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },

@@ -2,28 +2,16 @@
 
 use hsad::{
     dense::Brightness,
-    hybrid::{Belief, GridBuffers, LinkWeights, Links, Segmentation, Segments, Smoothness, Strip, Turn, described},
+    hybrid::{LinkWeights, Links, Segmentation, Segments, Smoothness, Strip, Turn, described},
     image::Plane,
-    reference::{Grid, belief},
+    verify::{Values, hybrid::BeliefTrial},
 };
 
 use crate::{common::*, hybrid::colours};
 
 const SMOOTHNESS: Smoothness = Smoothness { slope: 14, limit: 100 };
 
-/// Messages after a turn that began with `messages`.
-fn on_device(grid: Grid<'_>, messages: &[u8], parents: &[u8], smoothness: &Smoothness, turn: Turn) -> Vec<u8> {
-    let device = &gpu().device;
-    let fours = grid.costs.len() as u32 / (4 * grid.size.0 * grid.size.1);
-    let (costs, links) = (upload(grid.costs), upload(grid.links.words().data()));
-    let (messages, parents) = (upload(messages), upload(parents));
-    let buffers = GridBuffers { costs: &costs, links: &links, parents: &parents, messages: &messages };
-    let dispatch = Belief::new(device, smoothness, fours).prepare(device, grid.size, turn, buffers);
-    run(|encoder| dispatch.record(encoder));
-    download(&messages)
-}
-
-pub fn links((width, height): (u32, u32)) -> Links {
+fn links((width, height): (u32, u32)) -> Links {
     let view = described(&colours(width, height, 9), Brightness::SAME);
     let segments = Segments::new(&view, Segmentation { join: 9, least: 3 });
     let weights = LinkWeights { halving: 9, least: 0, inside: 8, across: 4 };
@@ -46,15 +34,19 @@ fn the_twin_sends_the_same() {
         for (count, smoothness) in [(12, SMOOTHNESS), (4, Smoothness { slope: 255, limit: 255 })] {
             let nodes = (width * height) as usize;
             let costs: Vec<u16> = noise(nodes * count, 6, 255).into_iter().map(|value| u16::from(value) * 3).collect();
-            let grid = Grid { size: (width, height), costs: &costs, links: &links };
             let parents = noise(4 * count * (width.div_ceil(2) * height.div_ceil(2)) as usize, 7, 100);
-            let before = noise(4 * count * nodes, 8, 100);
+            let messages = noise(4 * count * nodes, 8, 100);
+            let trial = BeliefTrial {
+                costs,
+                links: links.clone(),
+                messages,
+                parents,
+                smoothness,
+                turn: Turn { parity: 0, from_parents: false },
+            };
             for (parity, from_parents) in [(0, false), (1, false), (0, true)] {
                 let turn = Turn { parity, from_parents };
-                let mut expected = before.clone();
-                belief(grid, &mut expected, &parents, &smoothness, turn);
-                let what = format!("{width}x{height}, {count}, {turn:?}");
-                assert_same(&what, &on_device(grid, &before, &parents, &smoothness, turn), &expected);
+                assert_twin(&format!("{width}x{height}, {count}, {turn:?}"), &BeliefTrial { turn, ..trial.clone() });
             }
         }
     }
@@ -69,12 +61,19 @@ fn by_hand() {
     let weights = LinkWeights { halving: 4, least: 0, inside: 0, across: 0 };
     let links = Links::new(&view, &segments, Strip { first_row: 0, rows: 1 }, weights);
     assert_eq!(links.words().data(), [16, 0]);
-    let costs = [7, 30, 60, 97, 0, 0, 0, 0];
-    let grid = Grid { size: (2, 1), costs: &costs, links: &links };
     let sent = |slope, limit| {
-        let messages = [[9; 16], [77; 16]].concat();
-        let turn = Turn { parity: 0, from_parents: false };
-        on_device(grid, &messages, &[0; 16], &Smoothness { slope, limit }, turn)
+        let trial = BeliefTrial {
+            costs: vec![7, 30, 60, 97, 0, 0, 0, 0],
+            links: links.clone(),
+            messages: [[9; 16], [77; 16]].concat(),
+            parents: vec![0; 16],
+            smoothness: Smoothness { slope, limit },
+            turn: Turn { parity: 0, from_parents: false },
+        };
+        match leaves(&trial).remove(0) {
+            Values::U8(messages) => messages,
+            other => panic!("messages are bytes, not {}", other.kind()),
+        }
     };
     let node = sent(10, 25);
     // Less the least, 7: 0 23 53 90; a step costs 10, 25 at most: 0, 10, 20, 25.
@@ -88,13 +87,14 @@ fn by_hand() {
 /// The whole range of what a kernel is made for compiles and sends.
 #[test]
 fn many_disparities() {
-    let (size, count) = ((3, 2), 512);
-    let links = links(size);
-    let costs: Vec<u16> = noise(6 * count, 6, 255).into_iter().map(u16::from).collect();
-    let grid = Grid { size, costs: &costs, links: &links };
-    let turn = Turn { parity: 1, from_parents: false };
-    let before = noise(4 * 6 * count, 8, 100);
-    let mut expected = before.clone();
-    belief(grid, &mut expected, &[0; 4], &SMOOTHNESS, turn);
-    assert_same("512 disparities", &on_device(grid, &before, &[0; 4], &SMOOTHNESS, turn), &expected);
+    let count = 512;
+    let trial = BeliefTrial {
+        costs: noise(6 * count, 6, 255).into_iter().map(u16::from).collect(),
+        links: links((3, 2)),
+        messages: noise(4 * 6 * count, 8, 100),
+        parents: vec![0; 4],
+        smoothness: SMOOTHNESS,
+        turn: Turn { parity: 1, from_parents: false },
+    };
+    assert_twin("512 disparities", &trial);
 }

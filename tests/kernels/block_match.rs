@@ -1,58 +1,14 @@
 //! Block matching.
 
 use hsad::{
-    dense::{BlockMatch, Brightness, CELL, DenseConfig, Interpolation, Layout, Pad, Ranges, Tile, View, Wanted},
-    disparity::{DisparityMap, DisparityRange, SCALE},
-    gpu::WordTexture,
+    dense::{CELL, DenseConfig, Interpolation, Tile, View},
+    disparity::{DisparityRange, SCALE},
     image::{Luma, Plane},
-    luma::pack,
-    reference::{self, CellPlane},
+    reference::CellPlane,
+    verify::blocks::BlockMatchTrial,
 };
 
 use crate::common::*;
-
-/// Padding and block matching of one view, nothing else: the words written.
-fn on_device(
-    left: &Luma,
-    right: &Luma,
-    view: View,
-    config: &DenseConfig,
-    ranges: Option<&CellPlane>,
-    others: Option<(&DisparityMap, u32)>,
-    (wanted, tile): (Wanted, Tile),
-) -> Vec<i32> {
-    let device = &gpu().device;
-    let (width, height) = left.size();
-    let layout = Layout::new(left.size(), 0, height, config, &[tile]).expect("a layout");
-    let texture = WordTexture::new(device, "planes", layout.words()).expect("a texture");
-    let planes = upload(&vec![0_u32; layout.words().next_multiple_of(2048) as usize]);
-    let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
-    let matches = upload(&vec![0_u32; (width * height + confidences) as usize]);
-    let (pad, kernel) = (Pad::new(device), BlockMatch::new(device, config, view, wanted, tile));
-    let ranges = match ranges {
-        None => Ranges::whole(device, config.searched(width).unwrap()),
-        Some(cells) => {
-            let words: Vec<u32> = cells.data().iter().flat_map(|&(first, count)| [first, count]).collect();
-            Ranges::of_cells(upload(&words), width)
-        }
-    };
-    let [left_padding, right_padding] = layout.padding(Brightness::SAME);
-    let dispatches = [
-        pad.prepare(device, left_padding, &upload_luma(left), &planes),
-        pad.prepare(device, right_padding, &upload_luma(right), &planes),
-    ];
-    let others = others.map(|(others, limit)| (upload(others.data()), limit));
-    let others = others.as_ref().map(|(others, limit)| (others, *limit));
-    let block_match = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
-    poison(&planes);
-    poison(&matches);
-    run(|encoder| {
-        dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
-        texture.record(encoder, &planes);
-        block_match.record(encoder);
-    });
-    download(&matches)
-}
 
 /// A pair with a step in it, its right view noisier than its left.
 fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
@@ -74,6 +30,7 @@ fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) 
     compare_tiled(what, views, view, config, None, Tile::HARDWARE);
 }
 
+/// Without a check of the other view, and with one.
 fn compare_tiled(
     what: &str,
     (left, right): (&Luma, &Luma),
@@ -82,23 +39,12 @@ fn compare_tiled(
     ranges: Option<&CellPlane>,
     tile: Tile,
 ) {
-    let searched = DenseConfig { range: config.searched(left.width()).unwrap(), ..config.clone() };
-    let mut expected = reference::block_match(left, right, view, &searched, ranges);
-    let others = reference::winners(left, right, view.other(), &searched, None);
-    for others in [None, Some((&others, 300))] {
-        if let Some((others, max_difference)) = others {
-            reference::check_consistency(&mut expected, view, others, max_difference);
-        }
-        let actual = on_device(left, right, view, config, ranges, others, (Wanted::Matches, tile));
-        let (disparities, confidences) = actual.split_at(left.data().len());
-        let what = format!("{what}, others {}", others.is_some());
-        assert_same(&format!("{what}, disparities"), disparities, expected.disparity.data());
-        let confidences_expected: Vec<i32> = pack(&expected.confidence).into_iter().map(u32::cast_signed).collect();
-        assert_same(&format!("{what}, confidences"), confidences, &confidences_expected);
+    for consistency in [None, Some(300)] {
+        let (left, right, ranges) = (left.clone(), right.clone(), ranges.cloned());
+        let config = DenseConfig { consistency, ..config.clone() };
+        let what = format!("{what}, {consistency:?}");
+        assert_twin(&what, &BlockMatchTrial { left, right, view, config, ranges, tile });
     }
-    let winners = on_device(left, right, view, config, ranges, None, (Wanted::Winners, tile));
-    let expected = reference::winners(left, right, view, &searched, ranges);
-    assert_same(&format!("{what}, winners"), &winners, expected.data());
 }
 
 #[test]
@@ -124,11 +70,9 @@ fn the_twin_searches_the_same_cells() {
     let (left, right) = pair(130, 131, 61);
     // From nothing to everything, and from one end or the other.
     let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
-    let cells =
-        Plane::from_fn(130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL), |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
-    for (view, tile) in
-        [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE), (View::Left, Tile::SOFTWARE_WINNERS)]
-    {
+    let (columns, rows) = (130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL));
+    let cells = Plane::from_fn(columns, rows, |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
+    for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::HARDWARE), (View::Left, Tile::SOFTWARE)] {
         for min in [0, -7, 2] {
             let what = format!("{view:?} {tile:?} from {min}");
             compare_tiled(&what, (&left, &right), view, &config(5, min, 30), Some(&cells), tile);
@@ -186,10 +130,12 @@ fn by_hand() {
     // and a window without it costs nothing at any disparity that does not see it either.
     let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
     let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
-    let winners = on_device(&view(5), &view(3), View::Left, &config, None, None, (Wanted::Winners, Tile::HARDWARE));
+    let (left, right) = (view(5), view(3));
+    let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, ranges: None, tile: Tile::HARDWARE });
     let d = |whole: i32| whole * SCALE;
     // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
     // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
-    let expected = [d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
-    assert_eq!(winners, expected);
+    let expected = vec![d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
+    // The disparities, the confidences, and the winners.
+    assert_eq!(left[2], expected.into());
 }

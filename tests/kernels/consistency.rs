@@ -1,40 +1,14 @@
 //! Left-right consistency.
 
 use hsad::{
-    dense::{Consistency, Dense, Others, View},
-    disparity::{DisparityMap, NONE},
+    dense::{Dense, View},
+    disparity::{DisparityMap, NONE, SCALE},
     image::Plane,
-    luma::{pack, unpack},
-    reference::check_consistency,
+    luma::pack,
+    verify::maps::ConsistencyTrial,
 };
 
 use crate::common::*;
-
-fn on_device(dense: &Dense, view: View, others: &DisparityMap, max_difference: u32) -> Dense {
-    let device = &gpu().device;
-    let (width, height) = dense.disparity.size();
-    let others = upload(others.data());
-    let pixels = (width * height) as usize;
-    let confidence = pack(&dense.confidence).into_iter().map(u32::cast_signed);
-    let both: Vec<i32> = dense.disparity.data().iter().copied().chain(confidence).collect();
-    let matches = upload(&both);
-    let size = (width, height);
-    let check = Consistency::new(device, Others::Disparities).prepare(
-        device,
-        size,
-        width * height,
-        view,
-        max_difference,
-        &others,
-        &matches,
-    );
-    run(|encoder| check.record(encoder));
-    let both = download::<i32>(&matches);
-    Dense {
-        disparity: Plane::new(width, height, both[..pixels].to_vec()).unwrap(),
-        confidence: unpack(width, height, bytemuck::cast_slice(&both[pixels..])),
-    }
-}
 
 /// Disparities of all kinds: none, fractions, negative, out of the picture.
 fn disparities(width: u32, height: u32, seed: u32) -> DisparityMap {
@@ -53,12 +27,12 @@ fn the_twin_checks_the_same() {
                 let disparity = disparities(width, height, 3);
                 let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE) * 77), disparity };
                 let others = disparities(width, height, 9);
-                let mut expected = dense.clone();
-                check_consistency(&mut expected, view, &others, max_difference);
-                let actual = on_device(&dense, view, &others, max_difference);
+                let whole = |&d: &i32| if d == NONE { NONE } else { d.div_euclid(SCALE) * SCALE };
                 let what = format!("{width}x{height} {view:?} {max_difference}");
-                assert_same(&what, actual.disparity.data(), expected.disparity.data());
-                assert_same(&what, actual.confidence.data(), expected.confidence.data());
+                let claimed = others.map(whole);
+                let given = ConsistencyTrial { dense, view, others, claims_from: None, max_difference };
+                assert_twin(&what, &given);
+                assert_twin(&what, &ConsistencyTrial { others: claimed, claims_from: Some(-9), ..given });
             }
         }
     }
@@ -70,7 +44,7 @@ fn by_hand() {
     let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
     let dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
     let others = plane(&[40, 260, NONE, 0, 0, 0]);
-    let checked = on_device(&dense, View::Left, &others, 40);
-    assert_eq!(checked.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
-    assert_eq!(checked.confidence.data(), [9, 0, 9, 0, 0, 0]);
+    let trial = ConsistencyTrial { dense, view: View::Left, others, claims_from: None, max_difference: 40 };
+    let confidences = pack(&Plane::new(6, 1, vec![9, 0, 9, 0, 0, 0]).unwrap());
+    assert_eq!(leaves(&trial), [vec![0, NONE, 300, NONE, NONE, NONE].into(), confidences.into()]);
 }

@@ -1,10 +1,11 @@
 //! The matching cost.
 
 use hsad::{
-    dense::{Cost, CostVolume, Difference, View, VolumeBand},
+    dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::Plane,
-    reference::{census, cost_volume},
+    reference::census,
+    verify::{Values, paths::CostTrial},
 };
 
 use crate::common::*;
@@ -15,28 +16,14 @@ const COST: Cost = Cost {
     gradient: Difference { weight: 8, limit: 40 },
 };
 
-fn on_device(views: [&Plane<u32>; 2], view: View, cost: &Cost, band: &VolumeBand) -> Vec<u8> {
-    let device = &gpu().device;
-    let volume = upload(&vec![0_u32; (band.row_words() * band.rows) as usize]);
-    let [reference, other] = views.map(|plane| upload(plane.data()));
-    let kernel = CostVolume::new(device, cost, view).prepare(device, band, [&reference, &other], &volume);
-    poison(&volume);
-    run(|encoder| kernel.record(encoder));
-    bytemuck::cast_slice(&download::<u32>(&volume)).to_vec()
-}
-
-fn compare(size: (u32, u32), view: View, cost: &Cost, (min, count): (i32, u32)) {
-    let (width, height) = size;
+fn compare((width, height): (u32, u32), view: View, cost: &Cost, (min, count): (i32, u32)) {
     let range = DisparityRange::new(min, count).unwrap();
-    let [a, b] = [1, 2].map(|seed| census(&picture(width, height, seed)));
-    let expected = cost_volume([&a, &b], view, cost, range);
+    let views = [1, 2].map(|seed| census(&picture(width, height, seed)));
     let what = format!("{width}x{height} {view:?} {count} from {min}");
-    let band = VolumeBand { width, first_row: 0, rows: height, range };
-    assert_same(&what, &on_device([&a, &b], view, cost, &band), &expected);
+    let whole = CostTrial { views, view, cost: *cost, range, rows: 0..height };
+    assert_twin(&what, &whole);
     if height > 2 {
-        let band = VolumeBand { first_row: 1, rows: height - 2, ..band };
-        let row = 4 * band.row_words() as usize;
-        assert_same(&what, &on_device([&a, &b], view, cost, &band), &expected[row..expected.len() - row]);
+        assert_twin(&what, &CostTrial { rows: 1..height - 1, ..whole });
     }
 }
 
@@ -64,6 +51,7 @@ fn by_hand() {
     let a = Plane::new(3, 1, vec![50, 0b111 << 8 | 100, 60]).unwrap();
     let b = Plane::new(3, 1, vec![50, 70, 70]).unwrap();
     let range = DisparityRange::new(0, 1).unwrap();
-    let band = VolumeBand { width: 3, first_row: 0, rows: 1, range };
-    assert_eq!(on_device([&a, &b], View::Left, &COST, &band)[4], 36);
+    let trial = CostTrial { views: [a, b], view: View::Left, cost: COST, range, rows: 0..1 };
+    let [Values::U8(costs)] = &leaves(&trial)[..] else { panic!("four costs a word") };
+    assert_eq!(costs[4], 36);
 }

@@ -1,28 +1,18 @@
 use std::f32::consts::PI;
 
 use hsad::{
-    features::{DESCRIPTOR_LENGTH, descriptor::Descriptor, keypoints::Keypoint, workgroups::Workgroups},
+    features::{DESCRIPTOR_LENGTH, keypoints::Keypoint},
     image::Luma,
-    reference::{self, haar::Place, integral::IntegralImage},
+    reference::{haar::Place, integral::IntegralImage, orientation::orientation},
+    verify::{Values, points::DescriptorTrial},
 };
 
-use crate::common::{
-    Values, assert_mostly, descriptor_near, download, gpu, integral_image, keypoint, keypoint_list, keypoints_of,
-    picture, pictures, poison, run,
-};
+use crate::common::{assert_twin, keypoint, keypoints_of, leaves, picture, pictures};
 
-fn described(picture: &Luma, keypoints: &[Keypoint], upright: bool) -> Vec<Values> {
-    let device = &gpu().device;
-    let list = keypoint_list(keypoints);
-    let workgroups = Workgroups::new(device, &list);
-    let integral = integral_image(picture);
-    let stage = Descriptor::new(device, &integral, &list, workgroups.groups(), picture.size(), upright).unwrap();
-    poison(stage.descriptors());
-    run(|encoder| {
-        workgroups.record(encoder);
-        stage.record(encoder);
-    });
-    download(stage.descriptors())
+fn described(picture: &Luma, keypoints: &[Keypoint], upright: bool) -> Vec<[f32; DESCRIPTOR_LENGTH]> {
+    let left = leaves(&DescriptorTrial { picture: picture.clone(), keypoints: keypoints.to_vec(), upright });
+    let [Values::F32(values)] = &left[..] else { panic!("64 floats a keypoint") };
+    values.as_chunks().0.to_vec()
 }
 
 /// Keypoints at points (x, y, scale, orientation).
@@ -32,12 +22,12 @@ fn at(points: &[[f32; 4]]) -> Vec<Keypoint> {
 }
 
 /// The descriptors at points (x, y, scale, orientation).
-fn descriptors(picture: &Luma, points: &[[f32; 4]]) -> Vec<Values> {
+fn descriptors(picture: &Luma, points: &[[f32; 4]]) -> Vec<[f32; DESCRIPTOR_LENGTH]> {
     described(picture, &at(points), false)
 }
 
 /// The descriptors at points (x, y, scale, whatever), upright.
-fn upright(picture: &Luma, points: &[[f32; 4]]) -> Vec<Values> {
+fn upright(picture: &Luma, points: &[[f32; 4]]) -> Vec<[f32; DESCRIPTOR_LENGTH]> {
     described(picture, &at(points), true)
 }
 
@@ -105,22 +95,10 @@ fn everything_else_has_unit_length_even_beyond_the_edge() {
     }
 }
 
-fn twin(integral: &IntegralImage, keypoint: &Keypoint, upright: bool) -> Values {
-    let place = Place::new(keypoint.x, keypoint.y, keypoint.scale);
-    reference::descriptor::describe(integral, place, (!upright).then_some(keypoint.orientation))
-}
-
-/// Upright, all samples are the same integers in both, and only their cube roots and sums are floats (on lavapipe
-/// 4e-7 apart). Turned, the place of each sample is a float that is rounded to 1/16 px, sometimes the other way:
-/// allowed at one descriptor in 200, on lavapipe at fewer than one in 10,000.
-const TOLERANCES: [(bool, f32); 2] = [(true, 1e-5), (false, 1e-3)];
-
 fn assert_equals_the_twin(name: &str, picture: &Luma, keypoints: &[Keypoint]) {
-    let integral = IntegralImage::new(picture);
-    for (upright, tolerance) in TOLERANCES {
-        let found = described(picture, keypoints, upright);
-        let expected: Vec<_> = keypoints.iter().map(|keypoint| twin(&integral, keypoint, upright)).collect();
-        assert_mostly(&format!("{name}, upright {upright}"), &found, &expected, 0.005, descriptor_near(tolerance));
+    for upright in [true, false] {
+        let (picture, keypoints) = (picture.clone(), keypoints.to_vec());
+        assert_twin(&format!("{name}, upright {upright}"), &DescriptorTrial { picture, keypoints, upright });
     }
 }
 
@@ -128,15 +106,13 @@ fn assert_equals_the_twin(name: &str, picture: &Luma, keypoints: &[Keypoint]) {
 fn equals_the_twin() {
     for (name, picture) in pictures() {
         let integral = IntegralImage::new(&picture);
-        let mut keypoints = keypoints_of(&integral, 5, 1, 0.000_1);
-        if keypoints.is_empty() {
-            continue;
-        }
+        let mut keypoints = keypoints_of(&picture, 0.000_1);
         for keypoint in &mut keypoints {
-            let place = Place::new(keypoint.x, keypoint.y, keypoint.scale);
-            keypoint.orientation = reference::orientation::orientation(&integral, place);
+            keypoint.orientation = orientation(&integral, Place::new(keypoint.x, keypoint.y, keypoint.scale));
         }
-        assert_equals_the_twin(&name, &picture, &keypoints);
+        if !keypoints.is_empty() {
+            assert_equals_the_twin(&name, &picture, &keypoints);
+        }
     }
 }
 

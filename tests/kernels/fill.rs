@@ -1,22 +1,12 @@
 //! Filling holes along their rows.
 
 use hsad::{
-    dense::Fill,
-    disparity::{DisparityMap, DisparityRange, NONE},
+    disparity::{DisparityRange, NONE},
     image::Plane,
-    reference::filled,
+    verify::{Values, maps::FillTrial},
 };
 
 use crate::common::*;
-
-fn on_device(disparities: &DisparityMap, range: DisparityRange) -> Vec<i32> {
-    let device = &gpu().device;
-    let (from, to) = (upload(disparities.data()), upload(disparities.data()));
-    let kernel = Fill::new(device).prepare(device, disparities.size(), range, &from, &to);
-    poison(&to);
-    run(|encoder| kernel.record(encoder));
-    download(&to)
-}
 
 #[test]
 fn the_twin_fills_the_same() {
@@ -29,8 +19,7 @@ fn the_twin_fills_the_same() {
                 value => i32::from(coarse.get(x / 40, y)) * 40 - 3000 + slope * x as i32 + i32::from(value % 64),
             });
             let range = DisparityRange::new(-12, 41).unwrap();
-            let what = format!("{width}x{height}, {holes} {slope}");
-            assert_same(&what, &on_device(&disparities, range), filled(&disparities, range).data());
+            assert_twin(&format!("{width}x{height}, {holes} {slope}"), &FillTrial { disparities, range });
         }
     }
 }
@@ -39,8 +28,10 @@ fn the_twin_fills_the_same() {
 fn by_hand() {
     let range = DisparityRange::new(0, 20).unwrap();
     let map = Plane::new(5, 1, vec![NONE, 512, NONE, 1024, NONE]).unwrap();
-    assert_eq!(on_device(&map, range), [512, 512, 512, 1024, 1024]);
+    assert_eq!(leaves(&FillTrial { disparities: map, range }), [vec![512, 512, 512, 1024, 1024].into()]);
     // A slope of 16/256 px a pixel goes on beyond the end of its surface.
     let slanted = Plane::from_fn(40, 1, |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
-    assert_eq!(on_device(&slanted, range)[35], 256 + 16 * 35);
+    let filled = leaves(&FillTrial { disparities: slanted, range });
+    let [Values::I32(filled)] = &filled[..] else { panic!("a disparity a pixel") };
+    assert_eq!(filled[35], 256 + 16 * 35);
 }

@@ -1,22 +1,15 @@
 use hsad::{
-    features::{FeatureConfig, hessian::Hessian},
     image::Luma,
-    reference::{hessian::Octave, integral::IntegralImage},
+    verify::{Values, points::HessianTrial},
 };
 
-use crate::common::{assert_same, download, gpu, integral_image, pictures, poison, run};
+use crate::common::{assert_same, assert_twin, leaves, pictures};
 
-/// The responses of every octave.
-fn responses(picture: &Luma, config: &FeatureConfig) -> Vec<Vec<i32>> {
-    let (width, height) = picture.size();
-    let stage = Hessian::new(&gpu().device, &integral_image(picture), width, height, config).unwrap();
-    (0..config.octaves).for_each(|octave| poison(stage.responses(octave)));
-    run(|encoder| stage.record(encoder));
-    (0..config.octaves).map(|octave| download(stage.responses(octave))).collect()
-}
-
-fn one_octave(step: u32) -> FeatureConfig {
-    FeatureConfig { octaves: 1, step, ..FeatureConfig::default() }
+/// The responses of the first octave.
+fn responses(picture: &Luma, step: u32) -> Vec<i32> {
+    let left = leaves(&HessianTrial { picture: picture.clone(), octaves: 1, step });
+    let [Values::I32(responses)] = &left[..] else { panic!("a response a point") };
+    responses.clone()
 }
 
 /// In 9x9 pixels the 9x9 filter fits only in the middle; everything else must be 0.
@@ -24,7 +17,7 @@ fn assert_only_the_middle(picture: &Luma, expected: i32) {
     for (step, middle, points) in [(1, 4 * 9 + 4, 81), (2, 2 * 5 + 2, 25)] {
         let mut all = vec![0; 4 * points];
         all[middle] = expected;
-        assert_same(&format!("step {step}"), &responses(picture, &one_octave(step))[0], &all);
+        assert_same(&format!("step {step}"), &responses(picture, step), &all);
     }
 }
 
@@ -58,25 +51,20 @@ fn a_pixel_off_the_axes_makes_dxy() {
 fn every_layer_sees_a_pixel_in_its_middle() {
     let picture = Luma::from_fn(387, 387, |x, y| if (x, y) == (193, 193) { 255 } else { 0 });
     // Step 1, octave 0: the pixel is a grid point.
-    let all = responses(&picture, &one_octave(1));
+    let all = responses(&picture, 1);
     for (layer, side) in [9_i32, 15, 21, 27].into_iter().enumerate() {
         let normalised = (f64::from(-510 * 256) / f64::from(side * side)).round() as i32;
         let at = layer * 387 * 387 + 193 * 387 + 193;
-        assert_eq!(all[0][at], (normalised * normalised) << 1, "side {side}");
+        assert_eq!(all[at], (normalised * normalised) << 1, "side {side}");
     }
 }
 
 #[test]
 fn equals_the_twin() {
     for (name, picture) in pictures() {
-        let integral = IntegralImage::new(&picture);
         for step in [1, 2] {
-            let config = FeatureConfig { octaves: 5, step, ..FeatureConfig::default() };
-            for (octave, found) in (0..).zip(responses(&picture, &config)) {
-                let twin = Octave::new(&integral, octave, step);
-                let expected: Vec<_> = twin.layers.iter().flat_map(|layer| layer.data()).map(|word| word.0).collect();
-                assert_same(&format!("{name}, step {step}, octave {octave}"), &found, &expected);
-            }
+            let trial = HessianTrial { picture: picture.clone(), octaves: 5, step };
+            assert_twin(&format!("{name}, step {step}"), &trial);
         }
     }
 }

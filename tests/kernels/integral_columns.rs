@@ -1,39 +1,42 @@
 use hsad::{
-    features::integral_columns::IntegralColumns,
+    features::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
     image::{Luma, Plane},
-    reference::{integral::IntegralImage, integral_columns::sum_columns, integral_rows::sum_rows},
+    reference::{integral::IntegralImage, integral_rows::sum_rows},
+    verify::integral::ColumnsTrial,
 };
 
-use crate::common::{assert_same, download, gpu, integral_image, pictures, run, upload};
-
-fn column_sums(sums: &Plane<u32>) -> Vec<u32> {
-    let buffer = upload(sums.data());
-    let stage = IntegralColumns::new(&gpu().device, &buffer, sums.width() - 1, sums.height() - 1);
-    run(|encoder| stage.record(encoder));
-    download(&buffer)
-}
+use crate::common::{assert_same, assert_twin, bench, download, gpu, leaves, pictures};
 
 #[test]
 fn two_by_three_with_a_sum_that_wraps() {
     let sums = Plane::new(2, 3, vec![1, u32::MAX, 2, 3, 4, 5]).unwrap();
-    assert_eq!(column_sums(&sums), [1, u32::MAX, 3, 2, 7, 7]);
+    assert_eq!(leaves(&ColumnsTrial(sums)), [vec![1, u32::MAX, 3, 2, 7, 7].into()]);
 }
 
 #[test]
 fn equals_the_twin() {
     for (name, picture) in pictures() {
-        let mut sums = sum_rows(&picture);
-        let found = column_sums(&sums);
-        sum_columns(&mut sums);
-        assert_same(&name, &found, sums.data());
+        assert_twin(&name, &ColumnsTrial(sum_rows(&picture)));
     }
+}
+
+/// Both passes, one after the other.
+fn integral_image(picture: &Luma) -> Vec<u32> {
+    let (device, (width, height)) = (&gpu().device, picture.size());
+    let rows = IntegralRows::new(device, &bench().upload_luma(picture).unwrap(), width, height).unwrap();
+    let columns = IntegralColumns::new(device, rows.sums(), width, height);
+    bench().run(|encoder| {
+        rows.record(encoder);
+        columns.record(encoder);
+    });
+    download(rows.sums())
 }
 
 /// White sums to 6.12e9 here, beyond 2^32; every value is known without any summing.
 #[test]
 fn both_passes_wrap_at_24_megapixels() {
     let (width, height) = (6000, 4000);
-    let found = download::<u32>(&integral_image(&Luma::filled(width, height, 255)));
+    let found = integral_image(&Luma::filled(width, height, 255));
     let expected = Plane::from_fn(width + 1, height + 1, |x, y| (255 * x).wrapping_mul(y));
     assert_same("white", &found, expected.data());
 }
@@ -42,6 +45,6 @@ fn both_passes_wrap_at_24_megapixels() {
 fn both_passes_are_the_integral_image() {
     let picture = Luma::new(3, 2, vec![1, 2, 3, 4, 5, 6]).unwrap();
     let expected = [0, 0, 0, 0, 0, 1, 3, 6, 0, 5, 12, 21];
-    assert_eq!(download::<u32>(&integral_image(&picture)), expected);
+    assert_eq!(integral_image(&picture), expected);
     assert_eq!(IntegralImage::new(&picture).sums().data(), expected);
 }

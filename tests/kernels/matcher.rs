@@ -11,6 +11,7 @@ use hsad::{
     gpu::Gpu,
     image::Luma,
     reference::compute_dense,
+    verify::pipelines::DenseTrial,
     wgpu,
 };
 
@@ -62,15 +63,9 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Left, semi_global(View::Left, Paths::Three, OtherView::Claimed)),
             (View::Right, semi_global(View::Right, Paths::Four, OtherView::Searched)),
         ] {
-            let actual = dense::compute(gpu(), &left, &right, &config);
-            let expected = compute_dense(&left, &right, &config);
-            let (actual, expected) = match (actual, expected) {
-                (Ok(actual), Ok(expected)) => (actual, expected),
-                (actual, expected) => panic!("{width}x{height}: {actual:?} and {expected:?}"),
-            };
+            let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
-            assert_same(&what, actual.disparity.data(), expected.disparity.data());
-            assert_same(&what, actual.confidence.data(), expected.confidence.data());
+            assert_twin(&what, &DenseTrial { left, right, config, band_rows: u32::MAX });
         }
     }
 }
@@ -91,7 +86,7 @@ fn bands_leave_no_trace() {
 fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
     let whole = dense::compute(gpu(), left, right, config).unwrap();
     assert!(coverage(&whole.disparity) > 0.3);
-    let (left, right) = (upload_luma(left), upload_luma(right));
+    let [left, right] = [left, right].map(|view| bench().upload_luma(view).unwrap());
     for rows in [1, 7, 64, 130] {
         let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, &left, &right, rows).unwrap();
         // Whole cells of 32 rows, where each has a range of its own.
@@ -108,10 +103,10 @@ fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
 fn twice_in_one_encoder_and_after_garbage() {
     let (left, right) = pair(97, 33);
     let expected = dense::compute(gpu(), &left, &right, &config(View::Left)).unwrap();
-    let (left, right) = (upload_luma(&left), upload_luma(&right));
+    let [left, right] = [&left, &right].map(|view| bench().upload_luma(view).unwrap());
     let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left), &left, &right).unwrap();
     let outputs = [0; 4].map(|_| upload(&vec![7_u32; 97 * 33]));
-    run(|encoder| {
+    bench().run(|encoder| {
         matcher.record(encoder, &outputs[0], &outputs[1]);
         matcher.record(encoder, &outputs[2], &outputs[3]);
     });

@@ -1,24 +1,22 @@
 //! Mean-shift filtering.
 
 use hsad::{
-    hybrid::{MeanShift, ModeSeeking},
+    hybrid::ModeSeeking,
     image::Plane,
-    reference::mean_shift,
+    verify::{Values, hybrid::MeanShiftTrial},
 };
 
 use crate::{common::*, hybrid::colours};
 
-fn on_device(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Vec<u32> {
-    let device = &gpu().device;
-    let (from, to) = (upload(pixels.data()), upload(pixels.data()));
-    let kernel = MeanShift::new(device, seeking).prepare(device, pixels.size(), &from, &to);
-    poison(&to);
-    run(|encoder| kernel.record(encoder));
-    download(&to)
+fn on_device(pixels: &Plane<u32>, seeking: ModeSeeking) -> Vec<u32> {
+    match leaves(&MeanShiftTrial { pixels: pixels.clone(), seeking }).remove(0) {
+        Values::U32(modes) => modes,
+        other => panic!("modes are words, not {}", other.kind()),
+    }
 }
 
-fn compare(what: &str, pixels: &Plane<u32>, seeking: &ModeSeeking) {
-    assert_same(&format!("{what} {seeking:?}"), &on_device(pixels, seeking), mean_shift(pixels, seeking).data());
+fn compare(what: &str, pixels: &Plane<u32>, seeking: ModeSeeking) {
+    assert_twin(&format!("{what} {seeking:?}"), &MeanShiftTrial { pixels: pixels.clone(), seeking });
 }
 
 #[test]
@@ -26,13 +24,13 @@ fn the_twin_filters_the_same() {
     let words = |picture: &hsad::io::Picture| picture.map(|&pixel| u32::from_le_bytes(pixel));
     for (width, height) in SIZES {
         let pixels = words(&colours(width, height, 3));
-        compare(&format!("{width}x{height}"), &pixels, &ModeSeeking { radius: 5, range: 8, turns: 10 });
-        compare(&format!("{width}x{height}"), &pixels, &ModeSeeking { radius: 1, range: 60, turns: 3 });
+        compare(&format!("{width}x{height}"), &pixels, ModeSeeking { radius: 5, range: 8, turns: 10 });
+        compare(&format!("{width}x{height}"), &pixels, ModeSeeking { radius: 1, range: 60, turns: 3 });
     }
     let pixels = words(&colours(64, 48, 4));
-    compare("all there is", &pixels, &ModeSeeking { radius: 15, range: 255, turns: 100 });
+    compare("all there is", &pixels, ModeSeeking { radius: 15, range: 255, turns: 100 });
     for (name, photograph) in photographs().into_iter().take(2) {
-        compare(&name, &words(&photograph), &ModeSeeking { radius: 3, range: 8, turns: 5 });
+        compare(&name, &words(&photograph), ModeSeeking { radius: 3, range: 8, turns: 5 });
     }
 }
 
@@ -42,11 +40,11 @@ fn by_hand() {
     let seeking = |range, turns| ModeSeeking { radius: 1, range, turns };
     let pixels = Plane::new(4, 1, [10, 13, 100, 107].map(grey).to_vec()).unwrap();
     // Greys that differ by 3 are 5.2 apart, by 7 they are 12.1. The mean of 10 and 13 is 11.5, up.
-    assert_eq!(on_device(&pixels, &seeking(6, 1)), [12, 12, 100, 107].map(grey));
+    assert_eq!(on_device(&pixels, seeking(6, 1)), [12, 12, 100, 107].map(grey));
     // 103.5 for the others.
-    assert_eq!(on_device(&pixels, &seeking(13, 1)), [12, 12, 104, 104].map(grey));
+    assert_eq!(on_device(&pixels, seeking(13, 1)), [12, 12, 104, 104].map(grey));
     // All within reach of each other: the second climbs on with the third, 41 at 1.0, and stays there.
-    assert_eq!(on_device(&pixels, &seeking(255, 1))[1], grey(41));
+    assert_eq!(on_device(&pixels, seeking(255, 1))[1], grey(41));
 }
 
 #[test]
@@ -55,7 +53,7 @@ fn edges_stay_and_grain_goes() {
         let level = if x < 20 { 50 } else { 120 } + (7 * x + 5 * y) % 5;
         level | level << 8 | level << 16
     });
-    let modes = on_device(&pixels, &ModeSeeking { radius: 4, range: 12, turns: 20 });
+    let modes = on_device(&pixels, ModeSeeking { radius: 4, range: 12, turns: 20 });
     for (pixel, &mode) in modes.iter().enumerate() {
         let expected = if pixel % 40 < 20 { 52 } else { 122 };
         assert!((mode & 255).abs_diff(expected) <= 1, "pixel {pixel}: {}", mode & 255);

@@ -1,50 +1,27 @@
 use hsad::{
     features::{
         FeatureConfig,
-        hessian::{Grid, Hessian, LAYERS},
+        hessian::{Grid, LAYERS},
         keypoints::Keypoint,
-        nonmax::{Nonmax, integer_threshold},
+        nonmax::integer_threshold,
     },
-    reference::integral::IntegralImage,
-    wgpu,
+    verify::points::NonmaxTrial,
 };
 
-use crate::common::{
-    assert_mostly, download, gpu, integral_image, keypoint, keypoints_of, pictures, place_near, poison, run, upload,
-    write,
-};
+use crate::common::{assert_twin, bench, keypoint, pictures};
 
 const SIDE: u32 = 64;
 
 /// The keypoints in an octave of a 64x64 picture whose determinants are 0 but for `samples`:
 /// (column, row, layer), determinant. Also how many there would have been with more room.
-fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32), i32)]) -> (usize, Vec<Keypoint>) {
-    let device = &gpu().device;
-    let hessian = Hessian::new(device, &upload(&[0_u32]), SIDE, SIDE, config).unwrap();
-    let stage = Nonmax::new(device, &hessian, SIDE, SIDE, config).unwrap();
+fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32), i32)]) -> (u32, Vec<Keypoint>) {
+    let grids = (0..config.octaves).map(|octave| Grid::new(SIDE, SIDE, config.step, octave));
+    let mut responses: Vec<_> = grids.map(|grid| vec![0; (LAYERS * grid.width * grid.height) as usize]).collect();
     let grid = Grid::new(SIDE, SIDE, config.step, octave);
-    let mut responses = vec![0_i32; (LAYERS * grid.width * grid.height) as usize];
     for &((i, j, k), determinant) in samples {
-        responses[((k * grid.height + j) * grid.width + i) as usize] = determinant << 1 | 1;
+        responses[octave as usize][((k * grid.height + j) * grid.width + i) as usize] = determinant << 1 | 1;
     }
-    write(hessian.responses(octave), &responses);
-    found(config, &stage, |encoder| stage.record(encoder))
-}
-
-/// What a stage finds: how many there would have been with more room, and the list in order.
-fn found(
-    config: &FeatureConfig,
-    stage: &Nonmax,
-    record: impl FnOnce(&mut wgpu::CommandEncoder),
-) -> (usize, Vec<Keypoint>) {
-    poison(stage.list().found());
-    poison(stage.list().keypoints());
-    run(record);
-    let count = download::<u32>(stage.list().found())[0] as usize;
-    let mut keypoints: Vec<Keypoint> = download(stage.list().keypoints());
-    keypoints.truncate(count.min(config.max_features as usize));
-    keypoints.sort_by_key(Keypoint::key);
-    (count, keypoints)
+    NonmaxTrial { size: (SIDE, SIDE), config: config.clone(), responses }.keypoints(&bench()).unwrap()
 }
 
 /// As above, with a threshold of 100.
@@ -143,46 +120,16 @@ fn the_counter_goes_on_when_the_room_is_used_up() {
     assert_eq!((count, kept.len()), (3, 2));
 }
 
-fn near(a: &Keypoint, b: &Keypoint) -> bool {
-    let exact = |k: &Keypoint| (k.key(), k.response, k.orientation.to_bits());
-    exact(a) == exact(b) && place_near([a.x, a.y, a.scale], [b.x, b.y, b.scale])
-}
-
 #[test]
 fn equals_the_twin() {
     let mut total = 0;
     for (name, picture) in pictures() {
-        let (width, height) = picture.size();
         for (step, threshold) in [(1, 0.000_01), (2, 0.000_001)] {
             let config = FeatureConfig { octaves: 5, step, threshold, ..FeatureConfig::default() };
-            let hessian = Hessian::new(&gpu().device, &integral_image(&picture), width, height, &config).unwrap();
-            let stage = Nonmax::new(&gpu().device, &hessian, width, height, &config).unwrap();
-            let (_, found) = found(&config, &stage, |encoder| {
-                hessian.record(encoder);
-                stage.record(encoder);
-            });
-            let expected = keypoints_of(&IntegralImage::new(&picture), 5, step, threshold);
-            assert_mostly(&format!("{name}, step {step}"), &found, &expected, 0.0, near);
-            total += found.len();
+            let trial = NonmaxTrial::of_picture(&picture, config);
+            assert_twin(&format!("{name}, step {step}"), &trial);
+            total += trial.twins_keypoints().len();
         }
     }
     assert!(total > 1000, "{total}");
-}
-
-#[test]
-fn a_changed_keypoint_is_seen() {
-    let good = Keypoint { response: 9, octave: 1, index: 5, ..keypoint(30.0, 20.0, 2.0) };
-    assert!(near(&good, &good));
-    for changed in [
-        Keypoint { x: 30.001, ..good },
-        Keypoint { y: 19.999, ..good },
-        Keypoint { scale: 2.001, ..good },
-        Keypoint { orientation: 1e-9, ..good },
-        Keypoint { response: 8, ..good },
-        Keypoint { octave: 0, ..good },
-        Keypoint { index: 6, ..good },
-        Keypoint { x: f32::NAN, ..good },
-    ] {
-        assert!(!near(&changed, &good), "{changed:?}");
-    }
 }

@@ -1,34 +1,23 @@
 //! Padding.
 
 use hsad::{
-    dense::{Brightness, Pad, PadParams},
-    reference::padded,
+    dense::{Brightness, PadParams},
+    image::Luma,
+    verify::blocks::PadTrial,
 };
 
 use crate::common::*;
-
-fn on_device(width: u32, height: u32, seed: u32, params: PadParams) -> Vec<u32> {
-    let luma = upload_luma(&picture(width, height, seed));
-    let out = upload(&vec![0_u32; (params.offset + params.rows * params.stride) as usize]);
-    poison(&out);
-    let pad = Pad::new(&gpu().device).prepare(&gpu().device, params, &luma, &out);
-    run(|encoder| pad.record(encoder));
-    download(&out)
-}
 
 #[test]
 fn by_hand() {
     // Of the row 10 20 30 the columns -4 to 7, twice, each pixel half as bright and one more.
     let brightness = Brightness { gain: 128, offset: 256 };
-    let luma = upload(&[0x001e_140a_u32]);
+    let picture = Luma::new(3, 1, vec![10, 20, 30]).unwrap();
     let params =
         PadParams { width: 3, height: 1, first_word: -1, first_row: -1, rows: 2, stride: 3, offset: 1, brightness };
-    let out = upload(&[0_u32; 7]);
-    poison(&out);
-    let pad = Pad::new(&gpu().device).prepare(&gpu().device, params, &luma, &out);
-    run(|encoder| pad.record(encoder));
     let row = [0x0606_0606, 0x1010_0b06, 0x1010_1010];
-    assert_eq!(download::<u32>(&out), [u32::MAX, row[0], row[1], row[2], row[0], row[1], row[2]]);
+    let expected = vec![u32::MAX, row[0], row[1], row[2], row[0], row[1], row[2]];
+    assert_eq!(leaves(&PadTrial { picture, params }), [expected.into()]);
 }
 
 #[test]
@@ -45,8 +34,8 @@ fn the_twin_pads_the_same() {
                 offset: 0,
                 brightness: Brightness { gain: 300, offset: -9000 },
             };
-            let what = format!("{width}x{height} from word {first_word}");
-            assert_same(&what, &on_device(width, height, 5, params), &padded(&picture(width, height, 5), &params));
+            let trial = PadTrial { picture: picture(width, height, 5), params };
+            assert_twin(&format!("{width}x{height} from word {first_word}"), &trial);
         }
     }
 }

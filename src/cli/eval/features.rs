@@ -27,7 +27,7 @@ use serde_json::json;
 
 use crate::cli::{
     options::{FeatureOptions, RunOptions, with_default},
-    terminal::Progress,
+    terminal::{self, Progress},
 };
 use table::{Column, Row, Table, Unit};
 use views::Views;
@@ -205,7 +205,7 @@ impl Features {
             }
             if table.rows.len() > before && !self.run.quiet {
                 let gap = if before == 0 { "" } else { "\n" };
-                progress.print(&format!("{gap}{}", table.text(&change.name, width)))?;
+                progress.suspend(|| terminal::print(&format!("{gap}{}", table.text(&change.name, width))))?;
             }
         }
         drop(progress);

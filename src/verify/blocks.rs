@@ -1,0 +1,211 @@
+//! Padding and block matching.
+
+use super::{
+    array::Array,
+    bench::Bench,
+    case::{Subject, Trial},
+    dice::{Dice, Size},
+};
+use crate::{
+    dense::{BlockMatch, Brightness, CELL, DenseConfig, Layout, Pad, PadParams, Ranges, Tile, View, Wanted},
+    disparity::DisparityRange,
+    error::Result,
+    gpu::WordTexture,
+    image::{Luma, Plane},
+    luma::pack,
+    reference::{CellPlane, block_match, check_consistency, padded, winners},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("pad", |size, dice| Box::new(PadTrial::draw(size, dice))),
+    Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice))),
+];
+
+/// A picture to be padded.
+#[derive(Clone, Debug)]
+pub struct PadTrial {
+    /// The picture, of the size that the parameters say.
+    pub picture: Luma,
+    /// How it is padded.
+    pub params: PadParams,
+}
+
+impl PadTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (width, height) = size;
+        let (above, below) = (dice.below(20), dice.below(20));
+        let brightness = dice.pick(&[
+            Brightness::SAME,
+            Brightness { gain: 300, offset: -9000 },
+            Brightness { gain: -40, offset: 60_000 },
+        ]);
+        let params = PadParams {
+            width,
+            height,
+            first_word: dice.between(-33, 5),
+            first_row: -(above as i32),
+            rows: above + height + below,
+            stride: width.div_ceil(4) + dice.below(40) + 1,
+            offset: dice.below(9),
+            brightness,
+        };
+        Self { picture: dice.picture(size), params }
+    }
+}
+
+impl Trial for PadTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.params)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.picture.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, params) = (bench.device(), self.params);
+        let plane = bench.output(params.offset + params.rows * params.stride)?;
+        let pad = Pad::new(device).prepare(device, params, &bench.upload_luma(&self.picture)?, &plane);
+        bench.run(|encoder| pad.record(encoder));
+        Ok(vec![Array::exact("padded plane", bench.download::<u32>(&plane)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let mut plane = padded(&self.picture, &self.params);
+        // The kernel leaves what stands in front of the plane alone.
+        plane[..self.params.offset as usize].fill(u32::MAX);
+        Ok(vec![Array::exact("padded plane", plane)])
+    }
+}
+
+/// A pair that is matched block by block.
+#[derive(Clone, Debug)]
+pub struct BlockMatchTrial {
+    /// The left view.
+    pub left: Luma,
+    /// The right view.
+    pub right: Luma,
+    /// The view whose pixels get a disparity.
+    pub view: View,
+    /// The window, the range and the checks.
+    pub config: DenseConfig,
+    /// What is searched in each cell, where that is not the whole range; then no tile may lie in two cells.
+    pub ranges: Option<CellPlane>,
+    /// The pixels of a thread.
+    pub tile: Tile,
+}
+
+impl BlockMatchTrial {
+    fn matched(&self, bench: &Bench<'_>, wanted: Wanted) -> Result<Vec<u32>> {
+        let (device, (width, height)) = (bench.device(), self.left.size());
+        let layout = Layout::new(self.left.size(), 0, height, &self.config, &[self.tile])?;
+        // The twin's, so that this is about one kernel.
+        let [left, right] = layout.padding(Brightness::SAME);
+        let (mut planes, right_plane) = (padded(&self.left, &left), padded(&self.right, &right));
+        planes.extend(&right_plane[right.offset as usize..]);
+        planes.resize(planes.len().next_multiple_of(2048), 0);
+        let texture = WordTexture::new(device, "planes", planes.len() as u64)?;
+        let buffer = bench.upload(&planes)?;
+        let ranges = match &self.ranges {
+            None => Ranges::whole(device, self.config.searched(width)?),
+            Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
+        };
+        let others = match (self.config.consistency, wanted) {
+            (Some(limit), Wanted::Matches) => Some((bench.upload(self.others()?.data())?, limit)),
+            _ => None,
+        };
+        let others = others.as_ref().map(|(others, limit)| (others, *limit));
+        let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
+        let matches = bench.output(width * height + confidences)?;
+        let kernel = BlockMatch::new(device, &self.config, self.view, wanted, self.tile);
+        let dispatch = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
+        bench.run(|encoder| {
+            texture.record(encoder, &buffer);
+            dispatch.record(encoder);
+        });
+        bench.download(&matches)
+    }
+
+    /// The configuration with the disparities that are searched.
+    fn searched(&self) -> Result<DenseConfig> {
+        Ok(DenseConfig { range: self.config.searched(self.left.width())?, ..self.config.clone() })
+    }
+
+    /// What the other view's winners are, over the whole range.
+    fn others(&self) -> Result<Plane<i32>> {
+        Ok(winners(&self.left, &self.right, self.view.other(), &self.searched()?, None))
+    }
+
+    fn arrays(disparities: Vec<i32>, confidences: Vec<u32>, winners: Vec<i32>) -> Vec<Array> {
+        vec![
+            Array::exact("disparities", disparities),
+            Array::exact("confidences", confidences),
+            Array::exact("winners", winners),
+        ]
+    }
+}
+
+impl BlockMatchTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        // Compilers of software drivers take seconds for a window, and for a wide one a minute.
+        let window = if dice.below(16) == 0 { dice.pick(&[11, 13, 15, 21]) } else { dice.pick(&[3, 3, 5, 7, 9]) };
+        let (interpolation, view) = (dice.interpolation(), dice.view());
+        let tile = dice.pick(&[Tile::HARDWARE, Tile::HARDWARE, Tile::SOFTWARE, Tile { quads: 3, height: 1 }]);
+        let uniqueness = dice.pick(&[0, 0, 1, 15, 100]);
+        let range = dice.range(80);
+        // Also ranges that none of the costs of most pixels lie in.
+        let away = if size.0 > 64 { dice.between(-40, 40) } else { 0 };
+        let range = DisparityRange { min: range.min + away, ..range };
+        let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) }.with_window(window);
+        let [left, right] = dice.pair(size);
+        let consistency = dice.pick(&[None, Some(0), Some(256)]);
+        let config = DenseConfig { consistency, ..config };
+        let in_cells = dice.coin() && CELL % (4 * tile.quads) == 0;
+        let ranges = config.searched(size.0).ok().filter(|_| in_cells).map(|range| {
+            Plane::from_fn(size.0.div_ceil(CELL), size.1.div_ceil(CELL), |_, _| {
+                let first = dice.below(range.count);
+                (first, dice.below(range.count - first + 1))
+            })
+        });
+        Self { left, right, view, config, ranges, tile }
+    }
+}
+
+impl Trial for BlockMatchTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?} {:?} {:?}", self.view, self.config, self.tile, self.ranges)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        [("left", &self.left), ("right", &self.right)]
+            .map(|(name, view)| Array::exact(name, view.data().to_vec()))
+            .to_vec()
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let matches = self.matched(bench, Wanted::Matches)?;
+        let (disparities, confidences) = matches.split_at(self.left.data().len());
+        let winners = self.matched(bench, Wanted::Winners)?;
+        Ok(Self::arrays(signed(disparities), confidences.to_vec(), signed(&winners)))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let (config, ranges) = (self.searched()?, self.ranges.as_ref());
+        let mut dense = block_match(&self.left, &self.right, self.view, &config, ranges);
+        if let Some(max_difference) = config.consistency {
+            check_consistency(&mut dense, self.view, &self.others()?, max_difference);
+        }
+        let winners = winners(&self.left, &self.right, self.view, &config, ranges).into_data();
+        Ok(Self::arrays(dense.disparity.into_data(), pack(&dense.confidence), winners))
+    }
+}
+
+/// Two words a cell.
+pub(super) fn cell_words(cells: &CellPlane) -> Vec<u32> {
+    cells.data().iter().flat_map(|&(first, count)| [first, count]).collect()
+}
+
+/// Words that hold disparities.
+pub(super) fn signed(words: &[u32]) -> Vec<i32> {
+    words.iter().map(|word| word.cast_signed()).collect()
+}

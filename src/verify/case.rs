@@ -1,0 +1,204 @@
+//! One kernel at one size with inputs that follow from a seed: run, compared, timed.
+
+use std::{
+    fmt,
+    time::{Duration, Instant},
+};
+
+use super::{
+    array::{Array, Comparison},
+    bench::Bench,
+    dice::{Dice, Size},
+    goldens,
+};
+use crate::error::{Error, Result};
+
+/// A kernel, or several in a row, with everything they are given.
+pub trait Trial {
+    /// What is given beside arrays, for people.
+    fn parameters(&self) -> String;
+
+    /// The arrays that are given.
+    fn input(&self) -> Vec<Array>;
+
+    /// What the device leaves.
+    ///
+    /// # Errors
+    /// What the device says.
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>>;
+
+    /// What the CPU twins leave.
+    ///
+    /// # Errors
+    /// As the device should, too.
+    fn twin(&self) -> Result<Vec<Array>>;
+}
+
+/// Compares what a device leaves with what the twins leave.
+///
+/// # Errors
+/// Those of either.
+pub fn compare(trial: &dyn Trial, bench: &Bench<'_>) -> Result<Vec<Comparison>> {
+    let expected = trial.twin()?;
+    let actual = bench.guarded("a kernel", || trial.on_device(bench))?;
+    Ok(comparisons(&actual, &expected))
+}
+
+fn comparisons(actual: &[Array], expected: &[Array]) -> Vec<Comparison> {
+    assert_eq!(actual.len(), expected.len(), "device and twin are written to leave as many arrays");
+    actual.iter().zip(expected).map(|(actual, expected)| Comparison::new(actual, expected)).collect()
+}
+
+/// What is verified: a kernel by its stage's name, or a whole half of the pipeline.
+pub struct Subject {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether it is made of several kernels.
+    pub is_pipeline: bool,
+    draw: fn(Size, &mut Dice) -> Box<dyn Trial>,
+}
+
+impl fmt::Debug for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Subject").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl Subject {
+    /// The kernel whose trials `draw` draws for a picture of a size.
+    pub const fn kernel(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
+        Self { name, is_pipeline: false, draw }
+    }
+
+    /// The same of several kernels in a row.
+    pub const fn pipeline(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
+        Self { name, is_pipeline: true, draw }
+    }
+}
+
+/// The longest side of a case's picture.
+pub const MAX_SIDE: u32 = 4096;
+
+/// A subject with a size and a seed: everything else follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// What is verified.
+    pub subject: &'static Subject,
+    /// Of the picture that it works on.
+    pub size: Size,
+    /// Of what is drawn.
+    pub seed: u32,
+}
+
+impl Case {
+    /// The case of a subject's name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] with the names that there are, and for a size out of range.
+    pub fn new(name: &str, size: Size, seed: u32) -> Result<Self> {
+        if size.0.min(size.1) == 0 || size.0.max(size.1) > MAX_SIDE {
+            return Err(Error::Parameter {
+                name: "size",
+                value: format!("{}x{}", size.0, size.1),
+                expected: format!("each side must be 1 to {MAX_SIDE} px"),
+            });
+        }
+        let subject = super::subjects().find(|subject| subject.name == name).ok_or_else(|| {
+            let names: Vec<_> = super::subjects().map(|subject| subject.name).collect();
+            Error::Parameter {
+                name: "only",
+                value: format!("'{name}'"),
+                expected: format!("there are {}", names.join(", ")),
+            }
+        })?;
+        Ok(Self { subject, size, seed })
+    }
+
+    /// What is tried.
+    pub fn trial(&self) -> Box<dyn Trial> {
+        (self.subject.draw)(self.size, &mut Dice::new(self.subject.name, self.seed))
+    }
+
+    /// The command that repeats this case alone.
+    pub fn command(&self) -> String {
+        let (width, height) = self.size;
+        format!("hsad verify --only {} --size {width}x{height} --seed {}", self.subject.name, self.seed)
+    }
+
+    /// Runs it on a device and on the CPU.
+    pub fn run(&self, bench: &Bench<'_>) -> Outcome {
+        let trial = self.trial();
+        let start = Instant::now();
+        let expected = trial.twin();
+        let twin_time = start.elapsed();
+        let start = Instant::now();
+        let actual = bench.guarded(self.subject.name, || trial.on_device(bench));
+        let device_time = start.elapsed();
+        let mut outcome = Outcome {
+            case: *self,
+            parameters: trial.parameters(),
+            device_time,
+            twin_time,
+            comparisons: Vec::new(),
+            faults: Vec::new(),
+            golden: false,
+            lost: matches!(actual, Err(Error::DeviceLost(_))),
+            input: trial.input(),
+            expected: Vec::new(),
+            actual: Vec::new(),
+        };
+        match expected {
+            Ok(expected) => outcome.expected = expected,
+            Err(error) => outcome.faults.push(format!("the twin: {error}")),
+        }
+        match actual {
+            Ok(actual) => outcome.actual = actual,
+            Err(error) => outcome.faults.push(error.to_string()),
+        }
+        if outcome.faults.is_empty() {
+            outcome.comparisons = comparisons(&outcome.actual, &outcome.expected);
+            outcome.faults.extend(outcome.comparisons.iter().filter_map(|comparison| comparison.fault.clone()));
+        }
+        if let (Some(golden), Some(hash)) = (goldens::stored(self), goldens::hash(&outcome.expected)) {
+            outcome.golden = golden == hash;
+            if !outcome.golden {
+                outcome.faults.push(format!("the twin's hash is {hash:016x}, and {golden:016x} is stored"));
+            }
+        }
+        outcome
+    }
+}
+
+/// What came of a case.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The case.
+    pub case: Case,
+    /// What was given beside arrays.
+    pub parameters: String,
+    /// How long the device took, with the compilation of its kernels.
+    pub device_time: Duration,
+    /// How long the twins took.
+    pub twin_time: Duration,
+    /// For each array what came of its comparison; none where there was nothing to compare.
+    pub comparisons: Vec<Comparison>,
+    /// What is wrong, for people; nothing where all is right.
+    pub faults: Vec<String>,
+    /// Whether a golden hash is stored for this case, and is that of the twin's exact results.
+    pub golden: bool,
+    /// Whether the device is lost, so that nothing else will run on it.
+    pub lost: bool,
+    /// The arrays that were given.
+    pub input: Vec<Array>,
+    /// The twin's arrays.
+    pub expected: Vec<Array>,
+    /// The device's arrays.
+    pub actual: Vec<Array>,
+}
+
+impl Outcome {
+    /// Whether nothing is wrong.
+    pub fn passes(&self) -> bool {
+        self.faults.is_empty()
+    }
+}

@@ -1,0 +1,149 @@
+//! What is searched where, coarse to fine: half the size, and the ranges of cells.
+
+use super::{
+    array::Array,
+    bench::Bench,
+    blocks::cell_words,
+    case::{Subject, Trial},
+    dice::{Dice, Size},
+};
+use crate::{
+    dense::{CELL, CellBand, CellRanges, Halve, PartnerRanges, View},
+    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
+    error::Result,
+    image::{Luma, Plane},
+    luma::pack,
+    reference::{CellPlane, cell_ranges, halved, partner_ranges},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("halve", |size, dice| Box::new(HalveTrial(dice.picture(size)))),
+    Subject::kernel("cell_ranges", |size, dice| Box::new(CellRangesTrial::draw(size, dice))),
+    Subject::kernel("partner_ranges", |size, dice| Box::new(PartnerRangesTrial::draw(size, dice))),
+];
+
+/// A picture that is halved.
+#[derive(Clone, Debug)]
+pub struct HalveTrial(pub Luma);
+
+impl Trial for HalveTrial {
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.0.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, (width, height)) = (bench.device(), self.0.size());
+        let halved = bench.output(width.div_ceil(2).div_ceil(4) * height.div_ceil(2))?;
+        let dispatch = Halve::new(device).prepare(device, (width, height), &bench.upload_luma(&self.0)?, &halved);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("half the picture", bench.download::<u32>(&halved)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("half the picture", pack(&halved(&self.0)))])
+    }
+}
+
+/// A map of half the size, for a picture of this one.
+#[derive(Clone, Debug)]
+pub struct CellRangesTrial {
+    /// Of the picture.
+    pub size: Size,
+    /// Of half the size.
+    pub map: DisparityMap,
+    /// Of which cells get a part.
+    pub range: DisparityRange,
+}
+
+impl CellRangesTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        // Also more disparities than there are bins.
+        let range = dice.pick(&[(0, 64), (-9, 33), (5, 1), (-3000, 6001)]);
+        let range = DisparityRange { min: range.0, count: range.1 };
+        let half = (size.0.div_ceil(2), size.1.div_ceil(2));
+        let (steps, holes) = (dice.picture(half), dice.picture(half));
+        let map = Plane::from_fn(half.0, half.1, |x, y| {
+            let share = i64::from(steps.get(x, y)) * i64::from(range.count) * i64::from(SCALE) / 512;
+            // More and more holes to the right.
+            let hole = u32::from(holes.get(x, y)) < x * 300 / half.0;
+            if hole { NONE } else { range.min * SCALE / 2 + share as i32 }
+        });
+        Self { size, map, range }
+    }
+}
+
+impl Trial for CellRangesTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.range)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("map of half the size", self.map.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let device = bench.device();
+        let band = CellBand::new(self.size, (0, self.size.1), self.range);
+        let ranges = bench.output(band.words() as u32)?;
+        let dispatch = CellRanges::new(device).prepare(device, &band, &bench.upload(self.map.data())?, &ranges);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("ranges", bench.download::<u32>(&ranges)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("ranges", cell_words(&cell_ranges(&self.map, self.size, self.range)))])
+    }
+}
+
+/// Ranges of one view's cells, to which the other's are found.
+#[derive(Clone, Debug)]
+pub struct PartnerRangesTrial {
+    /// What is searched in each cell of the reference view.
+    pub cells: CellPlane,
+    /// The reference view.
+    pub view: View,
+    /// Of which cells have a part.
+    pub range: DisparityRange,
+}
+
+impl PartnerRangesTrial {
+    /// A cell a pixel of a small picture, fewer of a large one.
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let range = dice.range(150);
+        let cells = Plane::from_fn(size.0.min(70), size.1.min(9), |_, _| {
+            let first = dice.below(range.count);
+            (first, dice.below(range.count - first + 1))
+        });
+        Self { cells, view: dice.view(), range }
+    }
+}
+
+impl Trial for PartnerRangesTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?}", self.view, self.range)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("ranges", cell_words(&self.cells))]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let device = bench.device();
+        let size = (CELL * self.cells.width(), CELL * self.cells.height());
+        let band = CellBand::new(size, (0, size.1), self.range);
+        let partners = bench.output(band.words() as u32)?;
+        let cells = bench.upload(&cell_words(&self.cells))?;
+        let dispatch = PartnerRanges::new(device).prepare(device, &band, self.view, &cells, &partners);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("ranges of the other view", bench.download::<u32>(&partners)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let partners = partner_ranges(&self.cells, self.view, self.range);
+        Ok(vec![Array::exact("ranges of the other view", cell_words(&partners))])
+    }
+}

@@ -1,0 +1,257 @@
+//! What becomes of a map of disparities: consistency, support, filling, medians.
+
+use super::{
+    array::Array,
+    bench::Bench,
+    blocks::signed,
+    case::{Subject, Trial},
+    dice::{Dice, Size},
+};
+use crate::{
+    dense::{Consistency, Dense, Fill, Median, Others, Support, View, WeightedMedian},
+    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
+    error::Result,
+    image::{Luma, Plane},
+    luma::pack,
+    reference::{check_consistency, filled, supported, weighted_median},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("consistency", |size, dice| Box::new(ConsistencyTrial::draw(size, dice))),
+    Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
+    Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
+    Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
+];
+
+/// Disparities of all kinds, in 1/256 px: smooth, noisy, none, from `least` to `most` and perhaps beyond.
+fn map((width, height): Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
+    let surface = dice.picture((width, height));
+    let (holes, noise) = (dice.pick(&[0, 30, 128, 250]), 1 + dice.below(300));
+    Plane::from_fn(width, height, |x, y| {
+        let smooth = least + (most - least) / 256 * i32::from(surface.get(x, y));
+        if dice.below(256) < holes { NONE } else { smooth + dice.below(noise) as i32 }
+    })
+}
+
+/// The same with confidences, 0 where there is no disparity.
+fn dense(size: Size, dice: &mut Dice) -> Dense {
+    let disparity = map(size, dice, -30 * SCALE, 60 * SCALE);
+    let confidence = disparity.map(|&disparity| if disparity == NONE { 0 } else { 1 + dice.below(255) as u8 });
+    Dense { disparity, confidence }
+}
+
+/// A map and its confidences in one buffer, as kernels have them.
+fn matches(dense: &Dense) -> Vec<u32> {
+    let mut words: Vec<u32> = dense.disparity.data().iter().map(|disparity| disparity.cast_unsigned()).collect();
+    words.extend(pack(&dense.confidence));
+    words
+}
+
+fn arrays(matches: &[u32], pixels: usize) -> Vec<Array> {
+    let (disparities, confidences) = matches.split_at(pixels);
+    vec![Array::exact("disparities", signed(disparities)), Array::exact("confidences", confidences.to_vec())]
+}
+
+/// Two maps that are held against each other.
+#[derive(Clone, Debug)]
+pub struct ConsistencyTrial {
+    /// Of the reference view.
+    pub dense: Dense,
+    /// Which view that is.
+    pub view: View,
+    /// Of the other view.
+    pub others: DisparityMap,
+    /// Whether they are given as claims: then they are whole pixels, from this one on.
+    pub claims_from: Option<i32>,
+    /// The largest difference, in 1/256 px.
+    pub max_difference: u32,
+}
+
+impl ConsistencyTrial {
+    /// The other view's disparities as the kernel is given them.
+    fn words(&self) -> Vec<u32> {
+        let word = |disparity: i32| match self.claims_from {
+            None => disparity.cast_unsigned(),
+            Some(_) if disparity == NONE => 0,
+            // Any cost will do.
+            Some(least) => !(77 << 16 | (disparity / SCALE - least) as u32),
+        };
+        self.others.data().iter().map(|&disparity| word(disparity)).collect()
+    }
+}
+
+impl ConsistencyTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (view, max_difference) = (dice.view(), dice.pick(&[0, 100, 256, 2000, 65536]));
+        let claims_from = dice.coin().then_some(-30);
+        let others = map(size, dice, -30 * SCALE, 60 * SCALE);
+        let whole = |&disparity: &i32| if disparity == NONE { NONE } else { disparity.div_euclid(SCALE) * SCALE };
+        let others = if claims_from.is_some() { others.map(whole) } else { others };
+        Self { dense: dense(size, dice), view, others, claims_from, max_difference }
+    }
+}
+
+impl Trial for ConsistencyTrial {
+    fn parameters(&self) -> String {
+        let Self { view, claims_from, max_difference, .. } = self;
+        format!("{view:?}, claims from {claims_from:?}, at most {max_difference}")
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("matches", matches(&self.dense)), Array::exact("others", self.words())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.dense.disparity.size());
+        let pixels = size.0 * size.1;
+        let (others, matches) = (bench.upload(&self.words())?, bench.upload(&matches(&self.dense))?);
+        let kernel = Consistency::new(device, self.claims_from.map_or(Others::Disparities, Others::Claims));
+        let dispatch = kernel.prepare(device, size, pixels, self.view, self.max_difference, &others, &matches);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(arrays(&bench.download(&matches)?, pixels as usize))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let mut dense = self.dense.clone();
+        check_consistency(&mut dense, self.view, &self.others, self.max_difference);
+        Ok(arrays(&matches(&dense), dense.disparity.data().len()))
+    }
+}
+
+/// A map whose speckles are taken away.
+#[derive(Clone, Debug)]
+pub struct SupportTrial {
+    /// The map.
+    pub dense: Dense,
+    /// How many neighbours must agree.
+    pub least: u32,
+}
+
+impl SupportTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { least: dice.pick(&[0, 1, 9, 25, 49]), dense: dense(size, dice) }
+    }
+}
+
+impl Trial for SupportTrial {
+    fn parameters(&self) -> String {
+        format!("at least {}", self.least)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("matches", matches(&self.dense))]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.dense.disparity.size());
+        let pixels = size.0 * size.1;
+        let words = matches(&self.dense);
+        let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
+        let dispatch = Support::new(device, self.least).prepare(device, size, pixels, &from, &to);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(arrays(&bench.download(&to)?, pixels as usize))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let dense = supported(&self.dense, self.least);
+        Ok(arrays(&matches(&dense), dense.disparity.data().len()))
+    }
+}
+
+/// A map whose holes are filled.
+#[derive(Clone, Debug)]
+pub struct FillTrial {
+    /// The map.
+    pub disparities: DisparityMap,
+    /// What a filled disparity may be.
+    pub range: DisparityRange,
+}
+
+impl FillTrial {
+    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+        // Slanted surfaces with noise, of all lengths.
+        let coarse = dice.picture((width.div_ceil(40), height));
+        let (holes, noise) = (dice.pick(&[0, 5, 200, 256]), 1 + dice.below(100));
+        let (slope, every) = (dice.between(-70, 70), 1 + dice.below(4));
+        let disparities = Plane::from_fn(width, height, |x, y| {
+            if x % every == 0 && dice.below(256) < holes {
+                return NONE;
+            }
+            i32::from(coarse.get(x / 40, y)) * 40 - 3000 + slope * x as i32 + dice.below(noise) as i32
+        });
+        Self { disparities, range: DisparityRange { min: dice.between(-20, 0), count: 1 + dice.below(60) } }
+    }
+}
+
+impl Trial for FillTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.range)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("disparities", self.disparities.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.disparities.size());
+        let (from, to) = (bench.upload(self.disparities.data())?, bench.output(size.0 * size.1)?);
+        let dispatch = Fill::new(device).prepare(device, size, self.range, &from, &to);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("filled disparities", bench.download::<i32>(&to)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("filled disparities", filled(&self.disparities, self.range).into_data())])
+    }
+}
+
+/// A map that is filtered.
+#[derive(Clone, Debug)]
+pub struct MedianTrial {
+    /// The view whose map it is.
+    pub luma: Luma,
+    /// The map.
+    pub disparities: DisparityMap,
+    /// The map before its holes were filled.
+    pub before: DisparityMap,
+    /// The filter.
+    pub median: Median,
+}
+
+impl MedianTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let median =
+            Median { radius: 1 + dice.below(4), halving_bits: dice.pick(&[0, 3, 5, 31]), holes_only: dice.coin() };
+        let luma = dice.picture(size);
+        let [disparities, before] = [0; 2].map(|_| map(size, dice, -40 * SCALE, 60 * SCALE));
+        Self { luma, disparities, before, median }
+    }
+}
+
+impl Trial for MedianTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.median)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![
+            Array::exact("luma", self.luma.data().to_vec()),
+            Array::exact("disparities", self.disparities.data().to_vec()),
+            Array::exact("before", self.before.data().to_vec()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.disparities.size());
+        let maps = [&bench.upload(self.disparities.data())?, &bench.upload(self.before.data())?];
+        let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.0 * size.1)?);
+        let dispatch = WeightedMedian::new(device, self.median).prepare(device, size, (&luma, 0), maps, &to);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("filtered disparities", bench.download::<i32>(&to)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let filtered = weighted_median(&self.luma, &self.disparities, &self.before, self.median);
+        Ok(vec![Array::exact("filtered disparities", filtered.into_data())])
+    }
+}

@@ -1,0 +1,397 @@
+//! Semi-global matching: census, matching cost, paths, selection, and what one view's winners tell of the other.
+
+use super::{
+    array::Array,
+    bench::Bench,
+    blocks::signed,
+    case::{Subject, Trial},
+    dice::{Dice, Size, smooth_noise},
+};
+use crate::{
+    dense::{
+        Brightness, Census, Claim, Cost, CostVolume, DenseConfig, Difference, Direction, Interpolation, Path,
+        Penalties, Places, Select, Selection, View, VolumeBand, Wanted,
+    },
+    disparity::{DisparityRange, NONE, SCALE},
+    error::Result,
+    image::{Luma, Plane},
+    luma::pack,
+    reference::{census, claimed, cost_volume, padded, path, path_winners, select},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
+    Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
+    Subject::kernel("path", |size, dice| Box::new(PathTrial::draw(size, dice))),
+    Subject::kernel("select", |size, dice| Box::new(SelectTrial::draw(size, dice))),
+    Subject::kernel("claim", |size, dice| Box::new(ClaimTrial::draw(size, dice))),
+];
+
+/// Four costs of eight bits a word.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.as_chunks().0.iter().map(|&four| u32::from_le_bytes(four)).collect()
+}
+
+fn bytes(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// A picture that is transformed.
+#[derive(Clone, Debug)]
+pub struct CensusTrial(pub Luma);
+
+impl CensusTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self(dice.picture(size))
+    }
+}
+
+impl Trial for CensusTrial {
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.0.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.0.size();
+        let plane = padded(&self.0, &Census::padding(size, 0, size.1, Brightness::SAME));
+        let transformed = bench.output(size.0 * size.1)?;
+        let kernel = Census::new(bench.device());
+        let dispatch = kernel.prepare(bench.device(), size, &bench.upload(&plane)?, &transformed);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("census", census(&self.0).into_data())])
+    }
+}
+
+/// Two transformed views whose pixels are compared.
+#[derive(Clone, Debug)]
+pub struct CostTrial {
+    /// The reference and the other view, as [`census`] leaves them.
+    pub views: [Plane<u32>; 2],
+    /// Which view is the reference.
+    pub view: View,
+    /// What they are compared by.
+    pub cost: Cost,
+    /// The disparities.
+    pub range: DisparityRange,
+    /// The rows whose costs are wanted.
+    pub rows: std::ops::Range<u32>,
+}
+
+impl CostTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let mut part = || Difference { weight: dice.below(40), limit: dice.below(60) };
+        let (difference, gradient) = (part(), part());
+        let cost = Cost { census: dice.pick(&[0, 20, 40, 255]), difference, gradient };
+        let (view, mut range) = (dice.view(), dice.range(70));
+        range.min += dice.pick(&[0, 0, 9, -500, 90]);
+        let first = dice.below(size.1.min(4));
+        let views = dice.pair(size).map(|view| census(&view));
+        Self { views, view, cost, range, rows: first..size.1 - dice.below(size.1 - first) }
+    }
+}
+
+impl Trial for CostTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?} {:?} rows {:?}", self.view, self.cost, self.range, self.rows)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        let [reference, other] = self.views.each_ref().map(|view| view.data().to_vec());
+        vec![Array::exact("reference", reference), Array::exact("other", other)]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Self { views: [reference, other], range, rows, .. } = self;
+        let band =
+            VolumeBand { width: reference.width(), first_row: rows.start, rows: rows.len() as u32, range: *range };
+        let volume = bench.output(band.row_words() * band.rows)?;
+        let views = [&bench.upload(reference.data())?, &bench.upload(other.data())?];
+        let kernel = CostVolume::new(bench.device(), &self.cost, self.view);
+        let dispatch = kernel.prepare(bench.device(), &band, views, &volume);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let Self { views: [reference, other], range, rows, .. } = self;
+        let costs = cost_volume([reference, other], self.view, &self.cost, *range);
+        let row = costs.len() / reference.height() as usize;
+        Ok(vec![Array::exact("costs", costs[rows.start as usize * row..rows.end as usize * row].to_vec())])
+    }
+}
+
+fn penalties(dice: &mut Dice) -> Penalties {
+    let p2 = 1 + dice.below(128);
+    let least_p2 = 1 + dice.below(p2);
+    Penalties { p1: dice.below(least_p2 + 1), p2, least_p2, p2_scale: dice.pick(&[1, 8, 16, 255]) }
+}
+
+/// Costs of all pixels and as many disparities as make whole fours, from 0 to 127.
+fn costs((width, height): Size, count: u32, seed: u32) -> Vec<u8> {
+    let noise = smooth_noise(width * count.next_multiple_of(4), height, seed);
+    noise.data().iter().map(|&value| value / 2).collect()
+}
+
+/// Costs that a path is followed through.
+#[derive(Clone, Debug)]
+pub struct PathTrial {
+    /// The view, its luma in the lowest byte.
+    pub reference: Plane<u32>,
+    /// The costs of each pixel's disparities, a multiple of four of them.
+    pub costs: Vec<u8>,
+    /// Where the path goes.
+    pub direction: Direction,
+    /// What changes cost.
+    pub penalties: Penalties,
+    /// In bands of so many rows, each beginning where the one before it ended.
+    pub band_rows: u32,
+}
+
+impl PathTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (penalties, count) = (penalties(dice), dice.pick(&[4, 12, 20, 64]));
+        let direction = dice.pick(&Direction::ALL);
+        let band_rows = if dice.coin() { size.1 } else { 1 + dice.below(size.1) };
+        let high_bits = dice.word() << 8;
+        let reference = dice.picture(size).map(|&value| u32::from(value) | high_bits);
+        Self { reference, costs: costs(size, count, dice.word()), direction, penalties, band_rows }
+    }
+}
+
+impl Trial for PathTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?} in bands of {} rows", self.direction, self.penalties, self.band_rows)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("reference", self.reference.data().to_vec()), Array::exact("costs", self.costs.clone())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Self { reference, direction, .. } = self;
+        let (width, height) = reference.size();
+        let count = self.costs.len() as u32 / (width * height);
+        let kernel = Path::new(bench.device(), &self.penalties, count / 4);
+        let view = bench.upload(reference.data())?;
+        let costs = words(&self.costs);
+        let mut path = vec![0; costs.len()];
+        let mut firsts: Vec<u32> = (0..height).step_by(self.band_rows as usize).collect();
+        if direction.dy < 0 {
+            firsts.reverse();
+        }
+        let mut carried: Option<Vec<u32>> = None;
+        for first_row in firsts {
+            let rows = self.band_rows.min(height - first_row);
+            let band = VolumeBand { width, first_row, rows, range: DisparityRange { min: 0, count } };
+            let row = band.row_words() as usize;
+            // A row in front and one behind, for where lines come from.
+            let mut paths = vec![u32::MAX; row * (rows as usize + 2)];
+            if let Some(carried) = &carried {
+                let at = if direction.dy < 0 { row * (rows as usize + 1) } else { 0 };
+                paths[at..at + row].copy_from_slice(carried);
+            }
+            let paths = bench.upload(&paths)?;
+            let band_words = row * first_row as usize..row * (first_row + rows) as usize;
+            let costs = bench.upload(&costs[band_words.clone()])?;
+            let goes_on = carried.is_some() && direction.dy != 0;
+            let dispatch =
+                kernel.prepare(bench.device(), &band, *direction, &view, &costs, &paths, row as u32, goes_on);
+            bench.run(|encoder| dispatch.record(encoder));
+            let followed = bench.download::<u32>(&paths)?;
+            path[band_words].copy_from_slice(&followed[row..row * (rows as usize + 1)]);
+            let last = if direction.dy < 0 { 1 } else { rows as usize };
+            carried = Some(followed[last * row..(last + 1) * row].to_vec());
+        }
+        Ok(vec![Array::exact("path", bytes(&path))])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("path", path(&self.reference, &self.costs, &self.penalties, self.direction))])
+    }
+}
+
+/// The costs of several paths, of which one is followed on the way to disparities.
+#[derive(Clone, Debug)]
+pub struct SelectTrial {
+    /// The view, its luma in the lowest byte.
+    pub reference: Plane<u32>,
+    /// The costs that the last path is followed through.
+    pub costs: Vec<u8>,
+    /// The costs along the other paths.
+    pub stored: Vec<Vec<u8>>,
+    /// The disparities.
+    pub range: DisparityRange,
+    /// Where the last path goes, along the rows.
+    pub last: Direction,
+    /// What changes cost on it.
+    pub penalties: Penalties,
+    /// Sub-pixel interpolation.
+    pub interpolation: Interpolation,
+    /// See [`DenseConfig::uniqueness`].
+    pub uniqueness: u32,
+}
+
+impl SelectTrial {
+    fn arrays(disparities: Vec<i32>, confidences: Vec<u32>, keys: Vec<u32>) -> Vec<Array> {
+        vec![
+            Array::exact("disparities", disparities),
+            Array::exact("confidences", confidences),
+            Array::exact("keys", keys),
+        ]
+    }
+}
+
+impl SelectTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (stored, count) = (dice.pick(&[1, 2, 3, 7]), dice.pick(&[1_u32, 2, 17, 40, 61]));
+        let (penalties, interpolation) = (penalties(dice), dice.interpolation());
+        let uniqueness = dice.pick(&[0, 1, 10, 100]);
+        let volume = |seed| smooth_noise(size.0 * count.next_multiple_of(4), size.1, seed).into_data();
+        Self {
+            range: DisparityRange { min: dice.between(-9, 9), count },
+            last: dice.pick(&Direction::ALL[..2]),
+            reference: dice.picture(size).map(|&value| value.into()),
+            costs: costs(size, count, dice.word()),
+            stored: (0..stored).map(|_| volume(dice.word())).collect(),
+            penalties,
+            interpolation,
+            uniqueness,
+        }
+    }
+}
+
+impl Trial for SelectTrial {
+    fn parameters(&self) -> String {
+        let Self { range, last, penalties, interpolation, uniqueness, .. } = self;
+        format!("{range:?} {last:?} {penalties:?} {interpolation:?} uniqueness {uniqueness}")
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![
+            Array::exact("reference", self.reference.data().to_vec()),
+            Array::exact("costs", self.costs.clone()),
+            Array::exact("paths", self.stored.concat()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, (width, rows)) = (bench.device(), self.reference.size());
+        let band = VolumeBand { width, first_row: 0, rows, range: self.range };
+        let (pixels, confidence_words) = (width * rows, width.div_ceil(4) * rows);
+        let places = Places {
+            start: 0,
+            volume_words: band.row_words() * rows,
+            confidence_offset: pixels,
+            key_offset: pixels + confidence_words,
+        };
+        let selection = Selection {
+            stored: self.stored.len() as u32,
+            interpolation: self.interpolation,
+            wanted: Wanted::Matches,
+            keys: true,
+            uniqueness: self.uniqueness,
+        };
+        let kernel = Select::new(device, &self.penalties, band.words(), selection);
+        // The kernel expects zeros here.
+        let matches = bench.upload(&vec![0_u32; (2 * pixels + confidence_words) as usize])?;
+        let (reference, costs) = (bench.upload(self.reference.data())?, bench.upload(&words(&self.costs))?);
+        let volumes = bench.upload(&words(&self.stored.concat()))?;
+        let dispatch = kernel.prepare(device, &band, self.last, places, &reference, &costs, &volumes, &matches);
+        bench.run(|encoder| dispatch.record(encoder));
+        let matches = bench.download::<u32>(&matches)?;
+        let (disparities, rest) = matches.split_at(pixels as usize);
+        let (confidences, keys) = rest.split_at(confidence_words as usize);
+        Ok(Self::arrays(signed(disparities), confidences.to_vec(), keys.to_vec()))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let Self { interpolation, uniqueness, range, .. } = *self;
+        let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) };
+        let mut volumes = self.stored.clone();
+        volumes.push(path(&self.reference, &self.costs, &self.penalties, self.last));
+        let size = self.reference.size();
+        let dense = select(&volumes, size, &config);
+        let key = |winner: &Option<(u32, i32)>| {
+            winner.map_or(u32::MAX, |(cost, disparity)| cost << 16 | (disparity - range.min) as u32)
+        };
+        let keys = path_winners(&volumes, size, &config).map(key).into_data();
+        Ok(Self::arrays(dense.disparity.into_data(), pack(&dense.confidence), keys))
+    }
+}
+
+/// Winners of one view that claim their partners in the other.
+#[derive(Clone, Debug)]
+pub struct ClaimTrial {
+    /// Costs and disparities in pixels.
+    pub winners: Plane<Option<(u32, i32)>>,
+    /// Whose winners they are.
+    pub view: View,
+    /// In which the disparities lie.
+    pub range: DisparityRange,
+    /// How many words stand in front of the winners.
+    pub key_offset: u32,
+}
+
+impl ClaimTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (view, range, key_offset) = (dice.view(), dice.range(60), dice.below(7));
+        let few = dice.coin();
+        let winners = Plane::from_fn(size.0, size.1, |_, _| {
+            // With few costs many claims are equally good.
+            let cost = if few { dice.below(3) } else { dice.below(2040) };
+            let disparity = range.min + dice.below(range.count) as i32;
+            (dice.below(8) > 0).then_some((cost, disparity))
+        });
+        Self { winners, view, range, key_offset }
+    }
+}
+
+impl Trial for ClaimTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?}, winners from word {}", self.view, self.range, self.key_offset)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("keys", self.keys())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (width, rows) = self.winners.size();
+        // Something else in front of the keys.
+        let mut matches = vec![7; self.key_offset as usize];
+        matches.extend(self.keys());
+        // The kernel expects zeros here.
+        let claims = bench.upload(&vec![0_u32; (width * rows) as usize])?;
+        let band = VolumeBand { width, first_row: 0, rows, range: self.range };
+        let kernel = Claim::new(bench.device());
+        let matches = bench.upload(&matches)?;
+        let dispatch = kernel.prepare(bench.device(), &band, self.view, self.key_offset, &matches, &claims);
+        bench.run(|encoder| dispatch.record(encoder));
+        let disparity = |claim: u32| match claim {
+            0 => NONE,
+            claim => (self.range.min + (!claim & 0xffff) as i32) * SCALE,
+        };
+        let disparities: Vec<i32> = bench.download(&claims)?.into_iter().map(disparity).collect();
+        Ok(vec![Array::exact("claimed disparities", disparities)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("claimed disparities", claimed(&self.winners, self.view).into_data())])
+    }
+}
+
+impl ClaimTrial {
+    /// The winners as [`Select`] leaves them.
+    fn keys(&self) -> Vec<u32> {
+        let key = |(cost, disparity): (u32, i32)| cost << 16 | (disparity - self.range.min) as u32;
+        self.winners.data().iter().map(|winner| winner.map_or(u32::MAX, key)).collect()
+    }
+}

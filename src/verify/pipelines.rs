@@ -1,0 +1,76 @@
+//! The dense half of each preset, from two views to a map.
+
+use super::{
+    array::Array,
+    bench::Bench,
+    case::{Subject, Trial},
+    dice::{Dice, Size},
+};
+use crate::{
+    config::Preset,
+    dense::{Brightness, Dense, DenseConfig, Matcher},
+    error::Result,
+    image::Luma,
+    reference::compute_dense,
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::pipeline("fast", |size, dice| Box::new(DenseTrial::of_preset(Preset::Fast, size, dice))),
+    Subject::pipeline("balanced", |size, dice| Box::new(DenseTrial::of_preset(Preset::Balanced, size, dice))),
+    Subject::pipeline("quality", |size, dice| Box::new(DenseTrial::of_preset(Preset::Quality, size, dice))),
+    Subject::pipeline("paper", |size, dice| Box::new(DenseTrial::of_preset(Preset::Paper, size, dice))),
+];
+
+/// A pair that is matched.
+#[derive(Clone, Debug)]
+pub struct DenseTrial {
+    /// The left view.
+    pub left: Luma,
+    /// The right view.
+    pub right: Luma,
+    /// What is asked.
+    pub config: DenseConfig,
+    /// In bands of at most so many rows.
+    pub band_rows: u32,
+}
+
+impl DenseTrial {
+    fn of_preset(preset: Preset, size: Size, dice: &mut Dice) -> Self {
+        let (range, view) = (dice.range(48), dice.view());
+        let banded = dice.below(3) == 0;
+        let brightness = dice.pick(&[Brightness::SAME, Brightness { gain: 280, offset: -700 }]);
+        let reference = if preset == Preset::Paper { preset.config().reference } else { view };
+        let band_rows = if banded { 1 + dice.below(size.1) } else { u32::MAX };
+        let [left, right] = dice.pair(size);
+        Self { left, right, config: DenseConfig { reference, ..preset.config().dense(range, brightness) }, band_rows }
+    }
+
+    fn arrays(dense: Dense) -> Vec<Array> {
+        vec![
+            Array::exact("disparities", dense.disparity.into_data()),
+            Array::exact("confidences", dense.confidence.into_data()),
+        ]
+    }
+}
+
+impl Trial for DenseTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} in bands of at most {} rows", self.config, self.band_rows)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        let view = |name, view: &Luma| Array::exact(name, view.data().to_vec());
+        vec![view("left", &self.left), view("right", &self.right)]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (left, right) = (bench.upload_luma(&self.left)?, bench.upload_luma(&self.right)?);
+        let (device, size) = (bench.device(), self.left.size());
+        let matcher = Matcher::with_band_rows(device, size, &self.config, &left, &right, self.band_rows)?;
+        Ok(Self::arrays(matcher.run(bench.gpu)?))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(Self::arrays(compute_dense(&self.left, &self.right, &self.config)?))
+    }
+}

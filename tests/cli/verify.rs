@@ -1,0 +1,50 @@
+//! `hsad verify`.
+
+use std::fs;
+
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+use serde_json::Value;
+
+use crate::common::{folder, hsad, hsad_without_driver, names, scene};
+
+#[test]
+fn one_case_as_a_table_and_as_json() {
+    let temporary = folder();
+    let file = temporary.path().join("report.json");
+    let mut command = hsad();
+    command.current_dir(temporary.path()).args(["verify", "--only", "census", "--only", "pad"]);
+    command.args(["--size", "17x13", "--seed", "4", "--json"]).arg(&file);
+    let table = contains("census           17x13       4  none").and(contains("all 2 cases pass"));
+    command.assert().success().stdout(table).stderr("");
+    // Nothing failed, so nothing is left.
+    assert_eq!(names(temporary.path()), ["report.json"]);
+
+    let report: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    assert_eq!((&report["planned"], &report["failed"]), (&2.into(), &0.into()));
+    let case = &report["cases"][1];
+    assert_eq!((&case["kernel"], &case["width"], &case["seed"]), (&"census".into(), &17.into(), &4.into()));
+    assert_eq!(case["command"], "hsad verify --only census --size 17x13 --seed 4");
+    assert_eq!(case["arrays"][0]["values"], 17 * 13);
+    assert_eq!((&case["passes"], &case["golden"]), (&true.into(), &true.into()));
+}
+
+#[test]
+fn json_instead_of_the_table() {
+    let output = hsad().args(["verify", "--only", "pad", "--json", "-"]).assert().success().get_output().stdout.clone();
+    let report: Value = serde_json::from_slice(&output).unwrap();
+    assert_eq!(report["cases"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn what_cannot_be_verified_is_told() {
+    hsad().args(["verify", "--only", "nonsense"]).assert().code(2).stderr(contains("there are luma"));
+    hsad().args(["verify", "--size", "17"]).assert().code(2).stderr(contains("as in 311x239"));
+    hsad().args(["verify", "--size", "5000x2"]).assert().code(2).stderr(contains("1 to 4096 px"));
+    hsad().args(["verify", "--device", "cpu"]).assert().code(1).stderr(contains("adapters only"));
+    hsad_without_driver().arg("verify").assert().code(1).stderr(contains("no GPU adapter was found"));
+}
+
+#[test]
+fn a_device_is_tested_before_it_is_used() {
+    hsad().args(["features", "--self-test", "-q"]).arg(scene("weak", "left.png")).assert().success().stderr("");
+}
