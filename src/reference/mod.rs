@@ -4,6 +4,7 @@
 //! Integer stages equal their kernels bit for bit.
 
 mod block_match;
+mod box_mean;
 mod cell_ranges;
 mod census;
 mod claim;
@@ -29,6 +30,7 @@ mod weighted_median;
 pub mod workgroups;
 
 pub use block_match::{block_match, cost, winners};
+pub use box_mean::box_mean;
 pub use cell_ranges::{CellPlane, cell_ranges, partner_ranges};
 pub use census::census;
 pub use claim::claimed;

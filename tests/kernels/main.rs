@@ -5,6 +5,7 @@
 #![cfg(feature = "cli")]
 
 mod block_match;
+mod box_mean;
 mod cell_ranges;
 mod census;
 mod claim;
