@@ -138,6 +138,7 @@ const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
         difference: Difference { weight: 4, limit: 24 },
         gradient: Difference { weight: 12, limit: 16 },
     },
+    window: 1,
     penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
     paths: Paths::Three,
     other_view: OtherView::Claimed,

@@ -63,6 +63,10 @@ fn values_out_of_range() {
     for (args, expected) in [
         (&["--window", "8"][..], "window is 8, but it must be odd and 3 to 31"),
         (&["--window", "33"], "window is 33"),
+        (&["--cost-window", "8"], "the window of costs is 8, but it must be odd and 1 to 31"),
+        (&["--cost-window", "33"], "the window of costs is 33"),
+        (&["--cost-window", "3", "--preset", "fast"], "preset is fast, but --paths and --cost-window need balanced"),
+        (&["--paths", "0", "--preset", "paper"], "preset is paper"),
         (&["--disparities", "0"], "the number of disparities is 0"),
         (&["--disparities", "4000000000"], "the disparity range is 0 to 3999999999"),
         (&["--min-disparity", "-2000000000"], "the disparity range is -2000000000"),
