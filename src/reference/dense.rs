@@ -67,7 +67,7 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
 
 /// What is to be searched in the cells of the reference view, from a map of half the size.
 fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlane {
-    let [left_half, right_half] = [left, right].map(|luma| halved(luma));
+    let [left_half, right_half] = [left, right].map(halved);
     let right_half = right_half.map(|&luma| brightened(luma, config.brightness));
     let half = halved_config(config, config.range);
     let map = block_match(&left_half, &right_half, config.reference, &half, None).disparity;
