@@ -107,7 +107,7 @@ pub struct MatchOptions {
     /// Where parameters come from that no option names [default: balanced]
     #[arg(long, value_enum)]
     preset: Option<PresetName>,
-    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 11, paper: 7; balanced and quality
+    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 9, paper: 7; balanced and quality
     /// match semi-globally instead]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
