@@ -150,7 +150,7 @@ impl Paper {
             return scenes::find(&self.scenes);
         }
         if !Path::new(SHIPPED).is_dir() {
-            return Err(refused("SCENE", "none", "there is no folder data here, so name a scene"));
+            return Err(refused("SCENE", "none", "there is no folder data here: name a scene"));
         }
         scenes::find(&[SHIPPED.into()])
     }

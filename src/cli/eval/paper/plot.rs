@@ -129,7 +129,8 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
                 .x_label_formatter(&|at| axis.label(*at))
                 .y_label_formatter(&|at| format!("{at:.0}"))
                 .draw()?;
-            for (group, curve) in drawn.iter().zip(&curves).filter(|(group, _)| group.name == *name) {
+            // The first method, whose curve is the shortest, on top.
+            for (group, curve) in drawn.iter().zip(&curves).filter(|(group, _)| group.name == *name).rev() {
                 chart.draw_series(LineSeries::new(thinned(curve, &axis), color(group.method).stroke_width(2)))?;
             }
         }
