@@ -77,10 +77,13 @@ fn least(h: Costs) -> u32 {
     return min(min(least.x, least.y), min(least.z, least.w));
 }
 
+// More than any cost with four messages on top of it, and far from what 32 bits hold.
+const BEYOND = 0xffffffu;
+
 // Each cost or what it takes to come from a smaller disparity.
 fn forth(h: Costs, slope: u32) -> Costs {
     var out: Costs;
-    var last: u32 = FAR;
+    var last = BEYOND;
     for (var k = 0; k < FOURS; k++) { // unroll
         let x = min(h[k].x, last + slope);
         let y = min(h[k].y, x + slope);
@@ -94,7 +97,7 @@ fn forth(h: Costs, slope: u32) -> Costs {
 // Each cost or what it takes to come from a larger disparity.
 fn back(h: Costs, slope: u32) -> Costs {
     var out: Costs;
-    var last: u32 = FAR;
+    var last = BEYOND;
     for (var k = 0; k < FOURS; k++) { // unroll
         let w = min(h[FOURS - 1 - k].w, last + slope);
         let z = min(h[FOURS - 1 - k].z, w + slope);

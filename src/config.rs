@@ -116,7 +116,7 @@ const OPENSURF_THRESHOLD: f32 = 0.0004;
 /// A set of parameters that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Block matching in windows of 11x11, checked for uniqueness and from the other view, with holes.
+    /// Block matching in windows of 9x9, coarse to fine, checked for uniqueness and from the other view, with holes.
     Fast,
     /// Semi-global matching along three paths, checked and filled.
     #[default]
@@ -138,6 +138,7 @@ const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
         difference: Difference { weight: 4, limit: 24 },
         gradient: Difference { weight: 12, limit: 16 },
     },
+    window: 1,
     penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
     paths: Paths::Three,
     other_view: OtherView::Claimed,

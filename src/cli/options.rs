@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
     config::{Config, Method, Preset},
-    dense::{Aggregation, Interpolation, OtherView, Search, View},
+    dense::{Aggregation, Interpolation, OtherView, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -107,10 +107,18 @@ pub struct MatchOptions {
     /// Where parameters come from that no option names [default: balanced]
     #[arg(long, value_enum)]
     preset: Option<PresetName>,
-    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 11, paper: 7; balanced and quality
+    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 9, paper: 7; balanced and quality
     /// match semi-globally instead]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
+    /// From how many sides costs are put together, where they are semi-globally; from none, the window of
+    /// costs alone decides [balanced: 3, quality: 4]
+    #[arg(long, value_enum, value_name = "N", conflicts_with = "window")]
+    paths: Option<PathsName>,
+    /// Side of the square over which each disparity's costs are averaged before that, odd, 1 to 31 [balanced,
+    /// quality: 1]
+    #[arg(long, value_name = "PX", conflicts_with = "window")]
+    cost_window: Option<u32>,
     /// Compare blocks at every disparity of the range [fast: only at those that a map of half the size
     /// shows nearby]
     #[arg(long)]
@@ -192,6 +200,7 @@ impl MatchOptions {
         if let (true, Aggregation::Paths(paths)) = (self.search_both_views, &mut config.aggregation) {
             paths.other_view = OtherView::Searched;
         }
+        self.choose_paths(&mut config.aggregation)?;
         config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);
         config.uniqueness = self.uniqueness.unwrap_or(config.uniqueness);
         if let Some(pixels) = self.max_lr_difference {
@@ -207,6 +216,28 @@ impl MatchOptions {
         config.validate()?;
         Ok(config)
     }
+
+    fn choose_paths(&self, aggregation: &mut Aggregation) -> Result<()> {
+        let Self { paths: asked, cost_window, .. } = *self;
+        match aggregation {
+            Aggregation::Paths(SemiGlobal { window, paths, .. }) => {
+                *paths = asked.map_or(*paths, Paths::from);
+                *window = cost_window.unwrap_or(*window);
+            }
+            Aggregation::Window { .. } if asked.is_some() || cost_window.is_some() => {
+                return Err(Error::Parameter {
+                    name: "preset",
+                    value: self
+                        .preset
+                        .and_then(|preset| preset.to_possible_value())
+                        .map_or_else(String::new, |name| name.get_name().into()),
+                    expected: "--paths and --cost-window need balanced or quality".into(),
+                });
+            }
+            Aggregation::Window { .. } => {}
+        }
+        Ok(())
+    }
 }
 
 impl MatchOptions {
@@ -217,6 +248,8 @@ impl MatchOptions {
             ("--window", self.window.is_some()),
             ("--whole-range", self.whole_range),
             ("--search-both-views", self.search_both_views),
+            ("--paths", self.paths.is_some()),
+            ("--cost-window", self.cost_window.is_some()),
             ("--uniqueness", self.uniqueness.is_some()),
             ("--max-lr-difference", self.max_lr_difference.is_some()),
             ("--no-lr-check", self.no_lr_check),
@@ -313,6 +346,33 @@ impl From<PresetName> for Preset {
             PresetName::Balanced => Self::Balanced,
             PresetName::Quality => Self::Quality,
             PresetName::Paper => Self::Paper,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PathsName {
+    /// None
+    #[value(name = "0")]
+    None,
+    /// Along the row from both ends, along the column from above
+    #[value(name = "3")]
+    Three,
+    /// Along the row and the column
+    #[value(name = "4")]
+    Four,
+    /// Along the diagonals as well
+    #[value(name = "8")]
+    Eight,
+}
+
+impl From<PathsName> for Paths {
+    fn from(name: PathsName) -> Self {
+        match name {
+            PathsName::None => Self::None,
+            PathsName::Three => Self::Three,
+            PathsName::Four => Self::Four,
+            PathsName::Eight => Self::Eight,
         }
     }
 }

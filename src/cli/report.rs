@@ -2,7 +2,7 @@
 
 use hsad::{
     config::{Config, Method},
-    dense::{Aggregation, Difference, Interpolation, OtherView, Refinement, Search, SemiGlobal, View},
+    dense::{Aggregation, Difference, Interpolation, OtherView, Paths, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     hybrid::HybridParameters,
     io::Calibration,
@@ -166,19 +166,22 @@ fn part(Difference { weight, limit }: Difference) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }) = aggregation else {
+    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }) = aggregation else {
         return "window".into();
     };
+    // Where there are no paths, nothing is penalised.
+    let penalty = |value: u32| (*paths != Paths::None).then_some(value);
     json!({
+        "cost_window": window,
         "paths": paths.directions().len(),
         "other_view": match other_view { OtherView::Searched => "searched", OtherView::Claimed => "claimed" },
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),
-        "p1": penalties.p1,
-        "p2": penalties.p2,
-        "least_p2": penalties.least_p2,
-        "p2_scale": penalties.p2_scale,
+        "p1": penalty(penalties.p1),
+        "p2": penalty(penalties.p2),
+        "least_p2": penalty(penalties.least_p2),
+        "p2_scale": penalty(penalties.p2_scale),
     })
 }
 

@@ -67,7 +67,7 @@ pub enum Aggregation {
         /// Which disparities a pixel is compared at.
         search: Search,
     },
-    /// Semi-global matching.
+    /// Semi-global matching, or block matching by its costs.
     Paths(SemiGlobal),
 }
 

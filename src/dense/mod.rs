@@ -2,13 +2,15 @@
 //!
 //! Blocks: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views; coarse to fine,
 //! half the size is matched before, to tell for each cell of the picture which disparities are worth searching.
-//! Semi-globally: padding -> census -> cost -> paths -> selection of one view or both. Then, for either:
+//! Semi-globally: padding -> census -> cost -> mean over a window, if wanted -> paths -> selection of one view or
+//! both; without paths it is block matching by those costs. Then, for either:
 //! left-right consistency -> support -> medians and filling. All of it is integer arithmetic and equals
 //! the CPU twins bit for bit.
 
 mod band;
 mod block_match;
 mod blocks;
+mod box_mean;
 pub(crate) mod cell_ranges;
 pub(crate) mod cells;
 mod census;
@@ -34,6 +36,7 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 
 pub use band::VolumeBand;
 pub use block_match::{BlockMatch, Layout, Tile, Wanted};
+pub use box_mean::BoxMean;
 pub use cell_ranges::CellRanges;
 pub use cells::{CELL, CellBand, Ranges};
 pub use census::Census;
@@ -71,6 +74,7 @@ pub fn stages() -> Vec<Stage> {
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part };
     stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+    stages.push(BoxMean::stage(3));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
     stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| {

@@ -22,6 +22,10 @@ pub struct Penalties {
 }
 
 impl Penalties {
+    /// With these a path leaves all costs as they are: changes cost nothing, so that the best way to a pixel takes away what
+    /// it adds.
+    pub const NONE: Self = Self { p1: 0, p2: 0, least_p2: 0, p2_scale: 1 };
+
     /// The penalty for a jump where the luma changes by `change`: `p2 scale / (scale + change)`, rounded
     /// down, or the least.
     pub fn p2_at(&self, change: u32) -> u32 {

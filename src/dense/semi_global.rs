@@ -1,14 +1,17 @@
 //! Semi-global matching: the plan.
 //!
-//! For each view in turn: cost -> a path in each direction -> selection, then the consistency of both.
+//! For each view in turn: cost -> its mean over a window, if wanted -> a path in each direction -> selection, then the
+//! consistency of both.
 //! Where the volumes do not fit in a buffer, the pair is matched in bands of rows, from the top to the
 //! bottom, with each path going on from band to band. Paths from below need to be known before: they
 //! are followed once from the bottom to the top, of which only the row below each band is kept, and
-//! then again within each band. So no result depends on where the bands are cut.
+//! then again within each band. The costs of as many more rows around a band as its windows reach are computed with
+//! it. So no result depends on where the bands are cut.
 
 use super::{
     band::VolumeBand,
     block_match::Wanted,
+    box_mean::BoxMean,
     census::Census,
     claim::Claim,
     config::{DenseConfig, View},
@@ -25,12 +28,18 @@ use crate::{
     error::{Error, Result},
 };
 
+/// The largest side of a window over which costs are averaged.
+const MAX_WINDOW: u32 = 31;
+
 /// Semi-global matching (Hirschmueller, PAMI 2008).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SemiGlobal {
     /// How pixels are compared.
     pub cost: Cost,
-    /// What changes of disparity cost.
+    /// The side of a square in pixels, odd and at most 31, over which each disparity's costs are averaged before anything
+    /// else is done with them; 1 leaves them as they are.
+    pub window: u32,
+    /// What changes of disparity along a path cost.
     pub penalties: Penalties,
     /// From how many sides a pixel is reached.
     pub paths: Paths,
@@ -50,6 +59,8 @@ pub enum OtherView {
 /// From how many sides a pixel is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paths {
+    /// From none: the least cost of a pixel itself decides. With a window this is block matching.
+    None,
     /// Along its row from both ends and along its column from above: no row has to wait for those below it.
     Three,
     /// Along its row and its column.
@@ -62,6 +73,7 @@ impl Paths {
     /// Their directions.
     pub fn directions(self) -> &'static [Direction] {
         match self {
+            Self::None => &[],
             Self::Three => &Direction::ALL[..3],
             Self::Four => &Direction::ALL[..4],
             Self::Eight => &Direction::ALL,
@@ -69,10 +81,10 @@ impl Paths {
     }
 
     /// The one that is followed last, while disparities are selected, and those whose costs are stored until then. The
-    /// last is one along the rows: of it nothing has to be kept from band to band, and it sees memory in order.
+    /// last is one along the rows: of it nothing has to be kept from band to band, and it sees memory in order. Where there
+    /// are none, it is to be followed with [`Penalties::NONE`].
     fn last_and_stored(self) -> (Direction, &'static [Direction]) {
-        let directions = self.directions();
-        (directions[0], &directions[1..])
+        self.directions().split_first().map_or((Direction::ALL[0], &[]), |(&last, stored)| (last, stored))
     }
 }
 
@@ -82,6 +94,13 @@ impl SemiGlobal {
     /// # Errors
     /// [`Error::Parameter`] with the rule.
     pub fn validate(&self) -> Result<()> {
+        if self.window.is_multiple_of(2) || self.window > MAX_WINDOW {
+            return Err(Error::Parameter {
+                name: "the window of costs",
+                value: self.window.to_string(),
+                expected: format!("it must be odd and 1 to {MAX_WINDOW}"),
+            });
+        }
         let Cost { census, difference, gradient } = self.cost;
         for (name, value) in [
             ("the weight of the census", census),
@@ -100,19 +119,34 @@ impl SemiGlobal {
         }
         self.penalties.validate()
     }
+
+    /// Half the window without its centre.
+    fn radius(&self) -> u32 {
+        self.window / 2
+    }
+
+    /// The penalties with which the kernels follow paths.
+    fn followed_with(&self) -> Penalties {
+        if self.paths == Paths::None { Penalties::NONE } else { self.penalties }
+    }
 }
 
 /// What both views share: the pictures, memory for the transforms and volumes of a band, and kernels.
 struct Shared {
     size: (u32, u32),
     band_rows: u32,
+    /// How many rows around a band its windows reach.
+    radius: u32,
     /// The left and the right picture, and how its brightness is changed.
     pictures: [(wgpu::Buffer, Brightness); 2],
     pad: Pad,
     transform: Census,
     padded: wgpu::Buffer,
     census: [wgpu::Buffer; 2],
+    /// Those of a band and of the rows around it; when they are averaged, those of the band alone.
     costs: wgpu::Buffer,
+    /// What averages them, and as much memory again.
+    box_mean: Option<(BoxMean, wgpu::Buffer)>,
     /// A volume for each path that is stored, each with a row in front of it and one behind.
     paths: wgpu::Buffer,
     path_words: u64,
@@ -148,30 +182,42 @@ pub(super) fn plan(
     let (width, height) = size;
     let range = config.searched(width)?;
     let (last, directions) = semi_global.paths.last_and_stored();
+    let radius = semi_global.radius();
     let most_rows = band_rows;
-    let band_rows = band_rows_within(limit, size, range, directions.len() as u64, band_rows)?;
-    // The transforms of a band have a row more in front of it, where lines come from, and one behind.
-    let band = |first_row: u32| VolumeBand { width, first_row: 1, rows: band_rows.min(height - first_row), range };
+    let band_rows = band_rows_within(limit, size, range, (directions.len() as u64, radius), band_rows)?;
+    // The transforms of a band have those rows more in front of it that windows reach, and one where lines come from; and
+    // as many behind.
+    let around = radius + 1;
+    let rows = |first_row: u32| band_rows.min(height - first_row);
+    let band = |first_row: u32| VolumeBand { width, first_row: around, rows: rows(first_row), range };
     let bands: Vec<VolumeBand> = (0..height).step_by(band_rows as usize).map(band).collect();
     let row_words = u64::from(bands[0].row_words());
 
     let mut plan = Plan::new(bands.len());
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let path_words = row_words * (u64::from(band_rows) + 2);
-    let padding = Census::padding(size, 0, band_rows + 2, Brightness::SAME);
-    let transformed = u64::from(width) * u64::from(band_rows + 2);
+    let cost_words = row_words * u64::from((band_rows + 2 * radius).min(height));
+    let padding = Census::padding(size, 0, band_rows + 2 * around, Brightness::SAME);
+    let transformed = u64::from(width) * u64::from(band_rows + 2 * around);
+    let penalties = semi_global.followed_with();
+    let box_mean = match semi_global.window {
+        1 => None,
+        side => Some((BoxMean::new(device, side), plan.buffer(device, "means of costs", cost_words)?)),
+    };
     let shared = Shared {
         size,
         band_rows,
+        radius,
         pictures: [(views[0].clone(), Brightness::SAME), (views[1].clone(), config.brightness)],
         pad: Pad::new(device),
         transform: Census::new(device),
         padded: plan.buffer(device, "padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
         census: [plan.buffer(device, "census, left", transformed)?, plan.buffer(device, "census, right", transformed)?],
-        costs: plan.buffer(device, "costs", row_words * u64::from(band_rows))?,
+        costs: plan.buffer(device, "costs", cost_words)?,
+        box_mean,
         paths: plan.buffer(device, "paths", path_words * directions.len() as u64)?,
         path_words,
-        path: Path::new(device, &semi_global.penalties, bands[0].words()),
+        path: Path::new(device, &penalties, bands[0].words()),
     };
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let claimed = config.consistency.is_some() && semi_global.other_view == OtherView::Claimed;
@@ -199,7 +245,7 @@ pub(super) fn plan(
             view,
             cost: CostVolume::new(device, &semi_global.cost, view),
             directions,
-            select: Select::new(device, &semi_global.penalties, bands[0].words(), selection),
+            select: Select::new(device, &penalties, bands[0].words(), selection),
             last,
             above,
             below,
@@ -250,12 +296,13 @@ pub(super) fn plan(
 }
 
 impl Shared {
-    /// Transforms the rows of band `index` of both views, and one more on either side.
+    /// Transforms the rows of band `index` of both views, with those around them.
     fn transform(&self, device: &wgpu::Device, plan: &mut Plan, index: usize) {
         let first_row = index as u32 * self.band_rows;
-        let rows = self.band_rows.min(self.size.1 - first_row) + 2;
+        let around = self.radius + 1;
+        let rows = self.band_rows.min(self.size.1 - first_row) + 2 * around;
         for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
-            let padding = Census::padding(self.size, first_row as i32 - 1, rows, *brightness);
+            let padding = Census::padding(self.size, first_row.cast_signed() - around.cast_signed(), rows, *brightness);
             plan.run(self.pad.prepare(device, padding, picture, &self.padded));
             plan.run(self.transform.prepare(device, (self.size.0, rows), &self.padded, census));
         }
@@ -269,6 +316,22 @@ impl Side {
         match self.view {
             View::Left => [left, right],
             View::Right => [right, left],
+        }
+    }
+
+    /// Compares the pixels of band `index`, and averages over their windows.
+    fn find_costs(&self, device: &wgpu::Device, plan: &mut Plan, shared: &Shared, bands: &[VolumeBand], index: usize) {
+        let band = &bands[index];
+        let first_row = index as u32 * shared.band_rows;
+        let above = shared.radius.min(first_row);
+        let below = shared.radius.min(shared.size.1 - first_row - band.rows);
+        let known = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..*band };
+        plan.run(self.cost.prepare(device, &known, self.census(shared), &shared.costs));
+        if let Some((box_mean, means)) = &shared.box_mean {
+            let wanted = above..above + band.rows;
+            for pass in box_mean.prepare(device, &known, wanted, &shared.costs, means) {
+                plan.run(pass);
+            }
         }
     }
 
@@ -288,7 +351,7 @@ impl Side {
         index: usize,
     ) {
         let band = &bands[index];
-        plan.run(self.cost.prepare(device, band, self.census(shared), &shared.costs));
+        self.find_costs(device, plan, shared, bands, index);
         for (number, place) in self.paths(-1) {
             self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
             let row = u64::from(band.row_words());
@@ -355,7 +418,7 @@ impl Side {
     ) {
         let band = &bands[index];
         let row = u64::from(band.row_words());
-        plan.run(self.cost.prepare(device, band, self.census(shared), &shared.costs));
+        self.find_costs(device, plan, shared, bands, index);
         for (number, place) in self.paths(-1) {
             self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
         }
@@ -397,19 +460,24 @@ impl Side {
     }
 }
 
-/// The most rows, up to `wanted`, for which the volumes of a band stay within `limit` bytes.
+/// The most rows, up to `wanted`, for which the volumes of a band stay within `limit` bytes: the costs, with `radius` more
+/// rows on either side, and so many stored `paths`.
 fn band_rows_within(
     limit: u64,
     (width, height): (u32, u32),
     range: DisparityRange,
-    paths: u64,
+    (paths, radius): (u64, u32),
     wanted: u32,
 ) -> Result<u32> {
     let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
-    let needed = 3 * row * paths;
+    // The transforms, a word a pixel, are at most as large as costs of as many rows.
+    let around = 2 * (u64::from(radius) + 1);
+    let needed = row * (3 * paths).max(1 + around);
     // A row's answers with their keys can be more than its volumes, where there are few disparities.
     let answers = 4 * (match_words(width, 1).0 + u64::from(width));
-    let rows = (limit / (row * paths)).saturating_sub(2).min(limit / answers);
+    let within_paths = (limit / (row * paths.max(1))).saturating_sub(2);
+    let within_costs = (limit / row).saturating_sub(around);
+    let rows = within_paths.min(within_costs).min(limit / answers);
     if rows == 0 {
         return Err(Error::TooLarge {
             what: format!("one row of a picture {width} px wide with {} disparities", range.count),

@@ -1,6 +1,5 @@
 //! Belief propagation: half of the nodes send. `shaders/belief.wgsl`.
 
-use super::grid::FAR;
 use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -61,7 +60,6 @@ impl Belief {
                 ("FOURS", fours.into()),
                 ("SLOPE", smoothness.slope.into()),
                 ("LIMIT", smoothness.limit.into()),
-                ("FAR", FAR.into()),
             ],
         }
     }

@@ -1,11 +1,13 @@
 //! The dense half in one call.
 
 use super::{
-    CellPlane, block_match, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled, halved,
-    partner_ranges, path, path_winners, select, supported, weighted_median, winners,
+    CellPlane, block_match, box_mean, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled,
+    halved, partner_ranges, path, path_winners, select, supported, weighted_median, winners,
 };
 use crate::{
-    dense::{Aggregation, Dense, DenseConfig, OtherView, Refinement, Search, SemiGlobal, View, cells::halved_config},
+    dense::{
+        Aggregation, Dense, DenseConfig, OtherView, Paths, Refinement, Search, SemiGlobal, View, cells::halved_config,
+    },
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
     image::Luma,
@@ -65,7 +67,7 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
 
 /// What is to be searched in the cells of the reference view, from a map of half the size.
 fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlane {
-    let [left_half, right_half] = [left, right].map(|luma| halved(luma));
+    let [left_half, right_half] = [left, right].map(halved);
     let right_half = right_half.map(|&luma| brightened(luma, config.brightness));
     let half = halved_config(config, config.range);
     let map = block_match(&left_half, &right_half, config.reference, &half, None).disparity;
@@ -88,16 +90,20 @@ fn refined(dense: &Dense, luma: &Luma, refinement: &Refinement, range: Disparity
     Dense { disparity: map, confidence }
 }
 
-/// The costs along all paths through one view.
+/// The costs along all paths through one view; those of the pixels themselves, where there are none.
 fn all_paths(
     left: &Luma,
     right: &Luma,
     view: View,
     config: &DenseConfig,
-    SemiGlobal { cost, penalties, paths, .. }: &SemiGlobal,
+    SemiGlobal { cost, window, penalties, paths, .. }: &SemiGlobal,
 ) -> Vec<Vec<u8>> {
     let (left, right) = (census(left), census(right));
     let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
     let costs = cost_volume([reference, other], view, cost, config.range);
+    let costs = box_mean(&costs, left.size(), *window);
+    if *paths == Paths::None {
+        return vec![costs];
+    }
     paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
 }

@@ -160,7 +160,7 @@ impl BlockMatchTrial {
         let [left, right] = dice.pair(size);
         let consistency = dice.pick(&[None, Some(0), Some(256)]);
         let config = DenseConfig { consistency, ..config };
-        let in_cells = dice.coin() && CELL % (4 * tile.quads) == 0;
+        let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
         let ranges = config.searched(size.0).ok().filter(|_| in_cells).map(|range| {
             Plane::from_fn(size.0.div_ceil(CELL), size.1.div_ceil(CELL), |_, _| {
                 let first = dice.below(range.count);

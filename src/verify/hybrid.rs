@@ -258,8 +258,8 @@ impl BeliefTrial {
         };
         let view = described(&colours(size, dice), Brightness::SAME);
         let links = links(&view, Segmentation { join: dice.below(30), least: dice.below(4) }, weights);
-        // As of a pixel, and as of a coarse grid's node.
-        let scale = dice.pick(&[1, 3, 250]);
+        // As of a pixel, and as of a coarse grid's node, where they may be cut off at FAR.
+        let scale = dice.pick(&[1, 3, 257]);
         let costs = costs(size, disparities, scale, dice);
         let parents = costs.len() / (size.0 * size.1) as usize * (size.0.div_ceil(2) * size.1.div_ceil(2)) as usize;
         let messages = |costs: usize, dice: &mut Dice| messages(4 * costs, limit, dice);

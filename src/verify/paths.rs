@@ -9,19 +9,20 @@ use super::{
 };
 use crate::{
     dense::{
-        Brightness, Census, Claim, Cost, CostVolume, DenseConfig, Difference, Direction, Interpolation, Path,
+        BoxMean, Brightness, Census, Claim, Cost, CostVolume, DenseConfig, Difference, Direction, Interpolation, Path,
         Penalties, Places, Select, Selection, View, VolumeBand, Wanted,
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane},
     luma::pack,
-    reference::{census, claimed, cost_volume, padded, path, path_winners, select},
+    reference::{box_mean, census, claimed, cost_volume, padded, path, path_winners, select},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
     Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
+    Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
     Subject::kernel("path", |size, dice| Box::new(PathTrial::draw(size, dice))),
     Subject::kernel("select", |size, dice| Box::new(SelectTrial::draw(size, dice))),
     Subject::kernel("claim", |size, dice| Box::new(ClaimTrial::draw(size, dice))),
@@ -67,6 +68,51 @@ impl Trial for CensusTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(vec![Array::exact("census", census(&self.0).into_data())])
+    }
+}
+
+/// Costs that are averaged.
+#[derive(Clone, Debug)]
+pub struct BoxMeanTrial {
+    /// Of the picture.
+    pub size: Size,
+    /// A cost of each pixel and disparity, in whole words a pixel.
+    pub costs: Vec<u8>,
+    /// How many disparities there are.
+    pub disparities: u32,
+    /// Of the window.
+    pub side: u32,
+}
+
+impl BoxMeanTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let disparities = dice.below(33) + 1;
+        let row = size.0 * disparities.next_multiple_of(4);
+        let costs = dice.picture((row, size.1)).into_data();
+        Self { size, costs, disparities, side: dice.pick(&[1, 3, 5, 7, 9, 31]) }
+    }
+}
+
+impl Trial for BoxMeanTrial {
+    fn parameters(&self) -> String {
+        format!("{} disparities, side {}", self.disparities, self.side)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("costs", self.costs.clone())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, (width, rows)) = (bench.device(), self.size);
+        let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
+        let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
+        let dispatches = BoxMean::new(device, self.side).prepare(device, &band, 0..rows, &costs, &means);
+        bench.run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
+        Ok(vec![Array::exact("means", bytes(&bench.download::<u32>(&costs)?))])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("means", box_mean(&self.costs, self.size, self.side))])
     }
 }
 

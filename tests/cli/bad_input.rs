@@ -52,7 +52,7 @@ fn sizes_that_do_not_fit() {
     grey_png(&tiny, &Plane::filled(1, 1, 7));
     pair_fails(&scene("planes", "left.png"), &small, &[], 1, "340x255 and the right view 40x9");
     pair_fails(&tiny, &tiny, &[], 1, "1x1 pixels is too small for a window of 5x5");
-    pair_fails(&small, &small, &["--preset", "fast"], 1, "40x9 pixels is too small");
+    pair_fails(&small, &small, &["--window", "11"], 1, "40x9 pixels is too small for a window of 11x11");
     let out = temporary.path().join("out");
     match_on_cpu(&small, &small, &out).args(["--window", "9"]).assert().success();
 }
@@ -63,6 +63,10 @@ fn values_out_of_range() {
     for (args, expected) in [
         (&["--window", "8"][..], "window is 8, but it must be odd and 3 to 31"),
         (&["--window", "33"], "window is 33"),
+        (&["--cost-window", "8"], "the window of costs is 8, but it must be odd and 1 to 31"),
+        (&["--cost-window", "33"], "the window of costs is 33"),
+        (&["--cost-window", "3", "--preset", "fast"], "preset is fast, but --paths and --cost-window need balanced"),
+        (&["--paths", "0", "--preset", "paper"], "preset is paper"),
         (&["--disparities", "0"], "the number of disparities is 0"),
         (&["--disparities", "4000000000"], "the disparity range is 0 to 3999999999"),
         (&["--min-disparity", "-2000000000"], "the disparity range is -2000000000"),

@@ -48,6 +48,9 @@ fn usage_errors_are_two() {
     let out = ["match", "a", "b", "-o", "out"];
     for args in [
         &["--window", "abc"][..],
+        &["--window", "7", "--paths", "4"],
+        &["--window", "7", "--cost-window", "7"],
+        &["--paths", "5"],
         &["--no-lr-check", "--max-lr-difference", "1"],
         &["--oriented", "--upright"],
         &["--focal", "700"],

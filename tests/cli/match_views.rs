@@ -40,7 +40,8 @@ fn writes_maps_that_agree_and_a_report() {
     assert_eq!([&report["width"], &report["height"]], [340, 255]);
     assert_eq!(report["device"], json!({ "name": "CPU twins", "backend": "none", "driver": "none" }));
     assert_eq!(report["left"], left.to_str().unwrap());
-    assert_eq!(report["parameters"]["aggregation"]["paths"], 3);
+    let aggregation = &report["parameters"]["aggregation"];
+    assert_eq!([&aggregation["paths"], &aggregation["cost_window"], &aggregation["p1"]], [3, 1, 16]);
     assert_eq!(report["parameters"]["matching"]["ratio"], json!(0.85));
     assert_eq!(report["range"]["source"], "seeds");
     // data/README.md: 9.1 to 57.5 px.
@@ -177,6 +178,17 @@ fn options_of_the_other_method_are_refused() {
     let mut command = match_on_cpu(&left, &right, temporary.path());
     command.args(["--method", "kamencay", "--disparities", "600", "--min-disparity", "-300"]);
     fails(command, 2, "belief propagation takes at most 512");
+}
+
+#[test]
+fn blocks_are_matched_by_the_costs_of_paths() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path();
+    match_on_cpu(&left, &right, out).args(["--paths", "0", "--cost-window", "7"]).assert().success();
+    let aggregation = &report(out)["parameters"]["aggregation"];
+    assert_eq!([&aggregation["paths"], &aggregation["cost_window"]], [0, 7]);
+    // All that penalties are for is gone.
+    assert_eq!([&aggregation["p1"], &aggregation["p2"]], [&json!(null); 2]);
 }
 
 #[test]

@@ -98,3 +98,18 @@ fn many_disparities() {
     };
     assert_twin("512 disparities", &trial);
 }
+
+/// Where all costs are cut off, messages come on top of the largest.
+#[test]
+fn costs_that_are_cut_off_are_still_compared() {
+    let (size, count) = ((3, 2), 8);
+    let trial = BeliefTrial {
+        costs: vec![u16::MAX; 6 * count],
+        links: links(size),
+        messages: noise(4 * count * 6, 8, 100),
+        parents: noise(4 * count * 2, 7, 100),
+        smoothness: SMOOTHNESS,
+        turn: Turn { parity: 0, from_parents: false },
+    };
+    assert_twin("cut off", &trial);
+}

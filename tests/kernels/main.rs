@@ -9,6 +9,7 @@ mod belief_cost;
 mod belief_reduce;
 mod belief_select;
 mod block_match;
+mod box_mean;
 mod cell_ranges;
 mod census;
 mod claim;

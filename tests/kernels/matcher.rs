@@ -30,12 +30,12 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
 }
 
-fn semi_global(reference: View, paths: Paths, other_view: OtherView) -> DenseConfig {
+fn semi_global(reference: View, window: u32, paths: Paths, other_view: OtherView) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
-        aggregation: Aggregation::Paths(SemiGlobal { cost, penalties, paths, other_view }),
+        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }),
         refinement: Some(Refinement {
             support: 9,
             medians_before: 1,
@@ -60,8 +60,10 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Right, config(View::Right)),
             (View::Left, coarse_to_fine(View::Left)),
             (View::Right, coarse_to_fine(View::Right)),
-            (View::Left, semi_global(View::Left, Paths::Three, OtherView::Claimed)),
-            (View::Right, semi_global(View::Right, Paths::Four, OtherView::Searched)),
+            (View::Left, semi_global(View::Left, 1, Paths::Three, OtherView::Claimed)),
+            (View::Right, semi_global(View::Right, 1, Paths::Four, OtherView::Searched)),
+            (View::Left, semi_global(View::Left, 5, Paths::None, OtherView::Searched)),
+            (View::Right, semi_global(View::Right, 3, Paths::Three, OtherView::Claimed)),
         ] {
             let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
@@ -76,8 +78,10 @@ fn bands_leave_no_trace() {
     for config in [
         config(View::Left),
         coarse_to_fine(View::Left),
-        semi_global(View::Right, Paths::Three, OtherView::Claimed),
-        semi_global(View::Left, Paths::Eight, OtherView::Searched),
+        semi_global(View::Right, 1, Paths::Three, OtherView::Claimed),
+        semi_global(View::Left, 1, Paths::Eight, OtherView::Searched),
+        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
+        semi_global(View::Left, 3, Paths::Four, OtherView::Claimed),
     ] {
         in_bands(&left, &right, &config);
     }
@@ -121,7 +125,9 @@ fn what_cannot_be_is_refused_by_both_alike() {
     let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
     let even = config(View::Left).with_window(8);
     let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
-    for config in [far, even, unsure] {
+    let even_costs = semi_global(View::Left, 4, Paths::None, OtherView::Claimed);
+    let wide_costs = semi_global(View::Left, 33, Paths::Three, OtherView::Claimed);
+    for config in [far, even, unsure, even_costs, wide_costs] {
         let device = dense::compute(gpu(), &left, &right, &config).unwrap_err();
         let twin = compute_dense(&left, &right, &config).unwrap_err();
         assert!(matches!(device, Error::Parameter { .. }), "{device}");
@@ -151,11 +157,13 @@ fn no_buffer_needs_to_hold_a_whole_view() {
     let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
     let small = with_limits(small);
     for config in [
-        semi_global(View::Left, Paths::Three, OtherView::Claimed),
-        semi_global(View::Right, Paths::Four, OtherView::Searched),
+        semi_global(View::Left, 1, Paths::Three, OtherView::Claimed),
+        semi_global(View::Right, 1, Paths::Four, OtherView::Searched),
+        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
+        semi_global(View::Right, 3, Paths::Three, OtherView::Claimed),
         coarse_to_fine(View::Right),
         DenseConfig {
-            refinement: semi_global(View::Left, Paths::Four, OtherView::Claimed).refinement,
+            refinement: semi_global(View::Left, 1, Paths::Four, OtherView::Claimed).refinement,
             ..config(View::Left)
         },
     ] {
