@@ -74,6 +74,27 @@ impl Judged {
         Ok(Self { unknown: matches.len() - right.len(), right, order })
     }
 
+    /// The same, but of equally confident `matches` right and wrong ones take turns evenly, as they do on the average in a
+    /// random order: for confidences of a few values, which whole parts of a picture share.
+    #[must_use]
+    pub fn with_even_ties(mut self, matches: &[PointMatch]) -> Self {
+        let mut start = 0;
+        let confidence = |index: &usize| matches[*index].confidence;
+        for tie in self.order.chunk_by_mut(|a, b| confidence(a) == confidence(b)) {
+            let right = &mut self.right[start..start + tie.len()];
+            start += tie.len();
+            let (count, wrong) = (right.len(), right.iter().filter(|&&right| !right).count());
+            let [wrong_ones, right_ones] = [&tie[..wrong], &tie[wrong..]].map(<[usize]>::to_vec);
+            // How many of the first `k` are right, rounded.
+            let share = |k: usize| (2 * k * (count - wrong) + count) / (2 * count);
+            for k in 0..count {
+                right[k] = share(k + 1) > share(k);
+                tie[k] = if right[k] { right_ones[share(k)] } else { wrong_ones[k - share(k)] };
+            }
+        }
+        self
+    }
+
     /// The share of right ones, 0 to 1; NaN without matches.
     pub fn precision(&self) -> f64 {
         accuracy_of_first(&self.right, self.right.len())
@@ -214,6 +235,27 @@ mod tests {
         assert_eq!((of_points.findable, of_points.recall), (4, 0.75));
         assert!((of_points.f_measure - 0.9 / 1.35).abs() < 1e-12);
         assert_eq!((of_points.coverage, of_points.matching_score), (0.6, 0.6));
+    }
+
+    #[test]
+    fn equals_take_turns() {
+        // Of the first view's points 1 and 2 are wrong, of four equals; the fifth is surer.
+        let matches = [0.0, 9.0, -9.0, 0.0, 0.0]
+            .iter()
+            .enumerate()
+            .map(|(i, &offset)| found(i, offset, if i == 4 { 0.9 } else { 0.5 }));
+        let matches: Vec<_> = matches.collect();
+        let judged = Judged::new(&matches, &truth(), 1.5).unwrap();
+        assert_eq!(
+            (judged.right.clone(), judged.order.clone()),
+            (vec![true, false, false, true, true], vec![4, 1, 2, 0, 3])
+        );
+        // Of the first 1, 2, 3 and 4 equals 0.5, 1, 1.5 and 2 are right: rounded 1, 1, 2 and 2.
+        let even = judged.with_even_ties(&matches);
+        assert_eq!(
+            (even.right.clone(), even.order.clone()),
+            (vec![true, true, false, true, false], vec![4, 0, 1, 3, 2])
+        );
     }
 
     #[test]

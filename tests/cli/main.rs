@@ -8,6 +8,7 @@ mod demo;
 mod devices;
 mod eval_dense;
 mod eval_features;
+mod eval_paper;
 mod features;
 mod match_views;
 #[path = "../pictures/mod.rs"]
@@ -24,9 +25,16 @@ fn help_has_examples_and_exit_codes() {
         .assert()
         .success()
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
-    for command in
-        [&["match"][..], &["features"], &["devices"], &["demo"], &["verify"], &["eval", "dense"], &["eval", "features"]]
-    {
+    for command in [
+        &["match"][..],
+        &["features"],
+        &["devices"],
+        &["demo"],
+        &["verify"],
+        &["eval", "dense"],
+        &["eval", "features"],
+        &["eval", "paper"],
+    ] {
         hsad().args(command).arg("--help").assert().success().stdout(contains("Examples:").and(contains("Usage:")));
     }
     hsad().arg("-V").assert().success().stdout(format!("hsad {}\n", env!("CARGO_PKG_VERSION")));

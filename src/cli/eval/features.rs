@@ -14,11 +14,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 use hsad::{
     Error, Result,
-    eval::{
-        Judged, OfPoints, Point, PointMatch,
-        conditions::{Changed, Condition, Kind},
-        curves::accuracy_of_first,
-    },
+    eval::{Judged, OfPoints, Point, PointMatch, conditions::Changed, curves::accuracy_of_first},
     io::{atomic::write_whole, png},
     pair::Backend,
     sparse::{SparseConfig, match_views},
@@ -26,6 +22,7 @@ use hsad::{
 use serde_json::json;
 
 use crate::cli::{
+    eval::change::{Change, kinds},
     options::{FeatureOptions, RunOptions, with_default},
     terminal::{self, Progress},
 };
@@ -68,12 +65,7 @@ Examples:
   hsad eval features data/planes --matches theirs.csv --points l.csv r.csv";
 
 fn details() -> String {
-    let kinds = Kind::ALL.map(|kind| {
-        let [least, greatest] = kind.range();
-        let (name, usual, neutral) = (kind.name(), kind.usual(), kind.neutral());
-        format!("  {name:<11}{least} to {greatest}; {neutral} changes nothing, {usual} if none is named")
-    });
-    format!("{DETAILS}\n{}\n\n{EXAMPLES}", kinds.join("\n"))
+    format!("{DETAILS}\n{}\n\n{EXAMPLES}", kinds())
 }
 
 /// The default here is not that of the other subcommands.
@@ -131,23 +123,6 @@ pub struct Features {
     features: FeatureOptions,
 }
 
-/// Changes in a row, and what they are called.
-struct Change {
-    name: String,
-    conditions: Vec<Condition>,
-}
-
-impl Change {
-    fn parse(text: &str) -> Result<Self> {
-        let conditions = match text {
-            "none" => Vec::new(),
-            _ => text.split('+').map(str::parse).collect::<Result<_>>()?,
-        };
-        let names: Vec<String> = conditions.iter().map(Condition::to_string).collect();
-        Ok(Self { name: if names.is_empty() { "none".into() } else { names.join("+") }, conditions })
-    }
-}
-
 /// Who finds the matches.
 enum Finder {
     Hsad(Backend, SparseConfig),
@@ -162,7 +137,7 @@ impl Features {
         config.matching.ratio = self.ratio.unwrap_or(config.matching.ratio);
         config.validate()?;
         self.check()?;
-        let changes = self.changes()?;
+        let changes = Change::parse_all(&self.conditions)?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("reading");
         let (pairs, mut failed) = self.read();
@@ -211,18 +186,6 @@ impl Features {
         drop(progress);
         self.write_figures(&table, &finder, &failed)?;
         complain(&failed)
-    }
-
-    /// What is asked for, each once.
-    fn changes(&self) -> Result<Vec<Change>> {
-        let mut changes: Vec<Change> = Vec::new();
-        for text in &self.conditions {
-            let change = Change::parse(text)?;
-            if changes.iter().all(|known| known.name != change.name) {
-                changes.push(change);
-            }
-        }
-        Ok(changes)
     }
 
     fn check(&self) -> Result<()> {

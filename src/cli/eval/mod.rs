@@ -1,5 +1,9 @@
+mod change;
 mod dense;
 mod features;
+mod kept;
+mod paper;
+mod scenes;
 
 use clap::{Args, Subcommand};
 
@@ -14,6 +18,7 @@ pub struct Eval {
 enum What {
     Dense(Box<dense::Dense>),
     Features(Box<features::Features>),
+    Paper(paper::Paper),
 }
 
 impl Eval {
@@ -22,6 +27,7 @@ impl Eval {
         match self.what {
             What::Dense(command) => command.run(),
             What::Features(command) => command.run(),
+            What::Paper(command) => command.run(),
         }
     }
 }

@@ -126,6 +126,11 @@ impl Condition {
         Ok(Self { kind, strength })
     }
 
+    /// Whether it brings points to other places. Where it does not, the rows of a rectified pair still correspond.
+    pub fn moves(self) -> bool {
+        matches!(self.kind, Kind::Rotation | Kind::Scale) && self.strength != self.kind.neutral()
+    }
+
     /// What it does to a picture. The same seed gives the same bytes.
     pub fn apply(self, picture: &Picture, seed: u64) -> Changed {
         let Self { kind, strength } = self;
@@ -251,6 +256,18 @@ mod tests {
             let changed = Condition::new(kind, kind.neutral()).unwrap().apply(&picture, 1);
             assert_eq!(changed, Changed::by(&[], &picture, 1), "{}", kind.name());
             assert!(changed.picture == picture && changed.map == DAffine2::IDENTITY);
+        }
+    }
+
+    #[test]
+    fn what_moves_points_is_known_beforehand() {
+        let picture = texture(23, 17);
+        for kind in Kind::ALL {
+            for strength in [kind.neutral(), kind.usual()] {
+                let condition = Condition::new(kind, strength).unwrap();
+                let map = condition.apply(&picture, 1).map;
+                assert_eq!(condition.moves(), map != DAffine2::IDENTITY, "{condition}");
+            }
         }
     }
 

@@ -1,7 +1,6 @@
 //! `hsad eval dense`: disparity maps against the truth of whole scenes.
 
 mod given;
-mod kept;
 mod record;
 mod run;
 mod table;
@@ -16,13 +15,13 @@ use anyhow::anyhow;
 use clap::Args;
 use hsad::{
     Error,
-    eval::scene::SceneFiles,
     io::atomic::{temporary_in, write_whole},
 };
 use serde_json::{Value, json};
 
 use self::{given::Given, record::Record, run::Run};
 use crate::cli::{
+    eval::scenes,
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, write_json},
     report, terminal,
@@ -114,7 +113,8 @@ impl Dense {
     /// Scores everything that can be scored, and fails at the end if anything could not.
     pub fn run(self) -> anyhow::Result<()> {
         let config = self.matching.config(&self.features)?;
-        let (scenes, failures) = self.find()?;
+        let (scenes, unread) = scenes::find(&self.scenes)?;
+        let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
         given::check(&self.given, scenes.len())?;
         let root = self.output.as_deref().map(Output::open).transpose()?;
         for file in [&self.csv, &self.json].into_iter().flatten() {
@@ -143,27 +143,6 @@ impl Dense {
         let Some(last) = results.failures.pop() else { return Ok(()) };
         results.failures.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
         Err(anyhow!("{last}"))
-    }
-
-    /// All scenes, and what of the arguments holds none.
-    fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Failure>)> {
-        let (mut scenes, mut failures): (Vec<SceneFiles>, Vec<Failure>) = Default::default();
-        for path in &self.scenes {
-            match SceneFiles::find(path) {
-                Ok(found) => scenes.extend(found),
-                Err(error) => failures.push(Failure { what: None, error }),
-            }
-        }
-        for (index, scene) in scenes.iter().enumerate() {
-            if scenes[..index].iter().any(|other| other.name == scene.name) {
-                return Err(Error::Parameter {
-                    name: "SCENE",
-                    value: format!("the name of two scenes, '{}'", scene.name),
-                    expected: "each needs a name of its own: evaluate them one after the other".into(),
-                });
-            }
-        }
-        Ok((scenes, failures))
     }
 
     fn tell(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {

@@ -14,13 +14,14 @@ use hsad::{
 };
 use serde_json::Value;
 
-use super::{
-    Dense, Failure, OURS, Results,
-    given::Given,
-    kept::{self, Fingerprint},
-    record::Record,
+use super::{Dense, Failure, OURS, Results, given::Given, record::Record};
+use crate::cli::{
+    eval::kept::{self, Fingerprint},
+    job,
+    output::Output,
+    products, report,
+    terminal::Progress,
 };
-use crate::cli::{job, output::Output, products, report, terminal::Progress};
 
 /// What makes maps, and where they go.
 pub struct Run<'a> {
@@ -125,7 +126,10 @@ impl<'a> Run<'a> {
     }
 
     fn kept(&self, place: &Place) -> Option<Record> {
-        if self.options.fresh { None } else { kept::find(&place.folder, &place.fingerprint) }
+        if self.options.fresh {
+            return None;
+        }
+        kept::find(&place.folder, &place.fingerprint).as_ref().and_then(Record::from_json)
     }
 
     fn read(&self, files: &SceneFiles) -> Result<Scene> {
@@ -142,7 +146,7 @@ impl<'a> Run<'a> {
             self.progress.begin("writing");
             let mut output = Output::open(folder)?;
             add_files(&mut output, scene, &map)?;
-            kept::add(&mut output, &record, fingerprint)?;
+            kept::add(&mut output, record.to_json(), fingerprint)?;
             output.finish()?;
         }
         Ok(record)

@@ -10,10 +10,9 @@ use std::{
 use hsad::{Error, Result};
 use serde_json::{Value, json};
 
-use super::record::Record;
 use crate::cli::output::Output;
 
-/// The file that keeps a result next to its pictures.
+/// The file that keeps a result, next to its pictures if it has any.
 const NAME: &str = "result.json";
 
 /// A number for all that a result depends on. The standard library's hash may be another one in another release of the
@@ -55,20 +54,19 @@ impl Fingerprint {
     }
 }
 
-/// The record in `folder`, if its files are there and it has this fingerprint.
-pub fn find(folder: &Path, fingerprint: &Fingerprint) -> Option<Record> {
+/// The result in `folder`, if its files are there and it has this fingerprint.
+pub fn find(folder: &Path, fingerprint: &Fingerprint) -> Option<Value> {
     let kept: Value = serde_json::from_str(&fs::read_to_string(folder.join(NAME)).ok()?).ok()?;
     let is_there = |file: &Value| file.as_str().is_some_and(|name| folder.join(name).is_file());
     let holds = kept["fingerprint"] == fingerprint.text() && kept["files"].as_array()?.iter().all(is_there);
-    if holds { Record::from_json(&kept) } else { None }
+    holds.then_some(kept)
 }
 
-/// Adds the record to the files of `output`.
+/// Adds a result, an object, to the files of `output`.
 ///
 /// # Errors
 /// [`Error::Io`] with the file.
-pub fn add(output: &mut Output, record: &Record, fingerprint: &Fingerprint) -> Result<()> {
-    let mut kept = record.to_json();
+pub fn add(output: &mut Output, mut kept: Value, fingerprint: &Fingerprint) -> Result<()> {
     kept["fingerprint"] = fingerprint.text().into();
     kept["files"] = json!(output.names());
     output.add_json(NAME, &kept)

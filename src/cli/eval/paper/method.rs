@@ -1,0 +1,141 @@
+//! The methods, and what each answers where it is asked.
+
+use glam::DVec2;
+use hsad::{
+    Result,
+    config::{self, Config, Preset},
+    dense::Dense,
+    disparity::pixels,
+    eval::PointMatch,
+    hybrid::HybridParameters,
+    io::Picture,
+    pair::Backend,
+    pipeline,
+    sparse::{SparseConfig, match_views},
+};
+
+/// Who answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Matches of interest points, as `hsad eval features` has them.
+    Sparse,
+    /// The rival: the hybrid method, with its default parameters.
+    Kamencay,
+    /// The dense half of this program, with its default preset.
+    Balanced,
+}
+
+/// What a method says.
+pub struct Answers {
+    /// The points that it was asked about, in pixels of the first view.
+    pub points: Vec<DVec2>,
+    /// Its answers to these.
+    pub at_points: Vec<PointMatch>,
+    /// Its answers about any place of the first view.
+    pub everywhere: Vec<PointMatch>,
+}
+
+impl Method {
+    /// The one whose points the others are asked about comes first.
+    pub const ALL: [Self; 3] = [Self::Sparse, Self::Kamencay, Self::Balanced];
+
+    /// Its name in one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sparse => "sparse",
+            Self::Kamencay => "kamencay",
+            Self::Balanced => "balanced",
+        }
+    }
+
+    /// The method of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// Whether it looks for the points of a row in the same row of the other view only.
+    pub fn needs_rows(self) -> bool {
+        self != Self::Sparse
+    }
+
+    /// All parameters, as a text that is another one where they are others.
+    pub fn described(self) -> String {
+        match self.dense() {
+            None => format!("{:?}", SparseConfig::default()),
+            Some(config) => format!("{config:?}"),
+        }
+    }
+
+    /// How it matches whole pictures, if it does.
+    fn dense(self) -> Option<Config> {
+        // Rows are known to correspond: no doubt about it shall cost a method its answers.
+        let balanced = Config { force: true, ..Preset::Balanced.config() };
+        match self {
+            Self::Sparse => None,
+            Self::Kamencay => {
+                Some(Config { method: config::Method::Kamencay(HybridParameters::default()), ..balanced })
+            }
+            Self::Balanced => Some(balanced),
+        }
+    }
+
+    /// Matches two views. `points` are what a dense method is asked about.
+    ///
+    /// # Errors
+    /// As [`match_views`] and [`pipeline::run`].
+    pub fn answer(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<Answers> {
+        let Some(config) = self.dense() else {
+            let found = match_views(backend, &first.luma(), &second.luma(), &SparseConfig::default())?;
+            let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
+            let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
+            return Ok(Answers { points, at_points: matches.clone(), everywhere: matches });
+        };
+        let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
+        let (width, height) = first.size();
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| DVec2::new(x.into(), y.into())));
+        Ok(Answers {
+            points: points.to_vec(),
+            at_points: points.iter().filter_map(|&at| answer_at(&dense, at)).collect(),
+            everywhere: pixels.filter_map(|at| answer_at(&dense, at)).collect(),
+        })
+    }
+}
+
+/// What a map says about a place of the left view: the disparity of the pixel that it lies in. Where that was not
+/// measured, or only filled in, it says nothing.
+fn answer_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
+    // Interest points can lie up to half a pixel outside the last ones' centres.
+    let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
+    let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
+    let confidence = dense.confidence.get(x, y);
+    let disparity = pixels(dense.disparity.get(x, y)).filter(|_| confidence > 0)?;
+    let second = at - DVec2::new(disparity.into(), 0.0);
+    Some(PointMatch { first: at, second, confidence: confidence.into(), points: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use hsad::{disparity::NONE, image::Plane};
+
+    use super::*;
+
+    #[test]
+    fn a_map_answers_where_it_was_measured() {
+        let disparity = Plane::from_fn(4, 1, |x, _| [256, 384, NONE, 512][x as usize]);
+        let confidence = Plane::from_fn(4, 1, |x, _| [0, 7, 0, 9][x as usize]);
+        let dense = Dense { disparity, confidence };
+        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| answer_at(&dense, DVec2::new(x, 0.3)));
+        let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));
+        let second = Some((3.4 - 2.0, 0.3, 9.0));
+        assert_eq!(found, [None, Some((-0.75, 0.3, 7.0)), Some((-0.25, 0.3, 7.0)), None, second]);
+    }
+
+    #[test]
+    fn names_are_known_again_and_parameters_differ() {
+        for method in Method::ALL {
+            assert_eq!(Method::named(method.name()), Some(method));
+        }
+        assert_ne!(Method::Kamencay.described(), Method::Balanced.described());
+        assert_eq!(Method::named("hsad"), None);
+    }
+}

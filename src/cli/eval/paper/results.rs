@@ -1,0 +1,127 @@
+//! All that came out for one scene, by condition and in the mean.
+
+use super::{
+    curve::{Figure, Sample},
+    method::Method,
+    record::Record,
+};
+
+/// One method under one condition.
+pub enum Cell {
+    Done(Record),
+    /// It needs rows that correspond, and the condition leaves none.
+    NotApplicable {
+        condition: String,
+        method: Method,
+    },
+}
+
+impl Cell {
+    fn condition(&self) -> &str {
+        match self {
+            Self::Done(record) => &record.condition,
+            Self::NotApplicable { condition, .. } => condition,
+        }
+    }
+
+    fn method(&self) -> Method {
+        match self {
+            Self::Done(record) => record.method,
+            Self::NotApplicable { method, .. } => *method,
+        }
+    }
+
+    fn record(&self) -> Option<&Record> {
+        match self {
+            Self::Done(record) => Some(record),
+            Self::NotApplicable { .. } => None,
+        }
+    }
+}
+
+/// A method's records under a condition, or under several for their mean; none where it is not applicable.
+pub struct Group<'r> {
+    pub name: String,
+    pub method: Method,
+    pub records: Vec<&'r Record>,
+}
+
+impl Group<'_> {
+    /// Its curve, or the mean of its curves.
+    pub fn curve(&self, figure: Figure) -> Vec<Sample> {
+        match self.records[..] {
+            [record] => figure.curve(record),
+            _ => figure.mean(&self.records.iter().map(|record| figure.curve(record)).collect::<Vec<_>>()),
+        }
+    }
+}
+
+/// Each condition by each method, then the means: first over the conditions under which all methods have a result, so that
+/// they can be compared; then over all conditions of those that have more.
+pub fn groups(cells: &[Cell]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group> = cells
+        .iter()
+        .map(|cell| Group {
+            name: cell.condition().into(),
+            method: cell.method(),
+            records: cell.record().into_iter().collect(),
+        })
+        .collect();
+    let of = |method| cells.iter().filter_map(Cell::record).filter(move |record| record.method == method);
+    let has = |method, condition: &str| of(method).any(|record| record.condition == condition);
+    let is_common = |record: &&Record| Method::ALL.into_iter().all(|method| has(method, &record.condition));
+    let mut mean = |method, records: Vec<_>| {
+        let name = format!("mean of {}", records.len());
+        groups.extend((records.len() > 1).then_some(Group { name, method, records }));
+    };
+    for method in Method::ALL {
+        mean(method, of(method).filter(is_common).collect());
+    }
+    for method in Method::ALL {
+        if of(method).any(|record| !is_common(&record)) {
+            mean(method, of(method).collect());
+        }
+    }
+    groups
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::{super::record::tests::record, *};
+
+    /// Two conditions by all methods, and one that only the sparse one can be used under.
+    pub fn cells() -> Vec<Cell> {
+        let done = |condition, method, right| Cell::Done(record(condition, method, 8, right));
+        let not = |method| Cell::NotApplicable { condition: "rotation=90".into(), method };
+        vec![
+            done("none", Method::Sparse, "1111"),
+            done("none", Method::Kamencay, "111001"),
+            done("none", Method::Balanced, "111110"),
+            done("blur=2", Method::Sparse, "10"),
+            done("blur=2", Method::Kamencay, ""),
+            done("blur=2", Method::Balanced, "11"),
+            done("rotation=90", Method::Sparse, "1"),
+            not(Method::Kamencay),
+            not(Method::Balanced),
+        ]
+    }
+
+    #[test]
+    fn means_compare_like_with_like() {
+        let cells = cells();
+        let groups = groups(&cells);
+        let names: Vec<_> = groups[9..].iter().map(|group| (&*group.name, group.method, group.records.len())).collect();
+        let expected = [
+            ("mean of 2", Method::Sparse, 2),
+            ("mean of 2", Method::Kamencay, 2),
+            ("mean of 2", Method::Balanced, 2),
+            ("mean of 3", Method::Sparse, 3),
+        ];
+        assert_eq!(names, expected);
+        assert!(groups[7].records.is_empty() && groups[7].name == "rotation=90");
+        let precision = |group: &Group| group.curve(Figure::RecallPrecision).iter().map(|s| s.y).collect::<Vec<_>>();
+        assert_eq!((precision(&groups[3]), precision(&groups[7])), (vec![1.0, 0.5], vec![]));
+        assert_eq!(precision(&groups[9]), [1.0, 0.75, 0.75, 0.75]);
+        assert_eq!(super::groups(&cells[..3]).len(), 3, "one condition has no mean");
+    }
+}

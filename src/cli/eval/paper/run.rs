@@ -1,0 +1,159 @@
+//! One condition after the other, by all methods.
+
+use std::time::Instant;
+
+use glam::DVec2;
+use hsad::{
+    Result,
+    dense::View,
+    eval::{
+        Truth,
+        conditions::{Changed, Condition},
+        scene::{Scene, SceneFiles},
+    },
+    io::Picture,
+    pair::Backend,
+};
+
+use super::{Paper, method::Method, record::Record, results::Cell};
+use crate::cli::{
+    eval::{
+        change::Change,
+        kept::{self, Fingerprint},
+    },
+    output::Output,
+    report,
+    terminal::Progress,
+};
+
+/// What computes, under which conditions, and what its results depend on.
+pub struct Run<'a> {
+    options: &'a Paper,
+    changes: &'a [Change],
+    backend: &'a Backend,
+    /// Of the program, the device and the options; `None` where no results are kept.
+    fingerprint: Option<Fingerprint>,
+    pub progress: Progress,
+}
+
+/// A scene's results so far.
+#[derive(Default)]
+pub struct Found {
+    pub cells: Vec<Cell>,
+    /// How many of them an earlier run made.
+    pub kept: usize,
+    pub failures: Vec<String>,
+}
+
+/// A scene, and its second view after a change; each is made when it is first needed, which may be never.
+struct Views<'s> {
+    files: &'s SceneFiles,
+    scene: Option<(Scene, Truth)>,
+    changed: Option<(Picture, Truth)>,
+}
+
+impl Views<'_> {
+    /// Both views, the truth about them, and the scene.
+    fn get(&mut self, change: &Change, seed: u64) -> Result<(&Scene, &Picture, &Truth)> {
+        let (scene, truth) = match &mut self.scene {
+            Some(read) => read,
+            unread => {
+                let scene = self.files.read(View::Left)?;
+                let truth = Truth::stereo(scene.truth.clone(), scene.non_occluded.as_ref())?;
+                unread.insert((scene, truth))
+            }
+        };
+        let (second, truth) = self.changed.get_or_insert_with(|| {
+            let changed = Changed::by(&change.conditions, &scene.right, seed);
+            let truth = truth.clone().changed(&changed);
+            (changed.picture, truth)
+        });
+        Ok((scene, second, truth))
+    }
+}
+
+impl<'a> Run<'a> {
+    pub fn new(options: &'a Paper, changes: &'a [Change], backend: &'a Backend) -> Self {
+        let fingerprint = options.output.as_ref().map(|_| {
+            let program = Fingerprint::of_program().with(&report::device(backend).to_string());
+            program.with(&format!("{} {}", options.tolerance, options.seed)).with(&Method::Sparse.described())
+        });
+        Self { options, changes, backend, fingerprint, progress: Progress::new(options.run.quiet) }
+    }
+
+    /// What all methods make of a scene under all conditions; what fails loses no other condition.
+    ///
+    /// # Errors
+    /// Where a file that results depend on cannot be read.
+    pub fn scene(&self, files: &SceneFiles) -> Result<Found> {
+        let paths = files.files(View::Left)?;
+        let fingerprint = match &self.fingerprint {
+            Some(options) => Some(paths.into_iter().try_fold(options.clone(), Fingerprint::with_file)?),
+            None => None,
+        };
+        let mut found = Found::default();
+        let mut views = Views { files, scene: None, changed: None };
+        for (number, change) in (1..).zip(self.changes) {
+            let name = format!("{}, {}", files.name, change.name);
+            self.progress.piece(&name, number, self.changes.len());
+            views.changed = None;
+            let mut points = Vec::new();
+            for method in Method::ALL {
+                if method.needs_rows() && change.conditions.iter().copied().any(Condition::moves) {
+                    found.cells.push(Cell::NotApplicable { condition: change.name.clone(), method });
+                    continue;
+                }
+                self.progress.begin(method.name());
+                match self.record(&mut views, change, method, &points, fingerprint.clone(), &mut found.kept) {
+                    Ok(record) => {
+                        if !method.needs_rows() {
+                            points.clone_from(&record.points);
+                        }
+                        found.cells.push(Cell::Done(record));
+                    }
+                    Err(error) => {
+                        found.failures.push(format!("{name}, {}: {error}", method.name()));
+                        if !method.needs_rows() {
+                            // There is nothing that the others could be asked about.
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    fn record(
+        &self,
+        views: &mut Views,
+        change: &Change,
+        method: Method,
+        points: &[DVec2],
+        fingerprint: Option<Fingerprint>,
+        kept: &mut usize,
+    ) -> Result<Record> {
+        let place = self.options.output.as_ref().zip(fingerprint).map(|(root, fingerprint)| {
+            let folder = root.join(&views.files.name).join(&change.name).join(method.name());
+            (folder, fingerprint.with(&change.name).with(&method.described()))
+        });
+        if let (Some((folder, fingerprint)), false) = (&place, self.options.fresh)
+            && let Some(record) = kept::find(folder, fingerprint).as_ref().and_then(Record::from_json)
+        {
+            *kept += 1;
+            return Ok(record);
+        }
+        let (scene, second, truth) = views.get(change, self.options.seed)?;
+        let start = Instant::now();
+        let answers = method.answer(self.backend, (&scene.left, second), points)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let judged = (truth, &scene.truth);
+        let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;
+        if let Some((folder, fingerprint)) = &place {
+            let mut output = Output::open(folder)?;
+            kept::add(&mut output, record.to_json(), fingerprint)?;
+            output.finish()?;
+        }
+        Ok(record)
+    }
+}

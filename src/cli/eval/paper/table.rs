@@ -1,0 +1,151 @@
+//! The figures of all methods and conditions: a table for people, JSON for programs.
+
+use hsad::eval::curves::{accuracy_of_first, f_measure};
+use serde_json::{Value, json};
+
+use super::{record::Record, results::Group};
+
+/// What the columns are.
+pub const LEGEND: &str = "\
+points: interest points of the first view that the second shows; all methods are asked about the same ones. answers: to
+these and to hidden ones. Per cent: of N: right among the N surest, or all where there are fewer; right: of all answers;
+cover: answers by points; recall: right answers by points that are shown; F: harmonic mean of the two; picture: pixels of the
+first view with an answer, and how many of these are right. seconds: from the pictures to the answers.
+";
+
+/// What stands in place of figures.
+const NOT_APPLICABLE: &str = "not applicable: it needs rows that correspond";
+
+/// How people read a figure.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Unit {
+    Count,
+    /// 0 to 1; people read per cent.
+    Share,
+    Seconds,
+}
+
+struct Column {
+    name: &'static str,
+    heading: &'static str,
+    unit: Unit,
+    of: fn(&Record) -> f64,
+}
+
+const fn column(name: &'static str, heading: &'static str, unit: Unit, of: fn(&Record) -> f64) -> Column {
+    Column { name, heading, unit, of }
+}
+
+const COLUMNS: [Column; 12] = [
+    column("points", "points", Unit::Count, |record| record.shown as f64),
+    column("answers", "answers", Unit::Count, |record| record.right.len() as f64),
+    column("precision_of_10", "of 10", Unit::Share, |record| accuracy_of_first(&record.right, 10)),
+    column("precision_of_100", "of 100", Unit::Share, |record| accuracy_of_first(&record.right, 100)),
+    column("precision_of_500", "of 500", Unit::Share, |record| accuracy_of_first(&record.right, 500)),
+    column("precision", "right", Unit::Share, precision),
+    column("coverage", "cover", Unit::Share, |record| record.right.len() as f64 / record.known as f64),
+    column("recall", "recall", Unit::Share, recall),
+    column("f_measure", "F", Unit::Share, |record| f_measure(precision(record), recall(record))),
+    column("picture_coverage", "picture", Unit::Share, |record| {
+        record.everywhere.last().map_or(0.0, |&(k, _)| k as f64 / record.pixels as f64)
+    }),
+    column("picture_precision", "right", Unit::Share, |record| {
+        record.everywhere.last().map_or(f64::NAN, |&(k, right)| right as f64 / k as f64)
+    }),
+    column("seconds", "seconds", Unit::Seconds, |record| record.seconds),
+];
+
+fn precision(record: &Record) -> f64 {
+    accuracy_of_first(&record.right, record.right.len())
+}
+
+fn recall(record: &Record) -> f64 {
+    record.right.iter().filter(|&&right| right).count() as f64 / record.shown as f64
+}
+
+impl Column {
+    /// Of a group the mean; NaN where there is nothing. Where only some have a figure, it counts as 0 in the others: who
+    /// answers nothing is not right about it.
+    fn mean(&self, group: &Group) -> f64 {
+        let figures: Vec<f64> = group.records.iter().map(|record| (self.of)(record)).collect();
+        let known: Vec<f64> = figures.iter().copied().filter(|figure| !figure.is_nan()).collect();
+        if known.is_empty() { f64::NAN } else { known.iter().sum::<f64>() / figures.len() as f64 }
+    }
+
+    fn cell(&self, figure: f64) -> String {
+        match self.unit {
+            _ if figure.is_nan() => "-".into(),
+            Unit::Count => format!("{figure:.0}"),
+            Unit::Share => format!("{:.1}", 100.0 * figure),
+            Unit::Seconds => format!("{figure:.1}"),
+        }
+    }
+}
+
+/// The scene's table for a terminal, a blank line before each condition.
+pub fn text(scene: &str, groups: &[Group]) -> String {
+    let width = groups.iter().map(|group| group.name.len()).max().unwrap_or(0).max(scene.chars().count());
+    let line = |name: &str, method: &str, cells: &[String]| {
+        let cells: String = cells.iter().map(|cell| format!("{cell:>8}")).collect();
+        format!("{name:width$}  {method:8}{cells}\n")
+    };
+    let mut text = line(scene, "", &COLUMNS.map(|column| column.heading.to_owned()));
+    let mut before = "";
+    for group in groups {
+        let name = if group.name == before { "" } else { &group.name };
+        if !name.is_empty() {
+            text.push('\n');
+        }
+        before = &group.name;
+        let method = group.method.name();
+        text += &if group.records.is_empty() {
+            format!("{name:width$}  {method:8}  {NOT_APPLICABLE}\n")
+        } else {
+            line(name, method, &COLUMNS.map(|column| column.cell(column.mean(group))))
+        };
+    }
+    text
+}
+
+/// The same for programs; null where there is no figure.
+pub fn json(groups: &[Group]) -> Value {
+    let object = |group: &Group| {
+        let mut object = json!({ "condition": group.name, "method": group.method.name() });
+        if group.records.is_empty() {
+            object["not_applicable"] = NOT_APPLICABLE.into();
+        } else {
+            for column in &COLUMNS {
+                object[column.name] = column.mean(group).into();
+            }
+        }
+        object
+    };
+    groups.iter().map(object).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::results::{groups, tests::cells},
+        *,
+    };
+
+    #[test]
+    fn a_table_by_hand() {
+        let cells = cells();
+        let text = text("Art", &groups(&cells));
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+        let row = |start: &str| lines.iter().find(|line| line.join(" ").starts_with(start)).unwrap().join(" ");
+        assert_eq!(row("Art"), "Art points answers of 10 of 100 of 500 right cover recall F picture right seconds");
+        // Of 8 points that are shown and 16 that are known 4 are answered, all rightly: 2 * 1 * 0.5 / 1.5.
+        assert_eq!(row("none"), "none sparse 8 4 100.0 100.0 100.0 100.0 25.0 50.0 66.7 0.4 100.0 0.5");
+        assert_eq!(row("kamencay 8 0"), "kamencay 8 0 - - - - 0.0 0.0 - 0.0 - 0.5");
+        assert_eq!(row("mean of 2"), "mean of 2 sparse 8 3 75.0 75.0 75.0 75.0 18.8 31.2 43.3 0.3 75.0 0.5");
+        // The hybrid method's 4 of 6, and nothing.
+        assert_eq!(row("kamencay 8 3"), "kamencay 8 3 33.3 33.3 33.3 33.3 18.8 25.0 28.6 0.3 33.3 0.5");
+        assert_eq!(row("kamencay not"), format!("kamencay {NOT_APPLICABLE}"));
+        let json = json(&groups(&cells));
+        assert_eq!((&json[0]["recall"], &json[4]["precision"]), (&0.5.into(), &Value::Null));
+        assert_eq!((&json[7]["not_applicable"], json[7].get("recall")), (&NOT_APPLICABLE.into(), None));
+    }
+}
