@@ -3,7 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use hsad::verify::{Case, Extent, cases, goldens, subjects};
+use hsad::{
+    disparity::SCALE,
+    verify::{Case, Extent, Values, cases, goldens, subjects},
+};
 
 #[test]
 fn every_kernel_is_a_subject() {
@@ -22,6 +25,18 @@ fn a_case_is_the_same_each_time() {
         assert_eq!(first.input(), second.input());
         let other = Case::new(case.subject.name, case.size, case.seed + 1).unwrap().trial();
         assert!((first.parameters(), first.input()) != (other.parameters(), other.input()), "{case:?}");
+    }
+}
+
+/// A map of a few flat pieces would hide what is wrong with penalties, checks and filters.
+#[test]
+fn pipelines_have_something_to_decide() {
+    let dense = ["fast", "balanced", "quality", "paper"];
+    for case in cases(Extent::Quick).into_iter().filter(|case| dense.contains(&case.subject.name)) {
+        let twin = case.trial().twin().unwrap();
+        let Values::I32(map) = &twin[0].values else { panic!("the first array is the map") };
+        let distinct: BTreeSet<_> = map.iter().map(|disparity| disparity.div_euclid(SCALE)).collect();
+        assert!(distinct.len() > 12, "{case:?}: {} whole disparities", distinct.len());
     }
 }
 

@@ -1,7 +1,8 @@
 //! Block matching: the plan.
 //!
 //! padding -> the other view's winners -> block matching of the reference view, which they confirm; in bands of rows
-//! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band finds the ranges of its cells first: see [`super::coarse`].
+//! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band
+//! finds the ranges of its cells first: see [`super::coarse`].
 
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
@@ -65,15 +66,15 @@ pub(super) fn plan(
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, &tiles)?;
-        let [ranges, partners] = match &coarse {
-            None => [&whole_range; 2],
+        let (ranges, partners) = match &coarse {
+            None => (&whole_range, Some(&whole_range)),
             Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
         };
         let [pad_left, pad_right] = layout.padding(config.brightness);
         plan.run(pad.prepare(device, pad_left, left, &planes.0));
         plan.run(pad.prepare(device, pad_right, right, &planes.0));
         plan.fill_texture(&planes);
-        let others = other_view.as_ref().map(|(find_winners, winners, max_difference)| {
+        let others = other_view.as_ref().zip(partners).map(|((find_winners, winners, max_difference), partners)| {
             plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));
             (winners, *max_difference)
         });

@@ -6,7 +6,7 @@
 use super::{
     block_match::{BlockMatch, Layout, Tile, Wanted},
     cell_ranges::CellRanges,
-    cells::{CELL, CellBand, Ranges, halved_config},
+    cells::{CELL, CellBand, REACH, Ranges, halved_config},
     config::{DenseConfig, View},
     halve::Halve,
     pad::Pad,
@@ -22,12 +22,14 @@ pub(super) struct Coarse {
     view: View,
     half: DenseConfig,
     cell_ranges: CellRanges,
-    partner_ranges: PartnerRanges,
     /// Left and right picture of half the size.
     halves: [wgpu::Buffer; 2],
     planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
-    ranges: [Ranges; 2],
+    /// What is searched at half the size, in the reference view's cells, and in the other's, where it is asked.
+    whole: Ranges,
+    ranges: Ranges,
+    partners: Option<(PartnerRanges, Ranges)>,
 }
 
 impl Coarse {
@@ -52,7 +54,7 @@ impl Coarse {
             Ok(halved)
         });
         // No band looks at more rows than one in the midst of the picture.
-        let most_rows = (band_rows.next_multiple_of(CELL) / 2 + CELL).min(half_size.1);
+        let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.1);
         let tile = Tile::of(device, Wanted::Matches);
         let planes =
             plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, &[tile])?.words())?;
@@ -62,21 +64,27 @@ impl Coarse {
             let buffer = plan.buffer(device, "ranges of cells", words)?;
             Ok(Ranges::of_cells(buffer, width))
         };
+        let ranges_of_view = ranges(plan)?;
+        let partners = match config.consistency {
+            Some(_) => Some((PartnerRanges::new(device), ranges(plan)?)),
+            None => None,
+        };
         Ok(Self {
             size,
             range,
             view: config.reference,
+            whole: Ranges::whole(device, half.range),
             half,
             cell_ranges: CellRanges::new(device),
-            partner_ranges: PartnerRanges::new(device),
             halves: [left?, right?],
             planes,
             map,
-            ranges: [ranges(plan)?, ranges(plan)?],
+            ranges: ranges_of_view,
+            partners,
         })
     }
 
-    /// Plans what finds the ranges of the reference view's cells, and of the other's, for some rows.
+    /// Plans what finds the ranges of the reference view's cells, and of the other's where it is asked, for some rows.
     pub(super) fn plan(
         &self,
         device: &wgpu::Device,
@@ -84,7 +92,7 @@ impl Coarse {
         pad: &Pad,
         block_match: &BlockMatch,
         rows: (u32, u32),
-    ) -> Result<[&Ranges; 2]> {
+    ) -> Result<(&Ranges, Option<&Ranges>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
         let tile = Tile::of(device, Wanted::Matches);
@@ -93,12 +101,21 @@ impl Coarse {
             plan.run(pad.prepare(device, params, half, &self.planes.0));
         }
         plan.fill_texture(&self.planes);
-        let whole = Ranges::whole(device, self.half.range);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
-        plan.run(block_match.prepare(device, &layout, &self.planes.1, &whole, None, (&self.map, confidence_offset)));
-        let [ranges, partners] = &self.ranges;
-        plan.run(self.cell_ranges.prepare(device, &band, &self.map, &ranges.buffer));
-        plan.run(self.partner_ranges.prepare(device, &band, self.view, &ranges.buffer, &partners.buffer));
-        Ok([ranges, partners])
+        plan.run(block_match.prepare(
+            device,
+            &layout,
+            &self.planes.1,
+            &self.whole,
+            None,
+            (&self.map, confidence_offset),
+        ));
+        let ranges = &self.ranges.buffer;
+        plan.run(self.cell_ranges.prepare(device, &band, &self.map, ranges));
+        let partners = self.partners.as_ref().map(|(kernel, partners)| {
+            plan.run(kernel.prepare(device, &band, self.view, ranges, &partners.buffer));
+            partners
+        });
+        Ok((&self.ranges, partners))
     }
 }

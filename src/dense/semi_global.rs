@@ -150,7 +150,8 @@ struct Shared {
     /// A volume for each path that is stored, each with a row in front of it and one behind.
     paths: wgpu::Buffer,
     path_words: u64,
-    path: Path,
+    /// None where nothing is stored.
+    path: Option<Path>,
 }
 
 /// One view's kernels, and what it keeps from one band to the next.
@@ -217,7 +218,7 @@ pub(super) fn plan(
         box_mean,
         paths: plan.buffer(device, "paths", path_words * directions.len() as u64)?,
         path_words,
-        path: Path::new(device, &penalties, bands[0].words()),
+        path: (!directions.is_empty()).then(|| Path::new(device, &penalties, bands[0].words())),
     };
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let claimed = config.consistency.is_some() && semi_global.other_view == OtherView::Claimed;
@@ -403,7 +404,10 @@ impl Side {
         }
         let [reference, _] = self.census(shared);
         let (costs, paths, start) = (&shared.costs, &shared.paths, (start + row) as u32);
-        plan.run(shared.path.prepare(device, band, direction, reference, costs, paths, start, from.is_some()));
+        // There is one, as there is a path to follow.
+        if let Some(path) = &shared.path {
+            plan.run(path.prepare(device, band, direction, reference, costs, paths, start, from.is_some()));
+        }
     }
 
     /// Costs, paths and answers of a band.

@@ -4,11 +4,12 @@ use super::{
     array::Array,
     bench::Bench,
     case::{Subject, Trial},
-    dice::{Dice, Size},
+    dice::{Dice, Size, smooth_noise},
 };
 use crate::{
     config::Preset,
     dense::{Brightness, Dense, DenseConfig, Matcher},
+    disparity::DisparityRange,
     error::Result,
     image::Luma,
     reference::compute_dense,
@@ -36,12 +37,12 @@ pub struct DenseTrial {
 
 impl DenseTrial {
     fn of_preset(preset: Preset, size: Size, dice: &mut Dice) -> Self {
-        let (range, view) = (dice.range(48), dice.view());
+        let view = dice.view();
         let banded = dice.below(3) == 0;
         let brightness = dice.pick(&[Brightness::SAME, Brightness { gain: 280, offset: -700 }]);
         let reference = if preset == Preset::Paper { preset.config().reference } else { view };
         let band_rows = if banded { 1 + dice.below(size.1) } else { u32::MAX };
-        let [left, right] = dice.pair(size);
+        let (range, [left, right]) = uneven(size, dice);
         Self { left, right, config: DenseConfig { reference, ..preset.config().dense(range, brightness) }, band_rows }
     }
 
@@ -51,6 +52,24 @@ impl DenseTrial {
             Array::exact("confidences", dense.confidence.into_data()),
         ]
     }
+}
+
+/// A pair whose disparities go through the range from left to right, up and down, in more and more noise: for every
+/// penalty and every check there are pixels on which it decides.
+fn uneven((width, height): Size, dice: &mut Dice) -> (DisparityRange, [Luma; 2]) {
+    let range = DisparityRange { min: dice.between(-6, 1), count: 24 + dice.below(25) };
+    let [right, relief, grain] = [0; 3].map(|_| dice.word());
+    let right = smooth_noise(width, height, right);
+    let relief = smooth_noise(width / 8 + 1, height / 8 + 1, relief);
+    let grain = smooth_noise(8 * width, height, grain);
+    let left = Luma::from_fn(width, height, |x, y| {
+        let quarters = 3 * x * range.count / width + u32::from(relief.get(x / 8, y / 8)) * range.count / 256;
+        let disparity = range.min + (quarters / 4) as i32;
+        let noise = i64::from(grain.get(8 * x, y)) - 128;
+        let value = i64::from(right.get_clamped(i64::from(x) - i64::from(disparity), i64::from(y)));
+        (value + noise * i64::from(x) / (6 * i64::from(width))).clamp(0, 255) as u8
+    });
+    (range, [left, right])
 }
 
 impl Trial for DenseTrial {
