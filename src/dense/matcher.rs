@@ -1,5 +1,7 @@
 //! The dense half of one pair size: all kernels, all memory, and the order of things.
 
+use std::time::Duration;
+
 use super::{
     blocks,
     config::{Aggregation, DenseConfig},
@@ -9,7 +11,7 @@ use super::{
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
-    gpu::{Gpu, Readback, guarded},
+    gpu::{Gpu, Readback, Stopwatch, guarded},
     image::{Luma, Plane},
     luma::{check_packed, unpack, upload},
 };
@@ -102,7 +104,7 @@ impl Matcher {
     /// four a word, in rows of `width.div_ceil(4)` words) of every pixel of the reference view in
     /// the caller's buffers, row by row. Both need `COPY_DST`.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer) {
-        self.plan.record(encoder, disparities, confidences);
+        self.plan.record(encoder, disparities, confidences, None);
     }
 }
 
@@ -125,6 +127,22 @@ impl Matcher {
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub fn run(&self, gpu: &Gpu) -> Result<Dense> {
+        self.run_timed(gpu, None)
+    }
+
+    /// As [`Self::run`], with what each kernel took by the device's own clock, in the order in which they ran; of the
+    /// first 2,048, and without copies and clears.
+    ///
+    /// # Errors
+    /// As [`Self::run`], and [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
+    pub fn profile(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
+        let kernels: Vec<_> = self.plan.kernels().collect();
+        let stopwatch = guarded(&gpu.device, "timestamps", || Stopwatch::new(&gpu.device, kernels.len()))?;
+        let dense = self.run_timed(gpu, Some(&stopwatch))?;
+        Ok((dense, kernels.into_iter().zip(stopwatch.read(gpu)?).collect()))
+    }
+
+    fn run_timed(&self, gpu: &Gpu, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
         let (width, height) = self.size;
         let pixels = width as usize * height as usize;
         let device = &gpu.device;
@@ -134,7 +152,10 @@ impl Matcher {
             Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
         })?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
-        self.record(&mut encoder, disparities.buffer(), confidences.buffer());
+        self.plan.record(&mut encoder, disparities.buffer(), confidences.buffer(), stopwatch);
+        if let Some(stopwatch) = stopwatch {
+            stopwatch.resolve(&mut encoder);
+        }
         gpu.queue.submit([encoder.finish()]);
         let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
         let words: Vec<u32> = confidences.read(device, row_words * height as usize)?;

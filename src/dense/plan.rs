@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Dispatch, WordTexture, in_rows, storage_buffer, store},
+    gpu::{Dispatch, Stopwatch, WordTexture, in_rows, storage_buffer, store},
 };
 
 /// One thing to do.
@@ -123,16 +123,29 @@ impl Plan {
         }
     }
 
-    /// Records all steps.
+    /// The kernels, in the order in which they run.
+    pub(super) fn kernels(&self) -> impl Iterator<Item = &'static str> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Run(dispatch) => Some(dispatch.name()),
+            _ => None,
+        })
+    }
+
+    /// Records all steps, and the times of the kernels if there is a `stopwatch`.
     pub(super) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         disparities: &wgpu::Buffer,
         confidences: &wgpu::Buffer,
+        stopwatch: Option<&Stopwatch>,
     ) {
+        let mut kernel = 0;
         for step in &self.steps {
             match step {
-                Step::Run(dispatch) => dispatch.record(encoder),
+                Step::Run(dispatch) => {
+                    dispatch.record_timed(encoder, stopwatch.and_then(|stopwatch| stopwatch.writes(kernel)));
+                    kernel += 1;
+                }
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
                 Step::Copy(Copy { from, from_word, to, to_word, words }) => {

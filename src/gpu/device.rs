@@ -79,7 +79,10 @@ impl Gpu {
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults()
         };
-        let descriptor = wgpu::DeviceDescriptor { label: Some("hsad"), required_limits, ..Default::default() };
+        // Only to tell what kernels take; nothing needs it.
+        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor =
+            wgpu::DeviceDescriptor { label: Some("hsad"), required_features, required_limits, ..Default::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| Error::Unsupported(format!("{}: {e}", adapter.get_info().name)))?;
         Ok(Self { device, queue, info: adapter.get_info() })

@@ -164,10 +164,24 @@ enum Groups {
 }
 
 impl Dispatch {
+    /// The kernel's name.
+    pub(crate) fn name(&self) -> &'static str {
+        self.kernel.name
+    }
+
     /// Records it, in a pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.record_timed(encoder, None);
+    }
+
+    /// The same, with the device's clock at the pass's beginning and end written where `timestamp_writes` says.
+    pub(crate) fn record_timed(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
         let label = Some(self.kernel.name);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
         pass.set_pipeline(&self.kernel.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[]);
         match &self.groups {

@@ -4,6 +4,7 @@ mod device;
 mod kernel;
 mod readback;
 mod shader_struct;
+mod stopwatch;
 mod unroll;
 mod words;
 
@@ -13,5 +14,6 @@ pub use kernel::{Binding, Dispatch, Stage};
 pub(crate) use readback::Readback;
 pub(crate) use shader_struct::shader_struct;
 pub use shader_struct::{Member, ShaderType, Shape};
+pub(crate) use stopwatch::Stopwatch;
 pub use words::WordTexture;
 pub(crate) use words::{ROW_BITS, in_rows, most_words};
