@@ -25,7 +25,7 @@ use hsad::{
 };
 
 const RUNS: usize = 20;
-const PROFILES: usize = 5;
+const PROFILES: usize = 12;
 
 fn main() -> hsad::Result<()> {
     // Cargo adds a --bench of its own.

@@ -73,7 +73,7 @@ pub(super) fn plan(
         let [pad_left, pad_right] = layout.padding(config.brightness);
         plan.run(pad.prepare(device, pad_left, left, &planes.0));
         plan.run(pad.prepare(device, pad_right, right, &planes.0));
-        plan.fill_texture(&planes);
+        plan.fill_texture(&planes.0, &planes.1);
         let others = other_view.as_ref().zip(partners).map(|((find_winners, winners, max_difference), partners)| {
             plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));
             (winners, *max_difference)

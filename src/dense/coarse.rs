@@ -100,7 +100,7 @@ impl Coarse {
         for (params, half) in layout.padding(self.half.brightness).into_iter().zip(&self.halves) {
             plan.run(pad.prepare(device, params, half, &self.planes.0));
         }
-        plan.fill_texture(&self.planes);
+        plan.fill_texture(&self.planes.0, &self.planes.1);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
         plan.run(block_match.prepare(
             device,

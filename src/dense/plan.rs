@@ -11,7 +11,7 @@ pub(super) enum Step {
     Run(Dispatch),
     /// Copies words.
     Copy(Copy),
-    /// Copies a whole buffer to a texture.
+    /// Copies a buffer's first words to a texture.
     ToTexture(wgpu::Buffer, WordTexture),
     /// Sets a whole buffer to 0.
     Clear(wgpu::Buffer),
@@ -70,20 +70,29 @@ impl Plan {
         self.steps.push(Step::Run(dispatch));
     }
 
-    /// Memory for so many words in a buffer and in a texture.
+    /// The same in a texture.
+    pub(super) fn word_texture(
+        &mut self,
+        device: &wgpu::Device,
+        label: &'static str,
+        words: u64,
+    ) -> Result<WordTexture> {
+        self.bytes += 4 * in_rows(words);
+        WordTexture::new(device, label, words)
+    }
+
+    /// Memory for so many words in a buffer that has whole rows of a texture, and in a texture.
     pub(super) fn words(
         &mut self,
         device: &wgpu::Device,
         label: &'static str,
         words: u64,
     ) -> Result<(wgpu::Buffer, WordTexture)> {
-        let buffer = self.buffer(device, label, in_rows(words))?;
-        self.bytes += 4 * in_rows(words);
-        Ok((buffer, WordTexture::new(device, label, words)?))
+        Ok((self.buffer(device, label, in_rows(words))?, self.word_texture(device, label, words)?))
     }
 
-    /// The words of a buffer, on their way to the texture.
-    pub(super) fn fill_texture(&mut self, (buffer, texture): &(wgpu::Buffer, WordTexture)) {
+    /// The first words of a buffer, which has whole rows of the texture, on their way there.
+    pub(super) fn fill_texture(&mut self, buffer: &wgpu::Buffer, texture: &WordTexture) {
         self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
     }
 

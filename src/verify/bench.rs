@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, guarded, storage_buffer},
+    gpu::{Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer},
     image::Luma,
     luma::pack,
 };
@@ -33,6 +33,19 @@ impl<'g> Bench<'g> {
         let buffer = storage_buffer(self.device(), "input", size_of_val(values) as u64)?;
         self.write(&buffer, values);
         Ok(buffer)
+    }
+
+    /// A texture that holds `values`, words one after the other.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`].
+    pub fn upload_words<T: bytemuck::NoUninit>(&self, values: &[T]) -> Result<WordTexture> {
+        let words = (size_of_val(values) as u64).div_ceil(4);
+        let texture = WordTexture::new(self.device(), "input", words)?;
+        let buffer = storage_buffer(self.device(), "input", 4 * in_rows(words))?;
+        self.write(&buffer, values);
+        self.run(|encoder| texture.record(encoder, &buffer));
+        Ok(texture)
     }
 
     /// A picture, packed, in a storage buffer.
