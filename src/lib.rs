@@ -35,6 +35,18 @@
 //! }
 //! ```
 //!
+//! These wait for the device. [`pipeline::run_async`], [`dense::compute_async`] and all others that end in `_async` are
+//! awaited instead, in an application's own loop or in a browser, where there are no others:
+//!
+//! ```
+//! # use hsad::{gpu::Gpu, dense::{self, Dense, DenseConfig}, image::Luma};
+//! async fn disparity(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> hsad::Result<Dense> {
+//!     dense::compute_async(gpu, left, right, config).await
+//! }
+//! ```
+//!
+//! What they wait for natively comes when [`wgpu::Device::poll`] is called, on any thread, or work is submitted.
+//!
 //! # Conventions
 //!
 //! - Pixel centres lie at whole numbers, the origin at the top left, x to the right, y down; planes are row-major.
@@ -73,7 +85,7 @@ pub mod pipeline;
 pub mod reference;
 pub mod seeding;
 pub mod sparse;
-#[cfg(feature = "verify")]
+#[cfg(all(feature = "verify", not(target_arch = "wasm32")))]
 pub mod verify;
 
 pub use error::{Error, Result};

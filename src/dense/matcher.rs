@@ -8,6 +8,8 @@ use super::{
     plan::Plan,
     semi_global,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
@@ -51,6 +53,7 @@ impl Matcher {
     /// # Errors
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
     /// the device cannot bind, and what the device says.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
         device: &wgpu::Device,
         size: (u32, u32),
@@ -58,14 +61,44 @@ impl Matcher {
         left: &wgpu::Buffer,
         right: &wgpu::Buffer,
     ) -> Result<Self> {
-        Self::with_band_rows(device, size, config, left, right, u32::MAX)
+        wait(device, Self::new_async(device, size, config, left, right))
+    }
+
+    /// As [`Matcher::new`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::new`].
+    pub async fn new_async(
+        device: &wgpu::Device,
+        size: (u32, u32),
+        config: &DenseConfig,
+        left: &wgpu::Buffer,
+        right: &wgpu::Buffer,
+    ) -> Result<Self> {
+        Self::with_band_rows_async(device, size, config, left, right, u32::MAX).await
     }
 
     /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
     ///
     /// # Errors
     /// As [`Self::new`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn with_band_rows(
+        device: &wgpu::Device,
+        size: (u32, u32),
+        config: &DenseConfig,
+        left: &wgpu::Buffer,
+        right: &wgpu::Buffer,
+        band_rows: u32,
+    ) -> Result<Self> {
+        wait(device, Self::with_band_rows_async(device, size, config, left, right, band_rows))
+    }
+
+    /// As [`Matcher::with_band_rows`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::new`].
+    pub async fn with_band_rows_async(
         device: &wgpu::Device,
         size: (u32, u32),
         config: &DenseConfig,
@@ -86,7 +119,8 @@ impl Matcher {
             Aggregation::Paths(paths) => {
                 semi_global::plan(device, size, config, paths, [left, right], (limit, band_rows))
             }
-        })?;
+        })
+        .await?;
         Ok(Self { size, plan })
     }
 
@@ -112,13 +146,22 @@ impl Matcher {
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    wait(&gpu.device, compute_async(gpu, left, right, config))
+}
+
+/// As [`compute`], without blocking.
+///
+/// # Errors
+/// As [`compute`].
+pub async fn compute_async(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let (left_luma, right_luma) = (upload(gpu, left)?, upload(gpu, right)?);
-    let matcher = Matcher::new(&gpu.device, left.size(), config, &left_luma, &right_luma)?;
-    matcher.run(gpu)
+    let (left_luma, right_luma) = (upload(gpu, left).await?, upload(gpu, right).await?);
+    let matcher = Matcher::new_async(&gpu.device, left.size(), config, &left_luma, &right_luma).await?;
+    matcher.run_async(gpu).await
 }
 
 impl Matcher {
@@ -126,8 +169,17 @@ impl Matcher {
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn run(&self, gpu: &Gpu) -> Result<Dense> {
-        self.run_timed(gpu, None)
+        wait(&gpu.device, self.run_async(gpu))
+    }
+
+    /// As [`Matcher::run`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::run`].
+    pub async fn run_async(&self, gpu: &Gpu) -> Result<Dense> {
+        self.run_timed(gpu, None).await
     }
 
     /// As [`Self::run`], with what each kernel took by the device's own clock, in the order in which they ran; of the
@@ -135,14 +187,23 @@ impl Matcher {
     ///
     /// # Errors
     /// As [`Self::run`], and [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn profile(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
-        let kernels: Vec<_> = self.plan.kernels().collect();
-        let stopwatch = guarded(&gpu.device, "timestamps", || Stopwatch::new(&gpu.device, kernels.len()))?;
-        let dense = self.run_timed(gpu, Some(&stopwatch))?;
-        Ok((dense, kernels.into_iter().zip(stopwatch.read(gpu)?).collect()))
+        wait(&gpu.device, self.profile_async(gpu))
     }
 
-    fn run_timed(&self, gpu: &Gpu, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
+    /// As [`Matcher::profile`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::profile`].
+    pub async fn profile_async(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
+        let kernels: Vec<_> = self.plan.kernels().collect();
+        let stopwatch = guarded(&gpu.device, "timestamps", || Stopwatch::new(&gpu.device, kernels.len())).await?;
+        let dense = self.run_timed(gpu, Some(&stopwatch)).await?;
+        Ok((dense, kernels.into_iter().zip(stopwatch.read(gpu).await?).collect()))
+    }
+
+    async fn run_timed(&self, gpu: &Gpu, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
         let (width, height) = self.size;
         let pixels = width as usize * height as usize;
         let device = &gpu.device;
@@ -150,15 +211,16 @@ impl Matcher {
         let [disparities, confidences] = guarded(device, "the disparity map", || {
             let lengths = [("disparities", pixels), ("confidences", row_words * height as usize)];
             Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
-        })?;
+        })
+        .await?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
         self.plan.record(&mut encoder, disparities.buffer(), confidences.buffer(), stopwatch);
         if let Some(stopwatch) = stopwatch {
             stopwatch.resolve(&mut encoder);
         }
         gpu.queue.submit([encoder.finish()]);
-        let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
-        let words: Vec<u32> = confidences.read(device, row_words * height as usize)?;
+        let disparity = Plane::new(width, height, disparities.read(pixels).await?)?;
+        let words: Vec<u32> = confidences.read(row_words * height as usize).await?;
         let confidence = unpack(width, height, &words);
         Ok(Dense { disparity, confidence })
     }

@@ -47,7 +47,9 @@ pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
 pub use halve::Halve;
-pub use matcher::{Dense, Matcher, compute};
+#[cfg(not(target_arch = "wasm32"))]
+pub use matcher::compute;
+pub use matcher::{Dense, Matcher, compute_async};
 pub use pad::{Brightness, Pad, PadParams};
 pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};

@@ -12,6 +12,8 @@ use super::{
     too_many,
     workgroups::Workgroups,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     error::Result,
     gpu::{Gpu, Readback, guarded},
@@ -42,7 +44,22 @@ impl Detector {
     /// # Errors
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
+        device: &wgpu::Device,
+        luma: &wgpu::Buffer,
+        width: u32,
+        height: u32,
+        config: &FeatureConfig,
+    ) -> Result<Self> {
+        wait(device, Self::new_async(device, luma, width, height, config))
+    }
+
+    /// As [`Detector::new`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Detector::new`].
+    pub async fn new_async(
         device: &wgpu::Device,
         luma: &wgpu::Buffer,
         width: u32,
@@ -64,6 +81,7 @@ impl Detector {
             let descriptor = Descriptor::new(device, integral, list, groups, size, config.upright)?;
             Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor })
         })
+        .await
     }
 
     /// Records everything from the integral image to the descriptors.
@@ -86,11 +104,20 @@ impl Detector {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
+        wait(device, self.read_async(device, queue))
+    }
+
+    /// As [`Detector::read`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Detector::read`].
+    pub async fn read_async(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
         let list = self.nonmax.list();
         let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
         submit(device, queue, |encoder| count.record(encoder, list.found()));
-        let found = count.read::<u32>(device, 1)?[0];
+        let found = count.read::<u32>(1).await?[0];
         if found > list.capacity() {
             return Err(too_many(found as usize, list.capacity()));
         }
@@ -105,8 +132,8 @@ impl Detector {
             keypoints.record(encoder, list.keypoints());
             descriptors.record(encoder, self.descriptor.descriptors());
         });
-        let keypoints = keypoints.read::<Keypoint>(device, found)?;
-        let descriptors = descriptors.read::<Values>(device, found)?;
+        let keypoints = keypoints.read::<Keypoint>(found).await?;
+        let descriptors = descriptors.read::<Values>(found).await?;
 
         let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
         features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
@@ -120,12 +147,21 @@ impl Detector {
 ///
 /// # Errors
 /// Those of [`Detector::new`] and [`Detector::read`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+    wait(&gpu.device, detect_async(gpu, picture, config))
+}
+
+/// As [`detect`], without blocking.
+///
+/// # Errors
+/// As [`detect`].
+pub async fn detect_async(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     let (width, height) = picture.size();
-    let buffer = upload(gpu, picture)?;
-    let detector = Detector::new(&gpu.device, &buffer, width, height, config)?;
+    let buffer = upload(gpu, picture).await?;
+    let detector = Detector::new_async(&gpu.device, &buffer, width, height, config).await?;
     submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder));
-    detector.read(&gpu.device, &gpu.queue)
+    detector.read_async(&gpu.device, &gpu.queue).await
 }
 
 fn submit(device: &wgpu::Device, queue: &wgpu::Queue, record: impl FnOnce(&mut wgpu::CommandEncoder)) {

@@ -248,17 +248,24 @@ pub(crate) fn uniform_buffer<P: bytemuck::NoUninit>(
 
 /// Runs `build`, which creates things on `device`, and turns what the device has to say about it
 /// into an [`Error`] instead of a call of the application's error handler.
-pub(crate) fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let built = build();
-    for scope in [internal, memory, validation] {
-        match pollster::block_on(scope.pop()) {
+pub(crate) async fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+    let (built, said) = scoped(device, build);
+    for error in said {
+        match error.await {
             None => {}
             Some(wgpu::Error::OutOfMemory { .. }) => return Err(Error::OutOfMemory(what.into())),
             Some(error) => return Err(Error::Unsupported(format!("{what}: {error}"))),
         }
     }
     built
+}
+
+/// What `build` returns, and what the device will have to say. Whatever else happens before that is known lies outside
+/// the scopes: they have ended.
+fn scoped<T>(device: &wgpu::Device, build: impl FnOnce() -> T) -> (T, [impl Future<Output = Option<wgpu::Error>>; 3]) {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let built = build();
+    (built, [internal.pop(), memory.pop(), validation.pop()])
 }

@@ -61,8 +61,8 @@ impl Stopwatch {
     ///
     /// # Errors
     /// [`Error::DeviceLost`].
-    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<Duration>> {
-        let ticks: Vec<u64> = self.times.read(&gpu.device, 2 * self.kernels as usize)?;
+    pub(crate) async fn read(&self, gpu: &Gpu) -> Result<Vec<Duration>> {
+        let ticks: Vec<u64> = self.times.read(2 * self.kernels as usize).await?;
         let seconds = f64::from(gpu.queue.get_timestamp_period()) / 1e9;
         let took = |times: &[u64]| Duration::from_secs_f64(times[1].saturating_sub(times[0]) as f64 * seconds);
         Ok(ticks.chunks_exact(2).map(took).collect())

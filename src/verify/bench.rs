@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer},
+    gpu::{Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer, wait},
     image::Luma,
     luma::pack,
 };
@@ -90,7 +90,7 @@ impl<'g> Bench<'g> {
     pub fn download<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>> {
         let readback = Readback::new(self.device(), "result", buffer.size());
         self.run(|encoder| readback.record(encoder, buffer));
-        readback.read(self.device(), buffer.size() as usize / size_of::<T>())
+        wait(self.device(), readback.read(buffer.size() as usize / size_of::<T>()))
     }
 
     /// What `work` returns, or what the device has to say against it.
@@ -98,6 +98,6 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// Those of `work`; [`crate::Error::Unsupported`], [`crate::Error::OutOfMemory`].
     pub fn guarded<T>(&self, what: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        guarded(self.device(), what, work)
+        wait(self.device(), guarded(self.device(), what, work))
     }
 }
