@@ -1,8 +1,9 @@
 // What is to be searched in each cell of a picture, from a disparity map of half its size: from the smallest to the
-// largest disparity in and around the cell, but for a few that may be wrong, and some on either side. Where there
-// are too few, the whole range.
+// largest disparity in and around the cell, and some on either side. Where there are too few, the whole range.
 //
-// A workgroup finds one cell's, by way of a histogram.
+// So that a few wrong pixels do not widen it, blocks of BLOCK x BLOCK pixels have a say, each with its third smallest
+// disparity and its third largest. A workgroup looks at a square of blocks, and finds the ranges of the
+// cells for which it has all those around.
 
 struct Params {
     // The rows of the map that are there.
@@ -10,13 +11,9 @@ struct Params {
     rows: u32,
     // The first cell's row among them.
     first_row: i32,
-    // Cells in a row.
+    // Cells in a row, and rows of them.
     columns: u32,
-    // The map's range.
-    coarse_min: i32,
-    coarse_disparities: u32,
-    // A bin holds 2^bin_bits of its disparities.
-    bin_bits: u32,
+    cell_rows: u32,
     // The whole range.
     min_disparity: i32,
     disparities: u32,
@@ -28,59 +25,82 @@ struct Params {
 // The index of the first disparity, and how many.
 @group(0) @binding(2) var<storage, read_write> ranges: array<vec2<u32>>;
 
-const THREADS = 64u;
+// What a block says: its third smallest disparity and its third largest, as whole numbers, and how many it has.
+struct Block {
+    low: i32,
+    high: i32,
+    known: u32,
+}
 
-var<workgroup> histogram: array<atomic<u32>, BINS>;
+var<workgroup> blocks: array<Block, BLOCKS * BLOCKS>;
 
-@compute @workgroup_size(THREADS)
-fn main(@builtin(workgroup_id) cell: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
-    let bins = ((params.coarse_disparities - 1u) >> params.bin_bits) + 1u;
-    for (var bin = thread; bin < bins; bin += THREADS) {
-        atomicStore(&histogram[bin], 0u);
-    }
-    workgroupBarrier();
-
-    let corner = vec2<i32>(0, params.first_row) + SIDE * vec2<i32>(cell.xy) - REACH;
-    let first = max(corner, vec2<i32>(0));
-    let end = min(corner + SIDE + 2 * REACH, vec2<i32>(vec2<u32>(params.width, params.rows)));
-    // In squares of 8x8, without a division.
-    for (var y = first.y + i32(thread / 8u); y < end.y; y += 8) {
-        for (var x = first.x + i32(thread % 8u); x < end.x; x += 8) {
-            let disparity = map[u32(y) * params.width + u32(x)];
-            let nearest = (disparity + SCALE / 2) >> firstTrailingBit(u32(SCALE));
-            let index = clamp(nearest - params.coarse_min, 0, i32(params.coarse_disparities) - 1);
-            if disparity != NONE {
-                atomicAdd(&histogram[u32(index) >> params.bin_bits], 1u);
-            }
+// The block whose first pixel this is, which may lie outside.
+fn block_at(first: vec2<i32>) -> Block {
+    let size = vec2<i32>(vec2<u32>(params.width, params.rows));
+    var lowest = FAR;
+    var highest = -FAR;
+    var second_lowest = FAR;
+    var second_highest = -FAR;
+    var third_lowest = FAR;
+    var third_highest = -FAR;
+    var known = 0u;
+    for (var j = 0; j < BLOCK; j++) { // unroll
+        for (var i = 0; i < BLOCK; i++) { // unroll
+            let at = first + vec2<i32>(i, j);
+            let nearest = clamp(at, vec2<i32>(0), size - 1);
+            let disparity = map[nearest.y * size.x + nearest.x];
+            let is_known = disparity != NONE && all(at == nearest);
+            let whole = (disparity + SCALE / 2) >> SCALE_BITS;
+            let low = select(FAR, whole, is_known);
+            let high = select(-FAR, whole, is_known);
+            third_lowest = min(third_lowest, max(second_lowest, low));
+            third_highest = max(third_highest, min(second_highest, high));
+            second_lowest = min(second_lowest, max(lowest, low));
+            second_highest = max(second_highest, min(highest, high));
+            lowest = min(lowest, low);
+            highest = max(highest, high);
+            known += select(0u, 1u, is_known);
         }
     }
+    if known < 3u {
+        return Block(FAR, -FAR, known);
+    }
+    // Of three and four they lie the other way round.
+    return Block(min(third_lowest, third_highest), max(third_lowest, third_highest), known);
+}
+
+@compute @workgroup_size(BLOCKS, BLOCKS)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_id) local: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let first_cell = CELLS * group.xy;
+    let corner = SIDE * vec2<i32>(first_cell) + vec2<i32>(0, params.first_row) - REACH;
+    blocks[thread] = block_at(corner + BLOCK * vec2<i32>(local.xy));
     workgroupBarrier();
 
-    if thread > 0u {
+    let cell = first_cell + local.xy;
+    if local.x >= CELLS || local.y >= CELLS || cell.x >= params.columns || cell.y >= params.cell_rows {
         return;
     }
-    var estimated = 0u;
-    for (var bin = 0u; bin < bins; bin++) {
-        estimated += atomicLoad(&histogram[bin]);
+    var around = Block(FAR, -FAR, 0u);
+    for (var j = 0u; j < AROUND; j++) {
+        for (var i = 0u; i < AROUND; i++) {
+            let block = blocks[(STEP * local.y + j) * BLOCKS + STEP * local.x + i];
+            around.low = min(around.low, block.low);
+            around.high = max(around.high, block.high);
+            around.known += block.known;
+        }
     }
-    let wrong = estimated * OUTLIERS / 100u;
-    // The bins of the disparities that have just as many below, and above.
-    var low = 0u;
-    var high = 0u;
-    var below = 0u;
-    for (var bin = 0u; bin < bins; bin++) {
-        low = select(low, bin, below <= wrong);
-        below += atomicLoad(&histogram[bin]);
-        high = select(high, bin + 1u, below + wrong < estimated);
-    }
-    let last_of_bin = (1 << params.bin_bits) - 1;
-    let lowest = params.coarse_min + i32(low << params.bin_bits);
-    let highest = params.coarse_min + i32(high << params.bin_bits) + last_of_bin;
     let last_index = i32(params.disparities) - 1;
-    let first_index = clamp(2 * lowest - MARGIN - params.min_disparity, 0, last_index);
-    let end_index = clamp(2 * highest + MARGIN - params.min_disparity, 0, last_index) + 1;
-    let pixels = u32((end.x - first.x) * (end.y - first.y));
-    let enough = estimated > 0u && 100u * estimated >= LEAST * pixels;
+    let first_index = clamp(2 * around.low - MARGIN - params.min_disparity, 0, last_index);
+    let end_index = clamp(2 * around.high + MARGIN - params.min_disparity, 0, last_index) + 1;
+    // The pixels in and around the cell that are in the map.
+    let from_corner = SIDE * vec2<i32>(cell) + vec2<i32>(0, params.first_row) - REACH;
+    let size = vec2<i32>(vec2<u32>(params.width, params.rows));
+    let covered = min(from_corner + SIDE + 2 * REACH, size) - max(from_corner, vec2<i32>(0));
+    let is_enough = around.low < FAR && 100u * around.known >= LEAST * u32(covered.x * covered.y);
     let found = vec2<u32>(u32(first_index), u32(end_index - first_index));
-    ranges[cell.y * params.columns + cell.x] = select(vec2<u32>(0u, params.disparities), found, enough);
+    ranges[cell.y * params.columns + cell.x] = select(vec2<u32>(0u, params.disparities), found, is_enough);
 }

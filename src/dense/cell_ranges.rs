@@ -6,22 +6,25 @@ use crate::{
     gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
-/// Per cent of a cell's smallest disparities, and of its largest, that are taken for wrong.
-pub const OUTLIERS: u32 = 3;
-
 /// Disparities that are searched beyond the rest, at either end.
-pub const MARGIN: u32 = 3;
+pub const MARGIN: u32 = 2;
 
 /// Per cent of a cell's pixels that must have a disparity, or the whole range is searched.
 pub const LEAST: u32 = 10;
 
-/// Disparities that are told apart; of longer ranges neighbours are taken together.
-const BINS: u32 = 1024;
+/// The side of the blocks of the map that have a say, each with its third smallest disparity and its third
+/// largest.
+pub const BLOCK: u32 = 4;
 
-/// The bits by which an index of so many disparities is shifted to tell no more of them apart than there are bins.
-pub fn bin_bits(disparities: u32) -> u32 {
-    (0..32).find(|bits| (disparities - 1) >> bits < BINS).unwrap_or(0)
-}
+/// Blocks from one cell to the next, of those in and around a cell, and of those that a workgroup looks at, along a side.
+const STEP: u32 = CELL / 2 / BLOCK;
+const AROUND: u32 = STEP + REACH / BLOCK;
+const BLOCKS: u32 = 16;
+/// Cells along a side of which a workgroup has all blocks.
+const CELLS: u32 = (BLOCKS - AROUND) / STEP + 1;
+
+/// More than any disparity, and less than half of what an `i32` holds.
+const FAR: i64 = 1 << 24;
 
 shader_struct! {
     struct Params {
@@ -29,9 +32,7 @@ shader_struct! {
         rows: u32,
         first_row: i32,
         columns: u32,
-        coarse_min: i32,
-        coarse_disparities: u32,
-        bin_bits: u32,
+        cell_rows: u32,
         min_disparity: i32,
         disparities: u32,
     }
@@ -50,11 +51,16 @@ impl CellRanges {
             constants: vec![
                 ("SIDE", (CELL / 2).into()),
                 ("REACH", (REACH / 2).into()),
-                ("OUTLIERS", OUTLIERS.into()),
                 ("MARGIN", MARGIN.into()),
                 ("LEAST", LEAST.into()),
-                ("BINS", BINS.into()),
+                ("BLOCK", BLOCK.into()),
+                ("BLOCKS", BLOCKS.into()),
+                ("STEP", STEP.into()),
+                ("AROUND", AROUND.into()),
+                ("CELLS", CELLS.into()),
+                ("FAR", FAR),
                 ("SCALE", SCALE.into()),
+                ("SCALE_BITS", SCALE.trailing_zeros().into()),
                 ("NONE", NONE.into()),
             ],
         }
@@ -79,13 +85,11 @@ impl CellRanges {
             rows: band.map_rows,
             first_row: band.map_start,
             columns: band.columns,
-            coarse_min: band.map_range.min,
-            coarse_disparities: band.map_range.count,
-            bin_bits: bin_bits(band.map_range.count),
+            cell_rows: band.rows,
             min_disparity: band.range.min,
             disparities: band.range.count,
         };
-        let groups = [band.columns, band.rows, 1];
+        let groups = [band.columns.div_ceil(CELLS), band.rows.div_ceil(CELLS), 1];
         self.0.dispatch(device, &[&uniform_buffer(device, "cell_ranges", &params), map, ranges], groups)
     }
 }

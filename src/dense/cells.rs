@@ -6,7 +6,7 @@ use super::config::DenseConfig;
 use crate::disparity::DisparityRange;
 
 /// The side of a cell in pixels.
-pub const CELL: u32 = 32;
+pub const CELL: u32 = 16;
 
 /// Pixels around a cell that have a say in what is searched there.
 pub const REACH: u32 = 8;
@@ -113,9 +113,9 @@ mod tests {
     fn a_band_looks_at_its_surroundings() {
         let range = DisparityRange { min: 0, count: 10 };
         let band = CellBand::new((100, 130), (64, 40), range);
-        assert_eq!((band.columns, band.rows, band.words()), (4, 2, 16));
-        // Rows 64 to 128 and 8 more around, halved, of a map of 65.
-        assert_eq!((band.map_first_row, band.map_rows, band.map_start), (28, 37, 4));
+        assert_eq!((band.columns, band.rows, band.words()), (7, 3, 42));
+        // Rows 64 to 112 and 8 more around, halved.
+        assert_eq!((band.map_first_row, band.map_rows, band.map_start), (28, 32, 4));
         assert_eq!(CellBand::new((100, 130), (0, 32), range).map_start, 0);
     }
 }

@@ -61,7 +61,6 @@ pub struct CellRangesTrial {
 
 impl CellRangesTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        // Also more disparities than there are bins.
         let range = dice.pick(&[(0, 64), (-9, 33), (5, 1), (-3000, 6001)]);
         let range = DisparityRange { min: range.0, count: range.1 };
         let half = (size.0.div_ceil(2), size.1.div_ceil(2));

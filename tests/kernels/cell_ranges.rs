@@ -10,7 +10,6 @@ use crate::common::*;
 
 #[test]
 fn the_twin_finds_the_same_ranges() {
-    // The last has more disparities than there are bins.
     for (min, count) in [(0, 64), (-9, 33), (5, 1), (-3000, 6001)] {
         let range = DisparityRange::new(min, count).unwrap();
         for (width, height) in SIZES {
@@ -30,27 +29,36 @@ fn the_twin_finds_the_same_ranges() {
 
 #[test]
 fn a_cell_by_hand() {
-    // One cell, of 16x16 pixels at half the size: 3 % of 256 are 7.
+    // One cell, of 8x8 pixels at half the size: four blocks of 4x4.
     let range = DisparityRange::new(0, 64).unwrap();
     let found = |map: Vec<i32>| {
-        let map = Plane::new(16, 16, map).unwrap();
-        leaves(&CellRangesTrial { size: (32, 32), map, range }).remove(0)
-    };
-    let map = |low: usize, high: usize| {
-        let mut map = vec![10 * SCALE; 256];
-        map[..low].fill(4 * SCALE);
-        map[256 - high..].fill(20 * SCALE - SCALE / 2);
-        map
+        let map = Plane::new(8, 8, map).unwrap();
+        leaves(&CellRangesTrial { size: (16, 16), map, range }).remove(0)
     };
     let range = |first: u32, count: u32| Values::from(vec![first, count]);
-    // Halves go up. 2 x 10 - 3 to 2 x 10 + 3, if no more than seven are off.
-    assert_eq!(found(map(7, 7)), range(17, 7));
-    assert_eq!(found(map(8, 7)), range(5, 19));
-    assert_eq!(found(map(7, 8)), range(17, 27));
-    // Of 256, 26 are 10 %.
-    let mut thin = map(0, 0);
-    thin[26..].fill(NONE);
-    assert_eq!(found(thin.clone()), range(17, 7));
-    thin[25] = NONE;
+    let mut map = vec![10 * SCALE; 64];
+    // 2 x 10 - 2 to 2 x 10 + 2.
+    assert_eq!(found(map.clone()), range(18, 5));
+    // Two pixels of a block that are off have no say, in however many blocks; three have. Halves go up.
+    for i in [0, 1, 4, 5] {
+        map[i] = 4 * SCALE;
+    }
+    map[54] = 21 * SCALE;
+    map[63] = 20 * SCALE - SCALE / 2;
+    assert_eq!(found(map.clone()), range(18, 5));
+    map[6] = 5 * SCALE;
+    assert_eq!(found(map.clone()), range(8, 15));
+    map[62] = 22 * SCALE;
+    assert_eq!(found(map), range(8, 35));
+    // Of 64, 7 are at least 10 %, of which three must lie in one block.
+    let mut thin = vec![NONE; 64];
+    thin[..7].fill(10 * SCALE);
+    assert_eq!(found(thin.clone()), range(18, 5));
+    thin[0] = NONE;
     assert_eq!(found(thin), range(0, 64));
+    let mut scattered = vec![NONE; 64];
+    for i in [0, 1, 4, 5, 32, 33, 36] {
+        scattered[i] = 10 * SCALE;
+    }
+    assert_eq!(found(scattered), range(0, 64));
 }

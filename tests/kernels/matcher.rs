@@ -9,8 +9,8 @@ use std::{
 use hsad::{
     config::Preset,
     dense::{
-        self, Aggregation, Brightness, Cost, DenseConfig, Difference, Matcher, OtherView, Paths, Penalties, Refinement,
-        Search, SemiGlobal, View,
+        self, Aggregation, Brightness, CELL, Cost, DenseConfig, Difference, Matcher, OtherView, Paths, Penalties,
+        Refinement, Search, SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
     error::Error,
@@ -99,9 +99,9 @@ fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
     let [left, right] = [left, right].map(|view| bench().upload_luma(view).unwrap());
     for rows in [1, 7, 64, 130] {
         let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, &left, &right, rows).unwrap();
-        // Whole cells of 32 rows, where each has a range of its own.
+        // Whole cells, where each has a range of its own.
         let in_cells = *config == coarse_to_fine(View::Left);
-        let rows_of_band = if in_cells { (rows / 32 * 32).max(32) } else { rows };
+        let rows_of_band = if in_cells { (rows / CELL * CELL).max(CELL) } else { rows };
         assert_eq!(banded.bands(), 131_usize.div_ceil(rows_of_band as usize));
         let banded = banded.run(gpu()).unwrap();
         assert_same(&format!("bands of {rows}"), banded.disparity.data(), whole.disparity.data());

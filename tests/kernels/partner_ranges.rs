@@ -26,11 +26,11 @@ fn the_twin_finds_the_same_ranges() {
 
 #[test]
 fn by_hand() {
-    // The second of three cells, pixels 32 to 63 with disparities 10 to 40: from any of these to the first cell of the
-    // right view, with 10 to 31 to the second.
+    // The second of three cells, pixels 16 to 31 with disparities 5 to 20: from any of these to the first cell of the
+    // right view, with 5 to 15 to the second.
     let range = DisparityRange::new(0, 50).unwrap();
-    let cells: CellPlane = Plane::new(3, 1, vec![(0, 0), (10, 31), (0, 0)]).unwrap();
+    let cells: CellPlane = Plane::new(3, 1, vec![(0, 0), (5, 16), (0, 0)]).unwrap();
     let partners = |view| leaves(&PartnerRangesTrial { cells: cells.clone(), view, range }).remove(0);
-    assert_eq!(partners(View::Left), vec![10_u32, 31, 10, 22, 0, 0].into());
-    assert_eq!(partners(View::Right), vec![0_u32, 0, 10, 22, 10, 31].into());
+    assert_eq!(partners(View::Left), vec![5_u32, 16, 5, 11, 0, 0].into());
+    assert_eq!(partners(View::Right), vec![0_u32, 0, 5, 11, 5, 16].into());
 }
