@@ -2,25 +2,27 @@
 //! of another size.
 //!
 //! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
-//! from either view -> confirmed by their neighbours.
+//! from either view -> confirmed by their neighbours. Pictures of one size share a detector.
 //!
 //! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
 //! were found to correspond after the views were turned alike.
 
 mod agreement;
 mod align;
+mod detecting;
 
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
 use crate::{
     error::Result,
-    features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    features::{Feature, FeatureConfig},
     filter::gaussian,
     image::Luma,
-    matching::{Match, MatchConfig, Rows, Seed, match_features, refine},
+    matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
     pair::Backend,
 };
+use detecting::Detecting;
 
 /// How points are found and matched.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,9 +85,9 @@ pub struct Sparse {
 
 /// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy;
 /// 0, for none, is the first.
-const SIGMAS: [f64; 3] = [0.0, 1.0, 2.0];
+const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// By view which of them, besides none.
-const PAIRS: [[usize; 2]; 5] = [[1, 0], [2, 0], [0, 1], [0, 2], [1, 1]];
+const PAIRS: [[usize; 2]; 7] = [[1, 0], [2, 0], [3, 0], [0, 1], [0, 2], [0, 3], [1, 1]];
 /// Smoothing must bring so many times the matches to be better than none: it takes away details.
 const CLEARLY_MORE: f64 = 1.25;
 /// Rows of features in corresponding rows differ by so much at most, in pixels.
@@ -95,18 +97,31 @@ const MAX_RETURN: f32 = 1.0;
 /// Neighbours confirm a match up to this part of the first view's larger side.
 const NEIGHBOURHOOD: f32 = 1.0 / 12.0;
 /// The least share of its neighbours that agree with a match.
-const LEAST_AGREEMENT: f32 = 0.25;
+const LEAST_AGREEMENT: f32 = 0.375;
 
 /// A picture and its features.
 struct View {
     luma: Luma,
     features: Vec<Feature>,
+    /// Standard deviation, in pixels, of the Gaussian that it was smoothed by.
+    sigma: f64,
 }
 
 impl View {
-    fn new(backend: &Backend, luma: Luma, config: &FeatureConfig) -> Result<Self> {
-        let features = backend.features(&luma, config)?;
-        Ok(Self { luma, features })
+    /// A picture as it is.
+    fn new(detecting: &mut Detecting, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = detecting.features(&luma, config)?;
+        Ok(Self { luma, features, sigma: 0.0 })
+    }
+
+    /// The same smoothed by each of [`SIGMAS`].
+    fn smoothed(self, detecting: &mut Detecting, config: &FeatureConfig) -> Result<Vec<Self>> {
+        let mut views = vec![self];
+        for &sigma in &SIGMAS[1..] {
+            let luma = gaussian(&views[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
+            views.push(Self { sigma, ..Self::new(detecting, luma, config)? });
+        }
+        Ok(views)
     }
 }
 
@@ -120,20 +135,23 @@ type Indexed = (Seed, [usize; 2]);
 pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &SparseConfig) -> Result<Sparse> {
     config.validate()?;
     let SparseConfig { features, matching, adapt } = config;
-    let first = View::new(backend, first.clone(), features)?;
+    let mut detecting = Detecting::new(backend);
+    let first = View::new(&mut detecting, first.clone(), features)?;
     if !adapt {
-        let second = View::new(backend, second.clone(), features)?;
+        let second = View::new(&mut detecting, second.clone(), features)?;
         let found = match_features(&first.features, &second.features, matching)?;
         let seeds = refined(&first, &second, &found, Rows::Matched);
-        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false, [0.0; 2]));
+        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false));
     }
 
-    let align::Aligned { view: second, map, rectified } = align::align(backend, &first, second, features, matching)?;
+    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
+    // Before the second view is turned, as that has another size then.
+    let mut firsts = first.smoothed(&mut detecting, features)?;
+    let align::Aligned { view: second, map, rectified } =
+        align::align(&mut detecting, &firsts[0], second, features, matching)?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
-    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
-    let mut firsts = smoothed(backend, first, features)?;
-    let mut seconds = smoothed(backend, second, features)?;
+    let mut seconds = second.smoothed(&mut detecting, features)?;
     let found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
         let (first, second) = (&firsts[a], &seconds[b]);
         let found = match_features(&first.features, &second.features, &matching)?;
@@ -152,54 +170,34 @@ pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &Spar
         }
     }
     let views = [firsts.swap_remove(chosen[0]), seconds.swap_remove(chosen[1])];
-    Ok(finished(views, seeds, map, rectified, chosen.map(|index| SIGMAS[index])))
-}
-
-/// A view smoothed by each of [`SIGMAS`].
-fn smoothed(backend: &Backend, view: View, config: &FeatureConfig) -> Result<Vec<View>> {
-    let mut views = Vec::new();
-    for sigma in &SIGMAS[1..] {
-        let luma = gaussian(&view.luma.map(|&grey| [grey]), *sigma).map(|&[grey]| grey);
-        views.push(View::new(backend, luma, config)?);
-    }
-    views.insert(0, view);
-    Ok(views)
+    Ok(finished(views, seeds, map, rectified))
 }
 
 /// The matches that have a clear place, with the indices of their features.
 fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<Indexed> {
     let refine_one = |found: &Match| {
-        let features = (&first.features[..], &second.features[..]);
-        let seed = refine((&first.luma, &second.luma), features, std::slice::from_ref(found), rows).first().copied()?;
+        let seed = Seed::from_match(&first.features, &second.features, found);
+        let seed = locate((&first.luma, &second.luma), &seed, rows, window(first, second))?;
         Some((seed, [found.left, found.right]))
     };
     matches.par_iter().filter_map(refine_one).collect()
 }
 
+/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, this
+/// one shows nothing as small as that, and it takes a larger window to see as much.
+fn window(first: &View, second: &View) -> i64 {
+    matching::HALF + (first.sigma - second.sigma).abs().round() as i64
+}
+
 /// Whether the window around the place in the second view is found again where it comes from. At the edge of a surface,
 /// or where one view shows what the other hides, it is not.
 fn returns(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
-    let feature = |x, y| Feature { x, y, ..NOWHERE };
-    let back = refine(
-        (&second.luma, &first.luma),
-        (&[feature(seed.right_x(), seed.right_y())], &[feature(seed.x, seed.y)]),
-        &[Match { left: 0, right: 0, distance: 0.0, confidence: 1.0 }],
-        rows,
-    );
+    let there =
+        Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };
+    let back = locate((&second.luma, &first.luma), &there, rows, window(first, second));
     // Both disparities, whose signs differ: places are on whole pixels, each of its own view.
-    back.first().is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
+    back.is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
 }
-
-/// A feature of which only the place matters.
-const NOWHERE: Feature = Feature {
-    x: 0.0,
-    y: 0.0,
-    scale: 1.0,
-    response: 0.0,
-    dark: false,
-    orientation: 0.0,
-    descriptor: [0.0; DESCRIPTOR_LENGTH],
-};
 
 /// Those that enough neighbours agree with, as confident as these agree.
 fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
@@ -211,13 +209,8 @@ fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
 }
 
 /// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
-fn finished(
-    [first, second]: [View; 2],
-    seeds: Vec<Indexed>,
-    map: DAffine2,
-    rectified: bool,
-    smoothing: [f64; 2],
-) -> Sparse {
+fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> Sparse {
+    let smoothing = [first.sigma, second.sigma];
     let back = map.inverse();
     let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
     let growth = back.matrix2.determinant().abs().sqrt() as f32;
@@ -301,6 +294,8 @@ mod tests {
         assert!(precision > 0.97, "{precision}");
         let (plain, _) = matched("blur=2.5", false);
         assert!(found.matches.len() > 2 * plain.matches.len());
+        let (found, precision) = matched("blur=3.5", true);
+        assert!(found.smoothing == [3.0, 0.0] && precision > 0.97, "{:?}: {precision}", found.smoothing);
     }
 
     #[test]
