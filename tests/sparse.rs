@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use glam::DAffine2;
 use hsad::{
     dense::View,
     eval::{
@@ -43,5 +44,19 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
             let accuracy = accuracy_of_first(&right, 100);
             assert!(right.len() >= least && accuracy >= 0.97, "{name}, {condition}: {accuracy} of {}", right.len());
         }
+    }
+}
+
+/// One detector sees all pictures of a size; what it saw before leaves no trace.
+#[test]
+fn points_are_those_of_a_detector_of_their_own() {
+    let scene = SceneFiles::find(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/planes"))).unwrap();
+    let scene = scene[0].read(View::Left).unwrap();
+    let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
+    let (config, views) = (SparseConfig::default(), [scene.left.luma(), scene.right.luma()]);
+    let found = match_views(&backend, &views[0], &views[1], &config).unwrap();
+    assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
+    for (features, view) in found.features.iter().zip(&views) {
+        assert!(features.len() > 500 && *features == backend.features(view, &config.features).unwrap());
     }
 }

@@ -83,11 +83,9 @@ pub struct Sparse {
     pub smoothing: [f64; 2],
 }
 
-/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy;
-/// 0, for none, is the first.
+/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy:
+/// on one of them, as long as more smoothing brings no fewer matches, and the first one on both. 0, for none, leads.
 const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
-/// By view which of them, besides none.
-const PAIRS: [[usize; 2]; 7] = [[1, 0], [2, 0], [3, 0], [0, 1], [0, 2], [0, 3], [1, 1]];
 /// Smoothing must bring so many times the matches to be better than none: it takes away details.
 const CLEARLY_MORE: f64 = 1.25;
 /// Rows of features in corresponding rows differ by so much at most, in pixels.
@@ -113,15 +111,20 @@ impl View {
         let features = detecting.features(&luma, config)?;
         Ok(Self { luma, features, sigma: 0.0 })
     }
+}
 
-    /// The same smoothed by each of [`SIGMAS`].
-    fn smoothed(self, detecting: &mut Detecting, config: &FeatureConfig) -> Result<Vec<Self>> {
-        let mut views = vec![self];
-        for &sigma in &SIGMAS[1..] {
-            let luma = gaussian(&views[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
-            views.push(Self { sigma, ..Self::new(detecting, luma, config)? });
+/// A view, and the same smoothed by as many of [`SIGMAS`] as were asked for.
+struct Smoothed(Vec<View>);
+
+impl Smoothed {
+    /// The view by the Gaussian at `index` of [`SIGMAS`].
+    fn by(&mut self, index: usize, detecting: &mut Detecting, config: &FeatureConfig) -> Result<&View> {
+        while self.0.len() <= index {
+            let sigma = SIGMAS[self.0.len()];
+            let luma = gaussian(&self.0[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
+            self.0.push(View { sigma, ..View::new(detecting, luma, config)? });
         }
-        Ok(views)
+        Ok(&self.0[index])
     }
 }
 
@@ -145,15 +148,16 @@ pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &Spar
     }
 
     let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
+    let mut firsts = Smoothed(vec![first]);
     // Before the second view is turned, as that has another size then.
-    let mut firsts = first.smoothed(&mut detecting, features)?;
+    firsts.by(1, &mut detecting, features)?;
     let align::Aligned { view: second, map, rectified } =
-        align::align(&mut detecting, &firsts[0], second, features, matching)?;
+        align::align(&mut detecting, &firsts.0[0], second, features, matching)?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
-    let mut seconds = second.smoothed(&mut detecting, features)?;
-    let found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
-        let (first, second) = (&firsts[a], &seconds[b]);
+    let mut seconds = Smoothed(vec![second]);
+    let mut found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
+        let (first, second) = (firsts.by(a, &mut detecting, features)?, seconds.by(b, &mut detecting, features)?);
         let found = match_features(&first.features, &second.features, &matching)?;
         let mut seeds = refined(first, second, &found, rows);
         seeds.retain(|(seed, _)| returns(first, second, seed, rows));
@@ -161,15 +165,29 @@ pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &Spar
     };
     let mut chosen = [0, 0];
     let mut seeds = found(chosen)?;
-    let mut needed = CLEARLY_MORE * seeds.len() as f64;
-    for pair in PAIRS {
+    let plain = seeds.len();
+    let mut needed = CLEARLY_MORE * plain as f64;
+    let mut more_in = |pair: [usize; 2]| -> Result<usize> {
         let other = found(pair)?;
-        if other.len() as f64 > needed {
-            needed = other.len() as f64;
+        let count = other.len();
+        if count as f64 > needed {
+            needed = count as f64;
             (chosen, seeds) = (pair, other);
         }
+        Ok(count)
+    };
+    for only in [|index| [index, 0], |index| [0, index]] {
+        let mut before = plain;
+        for index in 1..SIGMAS.len() {
+            let count = more_in(only(index))?;
+            if count < before {
+                break;
+            }
+            before = count;
+        }
     }
-    let views = [firsts.swap_remove(chosen[0]), seconds.swap_remove(chosen[1])];
+    more_in([1, 1])?;
+    let views = [firsts.0.swap_remove(chosen[0]), seconds.0.swap_remove(chosen[1])];
     Ok(finished(views, seeds, map, rectified))
 }
 
