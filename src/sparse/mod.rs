@@ -201,8 +201,8 @@ fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<In
     matches.par_iter().filter_map(refine_one).collect()
 }
 
-/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, this
-/// one shows nothing as small as that, and it takes a larger window to see as much.
+/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, both
+/// show nothing finer than that Gaussian, and it takes a larger window to see as much.
 fn window(first: &View, second: &View) -> i64 {
     matching::HALF + (first.sigma - second.sigma).abs().round() as i64
 }

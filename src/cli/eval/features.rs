@@ -177,7 +177,10 @@ impl Features {
 
         let mut table = Table { columns: self.columns(), rows: Vec::new() };
         let width = pairs.iter().map(|pair| pair.name.chars().count()).fold("mean".len(), usize::max);
-        let places: Vec<Result<Place>> = pairs.iter().map(|pair| self.place(pair, &finder)).collect();
+        let place = self.place(&finder);
+        let of_pair =
+            |pair: &Pair| pair.files()?.into_iter().try_fold(place.clone().below(&pair.name), Place::with_file);
+        let places: Vec<Result<Place>> = pairs.iter().map(of_pair).collect();
         let progress = Progress::new(self.run.quiet);
         let total = pairs.len() * changes.len();
         let (mut done, mut kept) = (0, 0);
@@ -244,14 +247,16 @@ impl Features {
         Ok(())
     }
 
-    /// Where a pair's results are kept, by condition.
-    fn place(&self, pair: &Pair, finder: &Finder) -> Result<Place> {
-        let mut place = Place::new(self.output.as_deref(), self.fresh).below(&pair.name);
-        if let Finder::Hsad(backend, config) = finder {
-            place = place.with(&format!("{config:?}")).with(&report::device(backend).to_string());
+    /// Where the results of all pairs are kept.
+    fn place(&self, finder: &Finder) -> Place {
+        let place = Place::new(self.output.as_deref(), self.fresh);
+        let place = place.with(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
+        match finder {
+            Finder::Hsad(backend, config) => {
+                place.with(&format!("{config:?}")).with(&report::device(backend).to_string())
+            }
+            Finder::Other { .. } => place,
         }
-        place = place.with(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
-        pair.files()?.into_iter().try_fold(place, Place::with_file)
     }
 
     /// The figures of a pair under a condition, or what is wrong with the pair, or with it under this condition.
