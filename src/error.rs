@@ -34,14 +34,15 @@ pub enum Error {
         way_out: String,
     },
 
-    /// A buffer for this picture would be larger than the device can bind.
-    #[error("{what} needs {needed} bytes in one buffer, and this device binds at most {limit}: {way_out}")]
+    /// A buffer for this picture would be larger than the device can bind, or than results that are the same on every
+    /// device and the CPU allow.
+    #[error("{what} needs {needed} bytes in one buffer, and there can be at most {limit}: {way_out}")]
     TooLarge {
         /// What the memory is for.
         what: String,
         /// Bytes that are needed.
         needed: u64,
-        /// Bytes that the device allows.
+        /// Bytes that are possible.
         limit: u64,
         /// What to do about it.
         way_out: String,

@@ -6,6 +6,8 @@ mod renderer;
 
 use std::path::{Path, PathBuf};
 
+use hsad::{dense, eval::scene::SceneFiles, image::Plane, io::Picture};
+
 const SCENES: [&str; 3] = ["planes", "curved", "weak"];
 const FILES: [&str; 7] =
     ["left.png", "right.png", "disp_left.pfm", "disp_right.pfm", "nonocc.png", "nonocc_right.png", "meta.json"];
@@ -24,73 +26,36 @@ fn bytes(path: &Path) -> Vec<u8> {
 struct View {
     width: i64,
     height: i64,
-    colour: image::RgbImage,
-    disparity: Vec<f32>,
-    visible: image::GrayImage,
+    colour: Picture,
+    disparity: Plane<f32>,
+    visible: Plane<u8>,
     /// -1 if a pixel's counterpart lies a disparity to the left (in the right view), else 1.
     direction: f64,
 }
 
 impl View {
-    fn disparity(&self, x: i64, y: i64) -> f64 {
-        f64::from(self.disparity[(y * self.width + x) as usize])
-    }
-
     /// The left and the right view of a scene.
     fn both(scene: &str) -> [Self; 2] {
-        let read = |colour: &str, disparity: &str, visible: &str, direction| {
-            let folder = data().join(scene);
-            let decode = |name: &str| {
-                image::load_from_memory(&bytes(&folder.join(name)))
-                    .unwrap_or_else(|error| panic!("{scene}/{name}: {error}"))
-            };
-            let (width, height, disparity) = read_pfm(&bytes(&folder.join(disparity)));
-            let (colour, visible) = (decode(colour), decode(visible));
-            assert_eq!(colour.color(), image::ColorType::Rgb8, "{scene}");
-            assert_eq!(visible.color(), image::ColorType::L8, "{scene}");
-            let (colour, visible) = (colour.into_rgb8(), visible.into_luma8());
-            assert_eq!(colour.dimensions(), (width, height), "{scene}");
-            assert_eq!(visible.dimensions(), (width, height), "{scene}");
-            Self { width: width.into(), height: height.into(), colour, disparity, visible, direction }
-        };
-        [
-            read("left.png", "disp_left.pfm", "nonocc.png", -1.0),
-            read("right.png", "disp_right.pfm", "nonocc_right.png", 1.0),
-        ]
+        let files = SceneFiles::find(&data().join(scene)).unwrap().remove(0);
+        [(dense::View::Left, -1.0), (dense::View::Right, 1.0)].map(|(reference, direction)| {
+            let scene = files.read(reference).unwrap();
+            let colour = scene.reference_view().clone();
+            let (width, height) = (colour.width().into(), colour.height().into());
+            Self { width, height, colour, disparity: scene.truth, visible: scene.non_occluded.unwrap(), direction }
+        })
+    }
+
+    fn disparity(&self, x: i64, y: i64) -> f64 {
+        f64::from(self.disparity.get(x as u32, y as u32))
     }
 
     /// All pixels: (x, y, disparity, whether the other camera sees it).
     fn pixels(&self) -> impl Iterator<Item = (i64, i64, f64, bool)> {
         (0..self.width * self.height).map(|i| {
             let (x, y) = (i % self.width, i / self.width);
-            (x, y, self.disparity(x, y), self.visible.get_pixel(x as u32, y as u32)[0] == 255)
+            (x, y, self.disparity(x, y), self.visible.get(x as u32, y as u32) == 255)
         })
     }
-}
-
-/// Width, height and values, the top row first.
-fn read_pfm(bytes: &[u8]) -> (u32, u32, Vec<f32>) {
-    let mut lines = bytes.splitn(4, |&byte| byte == b'\n');
-    let mut line = || lines.next().expect("a PFM has three lines of text before its values");
-    assert_eq!(line(), b"Pf");
-    let size = String::from_utf8(line().to_vec()).unwrap();
-    let (width, height) = size.split_once(' ').expect("width and height");
-    assert_eq!(line(), b"-1.0", "little-endian");
-    let (width, height): (u32, u32) = (width.parse().unwrap(), height.parse().unwrap());
-    let values: Vec<f32> = line().chunks(4).map(|value| f32::from_le_bytes(value.try_into().unwrap())).collect();
-    assert_eq!(values.len(), (width * height) as usize);
-    (width, height, values.chunks(width as usize).rev().flatten().copied().collect())
-}
-
-#[test]
-fn the_pfm_reader_turns_rows_around() {
-    let mut file = b"Pf\n2 2\n-1.0\n".to_vec();
-    // The last value is made of the bytes that end a line.
-    let line_ends = f32::from_le_bytes(*b"\n\n\n\n");
-    for value in [3.0, 4.0, f32::INFINITY, line_ends] {
-        file.extend(value.to_le_bytes());
-    }
-    assert_eq!(read_pfm(&file), (2, 2, vec![f32::INFINITY, line_ends, 3.0, 4.0]));
 }
 
 /// The mean difference of a view's visible pixels (0 to 255, over the colours) from the other view, warped by
@@ -105,9 +70,9 @@ fn warp_error(view: &View, other: &View, shift: f64, light: impl Fn(f64) -> f64)
         let (from, part) = (there.floor(), there - there.floor());
         let next = (from as i64 + 1).min(view.width - 1);
         for channel in 0..3 {
-            let level = |x: i64| light(f64::from(other.colour.get_pixel(x as u32, y as u32)[channel]));
+            let level = |x: i64| light(f64::from(other.colour.rgb(x as u32, y as u32)[channel]));
             let warped = level(from as i64) * (1.0 - part) + level(next) * part;
-            sum += (f64::from(view.colour.get_pixel(x as u32, y as u32)[channel]) - warped).abs();
+            sum += (f64::from(view.colour.rgb(x as u32, y as u32)[channel]) - warped).abs();
             count += 1;
         }
     }
@@ -128,11 +93,14 @@ fn each_scene_is_complete_and_says_its_range() {
         let [left, right] = View::both(scene);
         for view in [&left, &right] {
             assert_eq!((number("width"), number("height")), (view.width as f64, view.height as f64));
-            assert!(view.visible.iter().all(|&value| value == 0 || value == 255), "{scene}: a mask is 0 or 255");
-            assert!(view.disparity.iter().all(|disparity| (5.0..62.0).contains(disparity)), "{scene}: all is known");
+            assert!(view.visible.data().iter().all(|&value| value == 0 || value == 255), "{scene}: a mask is 0 or 255");
+            assert!(
+                view.disparity.data().iter().all(|disparity| (5.0..62.0).contains(disparity)),
+                "{scene}: all is known"
+            );
         }
-        let least = left.disparity.iter().copied().fold(f32::INFINITY, f32::min);
-        let most = left.disparity.iter().copied().fold(0.0, f32::max);
+        let least = left.disparity.data().iter().copied().fold(f32::INFINITY, f32::min);
+        let most = left.disparity.data().iter().copied().fold(0.0, f32::max);
         assert!((number("min_disparity") - f64::from(least)).abs() < 1e-3, "{scene}");
         assert!((number("max_disparity") - f64::from(most)).abs() < 1e-3, "{scene}");
         assert!(most - least > 35.0, "{scene}: the range is too narrow to test a search");

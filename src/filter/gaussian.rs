@@ -1,5 +1,7 @@
 //! Smoothing.
 
+use rayon::prelude::*;
+
 use super::grey;
 use crate::image::Plane;
 
@@ -14,7 +16,7 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
     let weights: Vec<(i64, f64)> = (-reach..=reach).map(|i| (i, weight(i) / total)).collect();
 
     let (width, height) = plane.size();
-    let along_rows: Plane<[f64; N]> = Plane::from_fn(width, height, |x, y| {
+    let along_rows: Plane<[f64; N]> = in_parallel(width, height, |x, y| {
         let mut sum = [0.0; N];
         for &(i, weight) in &weights {
             let pixel = plane.get_clamped(i64::from(x) + i, y.into());
@@ -22,7 +24,7 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
         }
         sum
     });
-    Plane::from_fn(width, height, |x, y| {
+    in_parallel(width, height, |x, y| {
         let mut sum = [0.0; N];
         for &(i, weight) in &weights {
             let pixel = along_rows.get_clamped(x.into(), i64::from(y) + i);
@@ -30,6 +32,13 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
         }
         sum.map(grey)
     })
+}
+
+/// As [`Plane::from_fn`], several rows at a time.
+fn in_parallel<T: Clone + Send>(width: u32, height: u32, value: impl Fn(u32, u32) -> T + Sync) -> Plane<T> {
+    let row = |y| (0..width).map(|x| value(x, y)).collect::<Vec<T>>();
+    let rows: Vec<Vec<T>> = (0..height).into_par_iter().map(row).collect();
+    Plane::from_fn(width, height, |x, y| rows[y as usize][x as usize].clone())
 }
 
 #[cfg(test)]

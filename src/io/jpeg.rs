@@ -1,7 +1,8 @@
 //! What the JPEG decoder keeps to itself: that a file is cut off (it fills the rest with grey) and
 //! that it holds CMYK (it converts it by guess).
 //!
-//! Only the markers are read; ITU-T T.81, annex B.
+//! Only the markers are read; ITU-T T.81, annex B. A scan that ends early, before a proper end marker, is not noticed:
+//! nothing but its own codes says how long it is, and the decoder, which reads them, does not tell.
 
 const START_OF_SCAN: u8 = 0xda;
 const END_OF_IMAGE: u8 = 0xd9;

@@ -33,7 +33,10 @@ pub use picture::Picture;
 
 use std::{fs::File, io::Read, path::Path};
 
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    luma::MAX_SIDE,
+};
 
 /// The most pixels of a picture or map that is read: 2^27, about 134 million.
 ///
@@ -55,7 +58,7 @@ fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Refuses a size that is empty or above [`MAX_PIXELS`].
+/// Refuses a size that is empty or above [`MAX_PIXELS`], or that no kernel has the workgroups for.
 fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(malformed(path, format!("its size is {width}x{height}: there is nothing in it")));
@@ -63,6 +66,9 @@ fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         let reason = format!("{width}x{height} pixels are more than the {MAX_PIXELS} that are read: scale it down");
         return Err(malformed(path, reason));
+    }
+    if width.max(height) > MAX_SIDE {
+        return Err(malformed(path, format!("{width}x{height} pixels: no side may be longer than {MAX_SIDE}")));
     }
     Ok(())
 }
@@ -88,5 +94,16 @@ mod tests {
         std::fs::write(&file, "123456789").unwrap();
         assert_eq!(read_whole(&file, 9).unwrap(), b"123456789");
         assert!(matches!(read_whole(&file, 8), Err(Error::Format { reason, .. }) if reason.contains("8 bytes")));
+    }
+
+    #[test]
+    fn sizes_that_nothing_can_work_on_are_refused() {
+        let reason = |width, height| match check_pixels(width, height, Path::new("a.png")) {
+            Err(Error::Format { reason, .. }) => reason,
+            other => format!("{other:?}"),
+        };
+        assert!(reason(0, 9).contains("nothing in it") && reason(1 << 14, 1 << 14).contains("more than the"));
+        assert_eq!(reason(9, MAX_SIDE + 1), "9x524289 pixels: no side may be longer than 524288");
+        assert_eq!(reason(MAX_SIDE, 9), "Ok(())");
     }
 }

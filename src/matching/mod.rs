@@ -8,6 +8,7 @@ mod nearest;
 mod refine;
 
 pub use config::MatchConfig;
+pub(crate) use refine::{HALF, locate};
 pub use refine::{Rows, Seed, refine};
 
 use crate::{

@@ -10,9 +10,7 @@ use super::Match;
 use crate::{features::Feature, image::Luma};
 
 /// Half the side of the 7x7 window.
-const HALF: i64 = 3;
-/// Pixels in the window.
-const AREA: usize = ((2 * HALF + 1) * (2 * HALF + 1)) as usize;
+pub(crate) const HALF: i64 = 3;
 /// How far from the match the window is sought along its row, in pixels.
 const REACH: i64 = 3;
 /// Places where the window is compared.
@@ -73,22 +71,23 @@ impl Seed {
 pub fn refine(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), matches: &[Match], rows: Rows) -> Vec<Seed> {
     let mut seeds: Vec<Seed> = matches
         .par_iter()
-        .filter_map(|found| locate(views, &Seed::from_match(features.0, features.1, found), rows))
+        .filter_map(|found| locate(views, &Seed::from_match(features.0, features.1, found), rows, HALF))
         .collect();
     seeds.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
     seeds
 }
 
-fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows) -> Option<Seed> {
+/// One match's place by a window of `2 * half + 1` pixels a side, as [`refine`] finds it.
+pub(crate) fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows, half: i64) -> Option<Seed> {
     let (x, y) = (seed.x.round() as i64, seed.y.round() as i64);
     let (row, dy) = match rows {
         Rows::Equal => (y, 0.0),
         Rows::Matched => (y + seed.dy.round() as i64, seed.dy),
     };
-    let window = Window::at(left, x, y);
+    let window = Window::at(left, x, y, half);
     let first = seed.disparity.round() as i64 - REACH;
     let costs: [f32; PLACES] =
-        std::array::from_fn(|i| window.difference(&Window::at(right, x - first - i as i64, row)));
+        std::array::from_fn(|i| window.difference(&Window::at(right, x - first - i as i64, row, half)));
     let (place, ratio) = clear_minimum(&costs)?;
     let confidence = seed.confidence * (1.0 - ratio).sqrt();
     Some(Seed { x: x as f32, y: y as f32, disparity: first as f32 + place, dy, confidence })
@@ -112,19 +111,17 @@ fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
 
 /// The pixels of a window less their mean, and divided by their mean deviation from it: neither brightness nor
 /// contrast plays a part in a difference of two.
-struct Window([f32; AREA]);
+struct Window(Vec<f32>);
 
 impl Window {
-    fn at(view: &Luma, x: i64, y: i64) -> Self {
-        let side = 2 * HALF + 1;
-        let mut values = [0.0; AREA];
-        for (i, value) in (0..).zip(&mut values) {
-            *value = f32::from(view.get_clamped(x + i % side - HALF, y + i / side - HALF));
-        }
-        let mean = values.iter().sum::<f32>() / AREA as f32;
+    fn at(view: &Luma, x: i64, y: i64, half: i64) -> Self {
+        let row = |dy: i64| (-half..=half).map(move |dx| f32::from(view.get_clamped(x + dx, y + dy)));
+        let mut values: Vec<f32> = (-half..=half).flat_map(row).collect();
+        let mean = values.iter().sum::<f32>() / values.len() as f32;
         // A flat window has no contrast to divide by.
         let contrast = values.iter().map(|value| (value - mean).abs()).sum::<f32>().max(1.0);
-        Self(values.map(|value| (value - mean) / contrast))
+        values.iter_mut().for_each(|value| *value = (*value - mean) / contrast);
+        Self(values)
     }
 
     fn difference(&self, other: &Self) -> f32 {

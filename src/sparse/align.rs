@@ -5,14 +5,13 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::View;
+use super::{Detecting, MAX_DY, View};
 use crate::{
     error::Result,
     features::{Feature, FeatureConfig},
     filter::resample,
     image::Luma,
     matching::{Match, MatchConfig, Seed, match_features},
-    pair::Backend,
     seeding::{Rectification, Verdict},
 };
 
@@ -27,6 +26,9 @@ const SAME_TURN: f64 = PI / 18.0;
 const SAME_SCALE: f64 = 0.3;
 /// Matches that have to show the same turn and scale.
 const NEEDED: usize = 10;
+
+/// Of matches that agree with a fit, the least share that lies in equal rows where these correspond.
+const LEVEL: f64 = 0.9;
 
 /// The second view as the first one's camera would have it.
 pub(super) struct Aligned {
@@ -43,14 +45,14 @@ pub(super) struct Aligned {
 /// tell nothing, points with orientations are asked. Where rows do not correspond in the end, the views stay turned
 /// alike as far as is known.
 pub(super) async fn align(
-    backend: &Backend,
+    detecting: &mut Detecting<'_>,
     first: &View,
     second: &Luma,
     features: &FeatureConfig,
     matching: &MatchConfig,
 ) -> Result<Aligned> {
     let mut aligned = Aligned {
-        view: View::new(backend, second.clone(), features).await?,
+        view: View::new(detecting, second.clone(), features).await?,
         map: DAffine2::IDENTITY,
         rectified: false,
     };
@@ -62,6 +64,10 @@ pub(super) async fn align(
         let rows = Rectification::new(&seeds, first.luma.size());
         log::debug!("turned {round} times: {rows}");
         aligned.rectified = rows.is_rectified();
+        if round == 0 && !aligned.rectified && are_level(&seeds, &rows) {
+            aligned.rectified = true;
+            break;
+        }
         if round == ROUNDS || aligned.rectified && (round == 0 || rows.largest <= EXACT) {
             break;
         }
@@ -77,24 +83,29 @@ pub(super) async fn align(
         } else {
             asked_orientations = true;
             let oriented = FeatureConfig { upright: false, ..features.clone() };
-            let views = [
-                backend.features_async(&first.luma, &oriented).await?,
-                backend.features_async(second, &oriented).await?,
-            ];
+            let views =
+                [detecting.features(&first.luma, &oriented).await?, detecting.features(second, &oriented).await?];
             let matches = match_features(&views[0], &views[1], matching)?;
             let centres = [centre(&first.luma), centre(second)];
             let Some(similarity) = Similarity::shown([&views[0], &views[1]], &matches, centres) else { break };
             similarity.undone(centres[0], centres[1])
         };
-        aligned = Aligned { rectified: false, ..turned(backend, &first.luma, second, missing, features).await? };
+        aligned = Aligned { rectified: false, ..turned(detecting, &first.luma, second, missing, features).await? };
     }
     Ok(aligned)
+}
+
+/// Whether rows that seem not to correspond do so as far as matches show. Where all of these lie close together, a
+/// fit to them turns the rest of the picture by chance; then as many are as close to their own rows as to the fit.
+fn are_level(seeds: &[Seed], rows: &Rectification) -> bool {
+    let level = seeds.iter().filter(|seed| seed.dy.abs() <= MAX_DY).count();
+    rows.verdict != Verdict::Unknown && level as f64 >= LEVEL * rows.agreeing as f64
 }
 
 /// The second view under `map`, in the rows of the first, and as many columns as it has there, up to one width more on
 /// either side.
 async fn turned(
-    backend: &Backend,
+    detecting: &mut Detecting<'_>,
     first: &Luma,
     second: &Luma,
     map: DAffine2,
@@ -110,7 +121,7 @@ async fn turned(
     let size = ((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
-    Ok(Aligned { view: View::new(backend, luma, features).await?, map, rectified: false })
+    Ok(Aligned { view: View::new(detecting, luma, features).await?, map, rectified: false })
 }
 
 fn mean(luma: &Luma) -> u8 {
@@ -178,6 +189,31 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::features::DESCRIPTOR_LENGTH;
+
+    #[test]
+    fn rows_are_level_unless_more_matches_show_otherwise() {
+        let size = (640, 480);
+        let seeds = |middle: f32, rows: fn(f32) -> f32| -> Vec<Seed> {
+            let place = |i: u16| (middle * (f32::from(i * 37 % 100) - 50.0) / 50.0, f32::from(i * 61 % 100) - 50.0);
+            let seed = |(x, y): (f32, f32)| Seed {
+                x: 320.0 + x,
+                y: 240.0 + y,
+                disparity: 9.0,
+                dy: rows(x) + 0.4 * (y * 7.0).sin(),
+                confidence: 0.5,
+            };
+            (0..40).map(|i| seed(place(i))).collect()
+        };
+        // A degree, seen where it is half a row at most, and all over the picture.
+        for (middle, level) in [(30.0, true), (300.0, false)] {
+            let seeds = seeds(middle, |x| 0.0175 * x);
+            let rows = Rectification::new(&seeds, size);
+            assert_eq!((rows.is_rectified(), are_level(&seeds, &rows)), (false, level), "{rows}");
+        }
+        let unrelated: Vec<Seed> =
+            seeds(300.0, |_| 0.0).into_iter().map(|seed| Seed { dy: seed.x * seed.y % 97.0, ..seed }).collect();
+        assert!(!are_level(&unrelated, &Rectification::new(&unrelated, size)));
+    }
 
     #[test]
     fn what_most_matches_show_is_found_and_undone() {

@@ -2,25 +2,27 @@
 //! of another size.
 //!
 //! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
-//! from either view -> confirmed by their neighbours.
+//! from either view -> confirmed by their neighbours. Pictures of one size share a detector.
 //!
 //! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
 //! were found to correspond after the views were turned alike.
 
 mod agreement;
 mod align;
+mod detecting;
 
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
 use crate::{
     error::Result,
-    features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    features::{Feature, FeatureConfig},
     filter::gaussian,
     image::Luma,
-    matching::{Match, MatchConfig, Rows, Seed, match_features, refine},
+    matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
     pair::Backend,
 };
+use detecting::Detecting;
 
 /// How points are found and matched.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,11 +83,9 @@ pub struct Sparse {
     pub smoothing: [f64; 2],
 }
 
-/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy;
-/// 0, for none, is the first.
-const SIGMAS: [f64; 3] = [0.0, 1.0, 2.0];
-/// By view which of them, besides none.
-const PAIRS: [[usize; 2]; 5] = [[1, 0], [2, 0], [0, 1], [0, 2], [1, 1]];
+/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy:
+/// on one of them, as long as more smoothing brings no fewer matches, and the first one on both. 0, for none, leads.
+const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// Smoothing must bring so many times the matches to be better than none: it takes away details.
 const CLEARLY_MORE: f64 = 1.25;
 /// Rows of features in corresponding rows differ by so much at most, in pixels.
@@ -95,18 +95,36 @@ const MAX_RETURN: f32 = 1.0;
 /// Neighbours confirm a match up to this part of the first view's larger side.
 const NEIGHBOURHOOD: f32 = 1.0 / 12.0;
 /// The least share of its neighbours that agree with a match.
-const LEAST_AGREEMENT: f32 = 0.25;
+const LEAST_AGREEMENT: f32 = 0.375;
 
 /// A picture and its features.
 struct View {
     luma: Luma,
     features: Vec<Feature>,
+    /// Standard deviation, in pixels, of the Gaussian that it was smoothed by.
+    sigma: f64,
 }
 
 impl View {
-    async fn new(backend: &Backend, luma: Luma, config: &FeatureConfig) -> Result<Self> {
-        let features = backend.features_async(&luma, config).await?;
-        Ok(Self { luma, features })
+    /// A picture as it is.
+    async fn new(detecting: &mut Detecting<'_>, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = detecting.features(&luma, config).await?;
+        Ok(Self { luma, features, sigma: 0.0 })
+    }
+}
+
+/// A view, and the same smoothed by as many of [`SIGMAS`] as were asked for.
+struct Smoothed(Vec<View>);
+
+impl Smoothed {
+    /// The view by the Gaussian at `index` of [`SIGMAS`].
+    async fn by(&mut self, index: usize, detecting: &mut Detecting<'_>, config: &FeatureConfig) -> Result<&View> {
+        while self.0.len() <= index {
+            let sigma = SIGMAS[self.0.len()];
+            let luma = gaussian(&self.0[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
+            self.0.push(View { sigma, ..View::new(detecting, luma, config).await? });
+        }
+        Ok(&self.0[index])
     }
 }
 
@@ -134,87 +152,85 @@ pub async fn match_views_async(
 ) -> Result<Sparse> {
     config.validate()?;
     let SparseConfig { features, matching, adapt } = config;
-    let first = View::new(backend, first.clone(), features).await?;
+    let mut detecting = Detecting::new(backend);
+    let first = View::new(&mut detecting, first.clone(), features).await?;
     if !adapt {
-        let second = View::new(backend, second.clone(), features).await?;
+        let second = View::new(&mut detecting, second.clone(), features).await?;
         let found = match_features(&first.features, &second.features, matching)?;
         let seeds = refined(&first, &second, &found, Rows::Matched);
-        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false, [0.0; 2]));
+        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false));
     }
 
+    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
+    let mut firsts = Smoothed(vec![first]);
+    // Before the second view is turned, as that has another size then.
+    firsts.by(1, &mut detecting, features).await?;
     let align::Aligned { view: second, map, rectified } =
-        align::align(backend, &first, second, features, matching).await?;
+        align::align(&mut detecting, &firsts.0[0], second, features, matching).await?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
-    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
-    let mut firsts = smoothed(backend, first, features).await?;
-    let mut seconds = smoothed(backend, second, features).await?;
-    let found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
-        let (first, second) = (&firsts[a], &seconds[b]);
+    let mut seconds = Smoothed(vec![second]);
+    let mut found = async |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
+        let (first, second) =
+            (firsts.by(a, &mut detecting, features).await?, seconds.by(b, &mut detecting, features).await?);
         let found = match_features(&first.features, &second.features, &matching)?;
         let mut seeds = refined(first, second, &found, rows);
         seeds.retain(|(seed, _)| returns(first, second, seed, rows));
         Ok(confirmed(seeds, reach))
     };
     let mut chosen = [0, 0];
-    let mut seeds = found(chosen)?;
-    let mut needed = CLEARLY_MORE * seeds.len() as f64;
-    for pair in PAIRS {
-        let other = found(pair)?;
-        if other.len() as f64 > needed {
-            needed = other.len() as f64;
+    let mut seeds = found(chosen).await?;
+    let plain = seeds.len();
+    let mut needed = CLEARLY_MORE * plain as f64;
+    let mut more_in = async |pair: [usize; 2]| -> Result<usize> {
+        let other = found(pair).await?;
+        let count = other.len();
+        if count as f64 > needed {
+            needed = count as f64;
             (chosen, seeds) = (pair, other);
         }
+        Ok(count)
+    };
+    for only in [|index| [index, 0], |index| [0, index]] {
+        let mut before = plain;
+        for index in 1..SIGMAS.len() {
+            let count = more_in(only(index)).await?;
+            if count < before {
+                break;
+            }
+            before = count;
+        }
     }
-    let views = [firsts.swap_remove(chosen[0]), seconds.swap_remove(chosen[1])];
-    Ok(finished(views, seeds, map, rectified, chosen.map(|index| SIGMAS[index])))
-}
-
-/// A view smoothed by each of [`SIGMAS`].
-async fn smoothed(backend: &Backend, view: View, config: &FeatureConfig) -> Result<Vec<View>> {
-    let mut views = Vec::new();
-    for sigma in &SIGMAS[1..] {
-        let luma = gaussian(&view.luma.map(|&grey| [grey]), *sigma).map(|&[grey]| grey);
-        views.push(View::new(backend, luma, config).await?);
-    }
-    views.insert(0, view);
-    Ok(views)
+    more_in([1, 1]).await?;
+    let views = [firsts.0.swap_remove(chosen[0]), seconds.0.swap_remove(chosen[1])];
+    Ok(finished(views, seeds, map, rectified))
 }
 
 /// The matches that have a clear place, with the indices of their features.
 fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<Indexed> {
     let refine_one = |found: &Match| {
-        let features = (&first.features[..], &second.features[..]);
-        let seed = refine((&first.luma, &second.luma), features, std::slice::from_ref(found), rows).first().copied()?;
+        let seed = Seed::from_match(&first.features, &second.features, found);
+        let seed = locate((&first.luma, &second.luma), &seed, rows, window(first, second))?;
         Some((seed, [found.left, found.right]))
     };
     matches.par_iter().filter_map(refine_one).collect()
 }
 
+/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, both
+/// show nothing finer than that Gaussian, and it takes a larger window to see as much.
+fn window(first: &View, second: &View) -> i64 {
+    matching::HALF + (first.sigma - second.sigma).abs().round() as i64
+}
+
 /// Whether the window around the place in the second view is found again where it comes from. At the edge of a surface,
 /// or where one view shows what the other hides, it is not.
 fn returns(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
-    let feature = |x, y| Feature { x, y, ..NOWHERE };
-    let back = refine(
-        (&second.luma, &first.luma),
-        (&[feature(seed.right_x(), seed.right_y())], &[feature(seed.x, seed.y)]),
-        &[Match { left: 0, right: 0, distance: 0.0, confidence: 1.0 }],
-        rows,
-    );
+    let there =
+        Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };
+    let back = locate((&second.luma, &first.luma), &there, rows, window(first, second));
     // Both disparities, whose signs differ: places are on whole pixels, each of its own view.
-    back.first().is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
+    back.is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
 }
-
-/// A feature of which only the place matters.
-const NOWHERE: Feature = Feature {
-    x: 0.0,
-    y: 0.0,
-    scale: 1.0,
-    response: 0.0,
-    dark: false,
-    orientation: 0.0,
-    descriptor: [0.0; DESCRIPTOR_LENGTH],
-};
 
 /// Those that enough neighbours agree with, as confident as these agree.
 fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
@@ -226,13 +242,8 @@ fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
 }
 
 /// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
-fn finished(
-    [first, second]: [View; 2],
-    seeds: Vec<Indexed>,
-    map: DAffine2,
-    rectified: bool,
-    smoothing: [f64; 2],
-) -> Sparse {
+fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> Sparse {
+    let smoothing = [first.sigma, second.sigma];
     let back = map.inverse();
     let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
     let growth = back.matrix2.determinant().abs().sqrt() as f32;
@@ -316,6 +327,8 @@ mod tests {
         assert!(precision > 0.97, "{precision}");
         let (plain, _) = matched("blur=2.5", false);
         assert!(found.matches.len() > 2 * plain.matches.len());
+        let (found, precision) = matched("blur=3.5", true);
+        assert!(found.smoothing == [3.0, 0.0] && precision > 0.97, "{:?}: {precision}", found.smoothing);
     }
 
     #[test]

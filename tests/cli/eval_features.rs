@@ -7,9 +7,10 @@ use std::{
 
 use assert_cmd::Command;
 use hsad::{
+    disparity::{DisparityMap, fixed_point},
     eval::conditions::Changed,
     image::Plane,
-    io::{Picture, load, pfm, png},
+    io::{Picture, disparity_png, load, pfm, png},
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
@@ -164,19 +165,17 @@ fn a_homography_set_has_a_pair_for_each_view() {
         .success()
         .stdout(contains("set 1-4").and(contains("set 1-2").not()));
 
-    fails(
-        {
-            let mut c = evaluate(&[&set]);
-            c.args(["--view", "3"]);
-            c
-        },
-        1,
-        "there is no H1to3p",
-    );
+    let of_view = |k: &str| {
+        let mut command = evaluate(&[&set]);
+        command.args(["--view", k]);
+        command
+    };
+    fails(of_view("3"), 1, "there is no H1to3p");
     fs::write(set.join("H1to4p"), "1 0 0 0 1 0 0 0").unwrap();
-    fails(evaluate(&[&set]), 1, "a homography is nine numbers");
+    fails(of_view("4"), 1, "a homography is nine numbers");
+    evaluate(&[&set]).assert().code(1).stdout(contains("set 1-2"));
     fs::write(set.join("H1to4p"), "1 0 0 0 1 0 0 0 0").unwrap();
-    fails(evaluate(&[&set]), 1, "have an inverse");
+    fails(of_view("4"), 1, "have an inverse");
 }
 
 #[test]
@@ -202,8 +201,14 @@ fn what_fails_does_not_lose_the_rest() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stdout).unwrap().contains("\nweak "));
     let stderr = String::from_utf8(output.stderr).unwrap();
-    assert!(stderr.starts_with("error: nowhere: no truth is here") && stderr.lines().count() == 1, "{stderr}");
-    fails(evaluate(&[missing, Path::new("neither")]), 1, "2 failed: nowhere");
+    assert!(stderr.starts_with("error: nowhere: ") && stderr.lines().count() == 1, "{stderr}");
+    let output = evaluate(&[missing, Path::new("neither")]).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let lines: Vec<_> = stderr.lines().map(|line| &line[..15]).collect();
+    assert_eq!((output.status.code(), &lines[..]), (Some(1), &["error: nowhere:", "error: neither:"][..]));
+    let empty = folder();
+    fails(evaluate(&[empty.path()]), 1, "a homography set holds img1.png");
+    fails(evaluate(&[&scene("weak"), &scene("weak")]), 2, "the name of two scenes, 'weak'");
 }
 
 #[test]
@@ -264,11 +269,92 @@ fn scenes_whose_files_do_not_fit_are_named() {
     }
     evaluate(&[copy]).assert().success();
     grey_png(&copy.join("nonocc.png"), &Plane::filled(9, 9, 255));
-    fails(evaluate(&[copy]), 1, "the mask is 9x9 pixels, but the truth has 287x215");
+    fails(evaluate(&[copy]), 1, "its size is 9x9 and that of the views 287x215");
     grey_png(&copy.join("right.png"), &Plane::filled(9, 9, 255));
-    fails(evaluate(&[copy]), 1, "287x215 and the right view 9x9");
+    let mut twice = evaluate(&[copy]);
+    twice.args(["--condition", "none", "--condition", "gain"]);
+    fails(twice, 1, "287x215 and the right view 9x9");
     for file in ["left.png", "right.png"] {
         grey_png(&copy.join(file), &Plane::filled(9, 9, 255));
     }
-    fails(evaluate(&[copy]), 1, "it has 287x215 values, but left.png 9x9 pixels");
+    fails(evaluate(&[copy]), 1, "its size is 287x215 and that of the views 9x9");
+}
+
+/// The same pair as the benchmarks lay it out.
+#[test]
+fn scenes_have_any_layout_that_maps_are_scored_in() {
+    let temporary = folder();
+    let [middlebury, kitti] = ["middlebury", "kitti"].map(|name| temporary.path().join(name));
+    let copy = |from: &str, to: PathBuf| {
+        fs::create_dir_all(to.parent().unwrap()).unwrap();
+        fs::copy(scene("planes").join(from), to).unwrap();
+    };
+    for (from, to) in [("left.png", "im0.png"), ("right.png", "im1.png"), ("disp_left.pfm", "disp0.pfm")] {
+        copy(from, middlebury.join(to));
+    }
+    for (from, to) in [("left.png", "image_2"), ("right.png", "image_3")] {
+        copy(from, kitti.join(to).join("000007_10.png"));
+    }
+    let truth = pfm::read(&scene("planes").join("disp_left.pfm")).unwrap();
+    let truth = DisparityMap::new(340, 255, truth.data().iter().map(|&pixels| fixed_point(pixels)).collect()).unwrap();
+    let mut png = Vec::new();
+    disparity_png::write(&mut png, &truth).unwrap();
+    fs::create_dir(kitti.join("disp_occ_0")).unwrap();
+    fs::write(kitti.join("disp_occ_0/000007_10.png"), png).unwrap();
+
+    let json_file = temporary.path().join("t.json");
+    evaluate(&[temporary.path()]).arg("--json").arg(&json_file).assert().success();
+    let found = json(&json_file)["pairs"].clone();
+    let names: Vec<_> = found.as_array().unwrap().iter().map(|pair| pair["scene"].clone()).collect();
+    assert_eq!(names, ["000007_10", "middlebury"]);
+    for pair in found.as_array().unwrap() {
+        assert!(pair["precision_of_100"].as_f64().unwrap() > 0.97, "{pair}");
+    }
+    let of_a_scene = |view: &[&str]| {
+        let mut command = evaluate(&[&middlebury]);
+        command.args(view);
+        command
+    };
+    fails(of_a_scene(&["--view", "2"]), 1, "here is a stereo scene");
+}
+
+#[test]
+fn what_is_finished_is_kept_until_something_changes() {
+    let temporary = folder();
+    let [output, json_file, copy] = ["out", "t.json", "copy"].map(|name| temporary.path().join(name));
+    fs::create_dir(&copy).unwrap();
+    for file in ["left.png", "right.png", "disp_left.pfm"] {
+        fs::copy(scene("weak").join(file), copy.join(file)).unwrap();
+    }
+    // How many results were there from an earlier run, and all figures.
+    let run = |options: &[&str]| {
+        let mut command = evaluate(&[&copy, &scene("planes")]);
+        command.args(["--condition", "none", "--condition", "gain=0.5+blur=1", "-o"]).arg(&output).args(options);
+        let told = command.arg("--json").arg(&json_file).output().unwrap();
+        assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+        let told = String::from_utf8(told.stdout).unwrap();
+        let kept = told.lines().last().unwrap().split_once("; ").map(|(_, kept)| kept[..6].to_owned());
+        (kept, json(&json_file)["pairs"].clone())
+    };
+    let (kept, first) = run(&[]);
+    assert_eq!((kept, first.as_array().unwrap().len()), (None, 4));
+    assert_eq!(run(&[]), (Some("4 of 4".into()), first.clone()));
+    assert_eq!(run(&["--fresh"]), (None, first.clone()));
+
+    // As after an interruption.
+    fs::remove_dir_all(output.join("planes/gain=0.5+blur=1")).unwrap();
+    assert_eq!(run(&[]), (Some("3 of 4".into()), first.clone()));
+    // What is kept was changed by hand.
+    fs::write(output.join("copy/none/result.json"), "{").unwrap();
+    assert_eq!(run(&[]), (Some("3 of 4".into()), first.clone()));
+    let stricter = run(&["--tolerance", "0.5"]);
+    assert!(stricter.0.is_none() && stricter.1 != first);
+    // Another picture: what depends on it is made anew, and what does not is not.
+    let mut right = load::load(&copy.join("right.png")).unwrap().luma();
+    right.set(0, 0, right.get(0, 0) ^ 1);
+    grey_png(&copy.join("right.png"), &right);
+    run(&[]);
+    fs::copy(scene("weak").join("right.png"), copy.join("right.png")).unwrap();
+    assert_eq!(run(&[]).0, Some("2 of 4".into()));
+    evaluate(&[&copy]).arg("--fresh").assert().code(2).stderr(contains("--output"));
 }

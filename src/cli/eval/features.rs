@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use clap::Args;
 use hsad::{
     Error, Result,
@@ -22,17 +22,23 @@ use hsad::{
 use serde_json::json;
 
 use crate::cli::{
-    eval::change::{Change, kinds},
+    eval::{
+        change::{Change, kinds},
+        complain,
+        kept::{self, Place},
+        scenes,
+    },
     options::{FeatureOptions, RunOptions, with_default},
+    output::Output,
+    report,
     terminal::{self, Progress},
 };
 use table::{Column, Row, Table, Unit};
-use views::Views;
+use views::{Pair, Views};
 
 const DETAILS: &str = "\
-A folder is a stereo scene (left.png, right.png, disp_left.pfm, and nonocc.png: 255 where both views show the pixel) \
-or a homography set (img1.png, and img2.png with H1to2p, img3.png with H1to3p, ...: nine numbers that take a pixel of \
-the first to the other).
+A folder is what hsad eval dense takes for a scene or for scenes, or a homography set (img1.png, and img2.png with \
+H1to2p, img3.png with H1to3p, ...: nine numbers that take a pixel of the first to the other).
 
 What is measured, of each pair and in the mean, shares in per cent:
   points   interest points in what both views show, of the view with fewer
@@ -58,8 +64,10 @@ view, and, if there is one, confidence, the greater the surer; without it the su
 (--points): x, y and scale, as `hsad features` writes them; without them only precision is known. --write-views gives \
 it the changed views.
 
+With -o, DIR/PAIR/CONDITION/result.json is not computed again while pictures, options, device and program are the same.
+
 Examples:
-  hsad eval features data/planes data/curved
+  hsad eval features data -o out
   hsad eval features data/planes --condition rotation=30 --condition blur=1+noise=5
   hsad eval features boat --view 3 --json boat.json
   hsad eval features data/planes --matches theirs.csv --points l.csv r.csv";
@@ -78,7 +86,7 @@ fn threshold_help() -> String {
 #[derive(Args)]
 #[command(after_help = details(), mut_arg("threshold", |option| option.help(threshold_help())))]
 pub struct Features {
-    /// Folders with two or more views and the truth about them
+    /// Folders of stereo scenes or homography sets
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Change the second view first, such as rotation=30; each of several is a table of its own
@@ -111,6 +119,12 @@ pub struct Features {
     /// Write the figures and how they were found to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Folder for the results, created if need be
+    #[arg(short, long, value_name = "DIR", conflicts_with_all = ["matches", "write_views"])]
+    output: Option<PathBuf>,
+    /// Compute again what an earlier run left in the folder
+    #[arg(long, requires = "output")]
+    fresh: bool,
     /// Match the views as they are: do not turn, scale or smooth them, nor ask neighbours
     #[arg(long)]
     plain: bool,
@@ -138,13 +152,13 @@ impl Features {
         config.validate()?;
         self.check()?;
         let changes = Change::parse_all(&self.conditions)?;
-        let progress = Progress::new(self.run.quiet);
-        progress.begin("reading");
-        let (pairs, mut failed) = self.read();
+        let (pairs, unread) = scenes::collect(&self.folders, |path| Pair::find(path, self.view), |pair| &pair.name)?;
+        let mut failures: Vec<String> = unread.iter().map(Error::to_string).collect();
         if let Some(folder) = &self.write_views {
-            self.write(folder, &pairs, &changes)?;
-            return complain(&failed);
+            self.write(folder, &pairs, &changes, &mut failures)?;
+            return complain(&failures);
         }
+        let root = self.output.as_deref().map(Output::open).transpose()?;
         let finder = match self.matches.take() {
             None => Finder::Hsad(self.run.open()?, config),
             Some(matches) if pairs.len() > 1 || self.folders.len() > 1 || changes.len() > 1 => {
@@ -162,20 +176,23 @@ impl Features {
         };
 
         let mut table = Table { columns: self.columns(), rows: Vec::new() };
-        let width = pairs.iter().map(|views| views.name.chars().count()).fold("mean".len(), usize::max);
+        let width = pairs.iter().map(|pair| pair.name.chars().count()).fold("mean".len(), usize::max);
+        let place = self.place(&finder);
+        let of_pair =
+            |pair: &Pair| pair.files()?.into_iter().try_fold(place.clone().below(&pair.name), Place::with_file);
+        let places: Vec<Result<Place>> = pairs.iter().map(of_pair).collect();
+        let progress = Progress::new(self.run.quiet);
         let total = pairs.len() * changes.len();
-        let mut done = 0;
+        let (mut done, mut kept) = (0, 0);
         for change in &changes {
             let before = table.rows.len();
-            for views in &pairs {
+            for (pair, place) in pairs.iter().zip(&places) {
                 done += 1;
-                progress.begin(format!("{done} of {total}: {}, {}", views.name, change.name));
-                match self.figures(views, change, &finder) {
-                    Ok(figures) => {
-                        let (scene, condition) = (views.name.clone(), change.name.clone());
-                        table.rows.push(Row { scene, condition, figures });
-                    }
-                    Err(error) => failed.push(format!("{}, {}: {error}", views.name, change.name)),
+                progress.piece(&format!("{}, {}", pair.name, change.name), done, total);
+                match self.row(pair, change, &finder, place, &mut kept) {
+                    Ok(row) => table.rows.push(row),
+                    Err(failure) if failures.contains(&failure) => {}
+                    Err(failure) => failures.push(failure),
                 }
             }
             if table.rows.len() > before && !self.run.quiet {
@@ -183,9 +200,13 @@ impl Features {
                 progress.suspend(|| terminal::print(&format!("{gap}{}", table.text(&change.name, width))))?;
             }
         }
-        drop(progress);
-        self.write_figures(&table, &finder, &failed)?;
-        complain(&failed)
+        drop((progress, root));
+        if let (Some(folder), true, false) = (&self.output, !table.rows.is_empty(), self.run.quiet) {
+            let told = kept::told(kept, table.rows.len());
+            terminal::print(&format!("\nresults are in {}{told}\n", folder.display()))?;
+        }
+        self.write_figures(&table, &finder, &failures)?;
+        complain(&failures)
     }
 
     fn check(&self) -> Result<()> {
@@ -200,29 +221,66 @@ impl Features {
         Ok(())
     }
 
-    /// All pairs of all folders, and what is wrong with the others.
-    fn read(&self) -> (Vec<Views>, Vec<String>) {
-        let (mut pairs, mut failed) = (Vec::new(), Vec::new());
-        for folder in &self.folders {
-            match views::read(folder, self.view) {
-                Ok(found) => pairs.extend(found),
-                Err(error) => failed.push(error.to_string()),
-            }
-        }
-        (pairs, failed)
-    }
-
-    fn write(&self, folder: &Path, pairs: &[Views], changes: &[Change]) -> anyhow::Result<()> {
+    fn write(
+        &self,
+        folder: &Path,
+        pairs: &[Pair],
+        changes: &[Change],
+        failures: &mut Vec<String>,
+    ) -> anyhow::Result<()> {
         fs::create_dir_all(folder).with_context(|| format!("{}: the folder cannot be created", folder.display()))?;
-        for views in pairs {
+        for pair in pairs {
+            let views = match pair.views() {
+                Ok(views) => views,
+                Err(error) => {
+                    failures.push(format!("{}: {error}", pair.name));
+                    continue;
+                }
+            };
             for change in changes {
                 let changed = Changed::by(&change.conditions, &views.second, self.seed);
-                let name = format!("{} {}.png", views.name, change.name);
+                let name = format!("{} {}.png", pair.name, change.name);
                 let rgb = changed.picture.map(|&[red, green, blue, _]| [red, green, blue]);
                 write_whole(&folder.join(&name), |out| png::write_rgb8(out, &rgb))?;
             }
         }
         Ok(())
+    }
+
+    /// Where the results of all pairs are kept.
+    fn place(&self, finder: &Finder) -> Place {
+        let place = Place::new(self.output.as_deref(), self.fresh);
+        let place = place.with(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
+        match finder {
+            Finder::Hsad(backend, config) => {
+                place.with(&format!("{config:?}")).with(&report::device(backend).to_string())
+            }
+            Finder::Other { .. } => place,
+        }
+    }
+
+    /// The figures of a pair under a condition, or what is wrong with the pair, or with it under this condition.
+    fn row(
+        &self,
+        pair: &Pair,
+        change: &Change,
+        finder: &Finder,
+        place: &Result<Place>,
+        kept: &mut usize,
+    ) -> std::result::Result<Row, String> {
+        let of_pair = |error: &Error| format!("{}: {error}", pair.name);
+        let place = place.as_ref().map_err(of_pair)?.clone().below(&change.name).with(&change.name);
+        if let Some(row) = place.find() {
+            *kept += 1;
+            return Ok(row);
+        }
+        let views = pair.views().map_err(|error| of_pair(&error))?;
+        let row = self.figures(views, change, finder).and_then(|figures| {
+            let row = Row { scene: pair.name.clone(), condition: change.name.clone(), figures };
+            place.keep(&row, |_| Ok(()))?;
+            Ok(row)
+        });
+        row.map_err(|error| format!("{}, {}: {error}", pair.name, change.name))
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -314,14 +372,5 @@ impl Features {
             write_whole(path, |out| writeln!(out, "{report:#}"))?;
         }
         Ok(())
-    }
-}
-
-/// One line about all that failed.
-fn complain(failed: &[String]) -> anyhow::Result<()> {
-    match failed {
-        [] => Ok(()),
-        [only] => bail!("{only}"),
-        _ => bail!("{} failed: {}", failed.len(), failed.join("; ")),
     }
 }

@@ -1,9 +1,9 @@
-//! Results of an earlier run that still hold.
+//! Results that outlast a run, so that a long one can be interrupted and taken up again.
 
 use std::{
     fs,
     hash::{DefaultHasher, Hash, Hasher},
-    path::Path,
+    path::{Path, PathBuf},
     time::SystemTime,
 };
 
@@ -15,59 +15,160 @@ use crate::cli::output::Output;
 /// The file that keeps a result, next to its pictures if it has any.
 const NAME: &str = "result.json";
 
-/// A number for all that a result depends on. The standard library's hash may be another one in another release of the
-/// compiler, but then the program is another one, too.
-#[derive(Clone, Debug)]
-pub struct Fingerprint(DefaultHasher);
+/// A result that can be kept.
+pub trait Record: Sized {
+    /// An object, for [`Self::from_json`].
+    fn to_json(&self) -> Value;
 
-impl Fingerprint {
-    /// Of this very build of the program: whoever works on it must not be shown what another build found.
-    pub fn of_program() -> Self {
-        let mut hasher = DefaultHasher::new();
-        env!("CARGO_PKG_VERSION").hash(&mut hasher);
-        match std::env::current_exe().and_then(fs::read) {
-            Ok(bytes) => bytes.hash(&mut hasher),
-            // It was replaced since it started: whatever was kept is not known to be of the same build.
-            Err(_) => (std::process::id(), SystemTime::now()).hash(&mut hasher),
-        }
-        Self(hasher)
+    /// What [`Self::to_json`] made; `None` where something is missing.
+    fn from_json(value: &Value) -> Option<Self>;
+}
+
+/// Where results are kept, if they are, and all that they depend on.
+#[derive(Clone, Debug)]
+pub struct Place(Option<Kept>);
+
+#[derive(Clone, Debug)]
+struct Kept {
+    folder: PathBuf,
+    /// Of all that the results depend on. The standard library's hash may be another one in another release of the
+    /// compiler, but then the program is another one, too.
+    fingerprint: DefaultHasher,
+    /// Whether results of an earlier run are passed over.
+    fresh: bool,
+}
+
+impl Place {
+    /// Keeps the results of this very build of the program below `folder`: whoever works on it must not be shown what
+    /// another build found. Without a folder nothing is kept; where `fresh`, nothing is found.
+    pub fn new(folder: Option<&Path>, fresh: bool) -> Self {
+        Self(folder.map(|folder| {
+            let mut fingerprint = DefaultHasher::new();
+            env!("CARGO_PKG_VERSION").hash(&mut fingerprint);
+            match std::env::current_exe().and_then(fs::read) {
+                Ok(bytes) => bytes.hash(&mut fingerprint),
+                // It was replaced since it started: whatever was kept is not known to be of the same build.
+                Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
+            }
+            Kept { folder: folder.into(), fingerprint, fresh }
+        }))
     }
 
-    /// The same with a text.
+    /// The folder `name` in this one.
     #[must_use]
-    pub fn with(mut self, text: &str) -> Self {
-        text.hash(&mut self.0);
+    pub fn below(mut self, name: &str) -> Self {
+        if let Some(kept) = &mut self.0 {
+            kept.folder.push(name);
+        }
         self
     }
 
-    /// The same with what a file holds.
+    /// The same for results that also depend on a text.
+    #[must_use]
+    pub fn with(mut self, text: &str) -> Self {
+        if let Some(kept) = &mut self.0 {
+            text.hash(&mut kept.fingerprint);
+        }
+        self
+    }
+
+    /// The same for results that also depend on what a file holds.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be read.
     pub fn with_file(mut self, path: &Path) -> Result<Self> {
-        fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut self.0);
+        if let Some(kept) = &mut self.0 {
+            fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut kept.fingerprint);
+        }
         Ok(self)
     }
 
-    fn text(&self) -> String {
-        format!("{:016x}", self.0.finish())
+    /// The result of an earlier run, if its files are there and nothing that it depends on has changed.
+    pub fn find<R: Record>(&self) -> Option<R> {
+        let kept = self.0.as_ref().filter(|kept| !kept.fresh)?;
+        let result: Value = serde_json::from_str(&fs::read_to_string(kept.folder.join(NAME)).ok()?).ok()?;
+        let is_there = |file: &Value| file.as_str().is_some_and(|name| kept.folder.join(name).is_file());
+        let holds = result["fingerprint"] == kept.text() && result["files"].as_array()?.iter().all(is_there);
+        if holds { R::from_json(&result) } else { None }
+    }
+
+    /// Keeps a result, with the files that `add` makes beside it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with the file; those of `add`.
+    pub fn keep(&self, result: &impl Record, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
+        let Some(kept) = &self.0 else { return Ok(()) };
+        let mut output = Output::open(&kept.folder)?;
+        add(&mut output)?;
+        let mut result = result.to_json();
+        result["fingerprint"] = kept.text().into();
+        result["files"] = json!(output.names());
+        output.add_json(NAME, &result)?;
+        output.finish()
     }
 }
 
-/// The result in `folder`, if its files are there and it has this fingerprint.
-pub fn find(folder: &Path, fingerprint: &Fingerprint) -> Option<Value> {
-    let kept: Value = serde_json::from_str(&fs::read_to_string(folder.join(NAME)).ok()?).ok()?;
-    let is_there = |file: &Value| file.as_str().is_some_and(|name| folder.join(name).is_file());
-    let holds = kept["fingerprint"] == fingerprint.text() && kept["files"].as_array()?.iter().all(is_there);
-    holds.then_some(kept)
+impl Kept {
+    fn text(&self) -> String {
+        format!("{:016x}", self.fingerprint.finish())
+    }
 }
 
-/// Adds a result, an object, to the files of `output`.
-///
-/// # Errors
-/// [`Error::Io`] with the file.
-pub fn add(output: &mut Output, mut kept: Value, fingerprint: &Fingerprint) -> Result<()> {
-    kept["fingerprint"] = fingerprint.text().into();
-    kept["files"] = json!(output.names());
-    output.add_json(NAME, &kept)
+/// The end of a sentence on where results are: how many of them an earlier run made.
+pub fn told(kept: usize, all: usize) -> String {
+    match kept {
+        0 => String::new(),
+        _ => format!("; {kept} of {all} results were there from an earlier run (--fresh computes them again)"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq)]
+    struct Number(u64);
+
+    impl Record for Number {
+        fn to_json(&self) -> Value {
+            json!({ "number": self.0 })
+        }
+
+        fn from_json(value: &Value) -> Option<Self> {
+            value["number"].as_u64().map(Self)
+        }
+    }
+
+    #[test]
+    fn a_result_is_found_while_all_that_it_depends_on_is_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let input = folder.path().join("input");
+        fs::write(&input, "picture").unwrap();
+        let root = Place::new(Some(folder.path()), false);
+        let place = || root.clone().below("a").with("noise=3").with_file(&input).unwrap();
+        assert_eq!(place().find::<Number>(), None);
+        place().keep(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
+        assert_eq!(place().find(), Some(Number(7)));
+
+        assert_eq!(root.clone().below("b").with("noise=3").with_file(&input).unwrap().find::<Number>(), None);
+        assert_eq!(root.clone().below("a").with("noise=4").with_file(&input).unwrap().find::<Number>(), None);
+        let fresh = Place::new(Some(folder.path()), true).below("a").with("noise=3");
+        assert_eq!(fresh.with_file(&input).unwrap().find::<Number>(), None);
+        fs::write(&input, "another").unwrap();
+        assert_eq!(place().find::<Number>(), None);
+        fs::write(&input, "picture").unwrap();
+        assert_eq!(place().find(), Some(Number(7)));
+        fs::remove_file(folder.path().join("a/map")).unwrap();
+        assert_eq!(place().find::<Number>(), None, "half of it is gone");
+    }
+
+    #[test]
+    fn without_a_folder_nothing_is_kept_or_read() {
+        let place = Place::new(None, false).below("a").with_file(Path::new("nowhere")).unwrap();
+        place.keep(&Number(7), |_| panic!("there is no folder")).unwrap();
+        assert_eq!(place.find::<Number>(), None);
+        assert!(Place::new(Some(Path::new("here")), false).with_file(Path::new("nowhere")).is_err());
+    }
 }

@@ -5,7 +5,12 @@ mod kept;
 mod paper;
 mod scenes;
 
+use std::fmt::Display;
+
+use anyhow::anyhow;
 use clap::{Args, Subcommand};
+
+use crate::cli::terminal;
 
 /// Tell how good results are, on data with known truth
 #[derive(Args)]
@@ -30,4 +35,11 @@ impl Eval {
             What::Paper(command) => command.run(),
         }
     }
+}
+
+/// A line about each failure, the last of which is the program's own.
+fn complain(failures: &[impl Display]) -> anyhow::Result<()> {
+    let Some((last, others)) = failures.split_last() else { return Ok(()) };
+    others.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
+    Err(anyhow!("{last}"))
 }

@@ -1,29 +1,41 @@
 //! The scenes that an evaluation is about.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use hsad::{Error, Result, eval::scene::SceneFiles};
 
 /// All scenes, and what is wrong with the paths that hold none.
 ///
 /// # Errors
-/// [`Error::Parameter`] if two have one name, which results are told apart by.
+/// As [`collect`].
 pub fn find(paths: &[PathBuf]) -> Result<(Vec<SceneFiles>, Vec<Error>)> {
-    let (mut scenes, mut failures): (Vec<SceneFiles>, Vec<Error>) = Default::default();
+    collect(paths, SceneFiles::find, |scene| &scene.name)
+}
+
+/// What `find` finds in all paths, and what is wrong with those where it finds nothing.
+///
+/// # Errors
+/// [`Error::Parameter`] if two have one name, which results are told apart by.
+pub fn collect<T>(
+    paths: &[PathBuf],
+    find: impl Fn(&Path) -> Result<Vec<T>>,
+    name: impl Fn(&T) -> &str,
+) -> Result<(Vec<T>, Vec<Error>)> {
+    let (mut all, mut failures): (Vec<T>, Vec<Error>) = Default::default();
     for path in paths {
-        match SceneFiles::find(path) {
-            Ok(found) => scenes.extend(found),
+        match find(path) {
+            Ok(found) => all.extend(found),
             Err(error) => failures.push(error),
         }
     }
-    for (index, scene) in scenes.iter().enumerate() {
-        if scenes[..index].iter().any(|other| other.name == scene.name) {
+    for (index, one) in all.iter().enumerate() {
+        if all[..index].iter().any(|other| name(other) == name(one)) {
             return Err(Error::Parameter {
                 name: "SCENE",
-                value: format!("the name of two scenes, '{}'", scene.name),
+                value: format!("the name of two scenes, '{}'", name(one)),
                 expected: "each needs a name of its own: evaluate them one after the other".into(),
             });
         }
     }
-    Ok((scenes, failures))
+    Ok((all, failures))
 }

@@ -11,7 +11,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::anyhow;
 use clap::Args;
 use hsad::{
     Error,
@@ -21,7 +20,7 @@ use serde_json::{Value, json};
 
 use self::{given::Given, record::Record, run::Run};
 use crate::cli::{
-    eval::scenes,
+    eval::{complain, kept, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, write_json},
     report, terminal,
@@ -140,9 +139,7 @@ impl Dense {
         if !self.run.quiet {
             self.tell(&results, &methods)?;
         }
-        let Some(last) = results.failures.pop() else { return Ok(()) };
-        results.failures.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
-        Err(anyhow!("{last}"))
+        complain(&results.failures)
     }
 
     fn tell(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
@@ -155,11 +152,7 @@ impl Dense {
         let mut text = format!("{}\n{}", table::tables(&results.records, methods), table::LEGEND);
         if let Some(folder) = &self.output {
             text += &format!("\nmaps and pictures of errors are in {}", folder.display());
-            if results.kept > 0 {
-                let (kept, all) = (results.kept, results.records.len());
-                text +=
-                    &format!("; {kept} of {all} results were there from an earlier run (--fresh computes them again)");
-            }
+            text += &kept::told(results.kept, results.records.len());
             text.push('\n');
         }
         terminal::print(&text)
@@ -173,7 +166,7 @@ impl Results {
             self.failures.iter().map(|Failure { what, error }| json!({ "what": what, "error": error.to_string() }));
         json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "results": self.records.iter().map(Record::to_json).collect::<Vec<_>>(),
+            "results": self.records.iter().map(kept::Record::to_json).collect::<Vec<_>>(),
             "means": record::means(&self.records, methods),
             "failed": failed.collect::<Vec<_>>(),
         })

@@ -3,7 +3,7 @@
 use hsad::eval::{Score, scene::Scores};
 use serde_json::{Value, json};
 
-use crate::cli::score;
+use crate::cli::{eval::kept, score};
 
 /// How good one method's map of one scene is.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +19,8 @@ pub struct Record {
     pub warnings: Vec<String>,
 }
 
-impl Record {
-    /// For people's programs, and for [`Self::from_json`].
-    pub fn to_json(&self) -> Value {
+impl kept::Record for Record {
+    fn to_json(&self) -> Value {
         let Self { scene, method, scores, range, seconds, warnings } = self;
         json!({
             "scene": scene,
@@ -34,8 +33,7 @@ impl Record {
         })
     }
 
-    /// What [`Self::to_json`] made; `None` where something is missing.
-    pub fn from_json(value: &Value) -> Option<Self> {
+    fn from_json(value: &Value) -> Option<Self> {
         let text = |value: &Value| value.as_str().map(String::from);
         let non_occluded = match value.get("non_occluded")? {
             Value::Null => None,
@@ -50,7 +48,9 @@ impl Record {
             warnings: value["warnings"].as_array()?.iter().map(text).collect::<Option<_>>()?,
         })
     }
+}
 
+impl Record {
     /// Its score over the pixels of `region`, if it is known which these are.
     pub fn score(&self, region: Region) -> Option<&Score> {
         match region {
@@ -191,6 +191,7 @@ pub mod tests {
     };
 
     use super::*;
+    use crate::cli::eval::kept::Record as _;
 
     /// A record of errors, pixel by pixel; NaN is no estimate.
     pub fn record(scene: &str, method: &str, errors: &[f32], non_occluded: Option<&[f32]>) -> Record {

@@ -1,6 +1,6 @@
 //! One scene after the other, by all methods.
 
-use std::{path::PathBuf, time::Instant};
+use std::time::Instant;
 
 use hsad::{
     Result,
@@ -15,21 +15,14 @@ use hsad::{
 use serde_json::Value;
 
 use super::{Dense, Failure, OURS, Results, given::Given, record::Record};
-use crate::cli::{
-    eval::kept::{self, Fingerprint},
-    job,
-    output::Output,
-    products, report,
-    terminal::Progress,
-};
+use crate::cli::{eval::kept::Place, job, output::Output, products, report, terminal::Progress};
 
-/// What makes maps, and where they go.
+/// What makes maps, and where they are kept.
 pub struct Run<'a> {
-    options: &'a Dense,
     config: &'a Config,
     methods: Vec<Method<'a>>,
-    /// Of the program; `None` where no results are kept.
-    fingerprint: Option<Fingerprint>,
+    /// Where the results of all scenes are kept.
+    place: Place,
     progress: Progress,
 }
 
@@ -40,21 +33,14 @@ enum Method<'a> {
     Given(&'a Given),
 }
 
-/// Where a result is kept, and what it depends on.
-struct Place {
-    folder: PathBuf,
-    fingerprint: Fingerprint,
-}
-
 impl<'a> Run<'a> {
     /// Without a backend nothing is matched.
     pub fn new(options: &'a Dense, config: &'a Config, backend: Option<&'a Backend>) -> Self {
         let given = options.given.iter().map(Method::Given);
         Self {
-            options,
             config,
             methods: backend.map(Method::Ours).into_iter().chain(given).collect(),
-            fingerprint: options.output.as_ref().map(|_| Fingerprint::of_program()),
+            place: Place::new(options.output.as_deref(), options.fresh),
             progress: Progress::new(options.run.quiet),
         }
     }
@@ -72,15 +58,12 @@ impl<'a> Run<'a> {
     /// Fails where the scene cannot be read; a method that fails is noted and does not lose the others.
     fn scene(&self, files: &SceneFiles, results: &mut Results) -> Result<()> {
         let paths = files.files(self.config.reference)?;
-        let fingerprint = match &self.fingerprint {
-            Some(program) => Some(paths.into_iter().try_fold(program.clone(), Fingerprint::with_file)?),
-            None => None,
-        };
+        let of_scene = paths.into_iter().try_fold(self.place.clone().below(&files.name), Place::with_file)?;
         // Read when it is first needed, which may be never.
         let mut scene = None;
         for &method in &self.methods {
-            let made = match self.place(files, fingerprint.clone(), method) {
-                Ok(place) => match place.as_ref().and_then(|place| self.kept(place)) {
+            let made = match self.place(of_scene.clone(), &files.name, method) {
+                Ok(place) => match place.find() {
                     Some(record) => {
                         results.kept += 1;
                         Ok(record)
@@ -90,7 +73,7 @@ impl<'a> Run<'a> {
                             Some(scene) => scene,
                             unread => unread.insert(self.read(files)?),
                         };
-                        self.make(&files.name, scene, method, place.as_ref())
+                        self.make(&files.name, scene, method, &place)
                     }
                 },
                 Err(error) => Err(error),
@@ -109,27 +92,14 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Where a result is kept, if it is; `fingerprint` is that of the program and the scene.
-    fn place(&self, files: &SceneFiles, fingerprint: Option<Fingerprint>, method: Method) -> Result<Option<Place>> {
-        let (Some(root), Some(fingerprint)) = (&self.options.output, fingerprint) else { return Ok(None) };
-        let folder = root.join(&files.name);
-        Ok(Some(match method {
+    /// Where a method's result is kept, by that of the scene called `name`.
+    fn place(&self, of_scene: Place, name: &str, method: Method) -> Result<Place> {
+        match method {
             Method::Ours(backend) => {
-                let device = report::device(backend).to_string();
-                Place { folder, fingerprint: fingerprint.with(&format!("{:?}", self.config)).with(&device) }
+                Ok(of_scene.with(&format!("{:?}", self.config)).with(&report::device(backend).to_string()))
             }
-            Method::Given(given) => {
-                let fingerprint = fingerprint.with_file(&given.path(&files.name))?;
-                Place { folder: folder.join(&given.name), fingerprint }
-            }
-        }))
-    }
-
-    fn kept(&self, place: &Place) -> Option<Record> {
-        if self.options.fresh {
-            return None;
+            Method::Given(given) => of_scene.below(&given.name).with_file(&given.path(name)),
         }
-        kept::find(&place.folder, &place.fingerprint).as_ref().and_then(Record::from_json)
     }
 
     fn read(&self, files: &SceneFiles) -> Result<Scene> {
@@ -137,18 +107,15 @@ impl<'a> Run<'a> {
         files.read(self.config.reference)
     }
 
-    fn make(&self, name: &str, scene: &Scene, method: Method, place: Option<&Place>) -> Result<Record> {
+    fn make(&self, name: &str, scene: &Scene, method: Method, place: &Place) -> Result<Record> {
         let (map, record) = match method {
             Method::Ours(backend) => self.ours(backend, name, scene)?,
             Method::Given(given) => self.given(given, name, scene)?,
         };
-        if let Some(Place { folder, fingerprint }) = place {
+        place.keep(&record, |output| {
             self.progress.begin("writing");
-            let mut output = Output::open(folder)?;
-            add_files(&mut output, scene, &map)?;
-            kept::add(&mut output, record.to_json(), fingerprint)?;
-            output.finish()?;
-        }
+            add_files(output, scene, &map)
+        })?;
         Ok(record)
     }
 

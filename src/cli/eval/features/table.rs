@@ -2,6 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::cli::eval::kept;
+
 /// What a column's figures are.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
@@ -22,6 +24,22 @@ pub struct Row {
     pub scene: String,
     pub condition: String,
     pub figures: Vec<f64>,
+}
+
+impl kept::Record for Row {
+    fn to_json(&self) -> Value {
+        json!({ "scene": self.scene, "condition": self.condition, "figures": self.figures })
+    }
+
+    fn from_json(value: &Value) -> Option<Self> {
+        let text = |value: &Value| value.as_str().map(String::from);
+        let figure = |value: &Value| if value.is_null() { Some(f64::NAN) } else { value.as_f64() };
+        Some(Self {
+            scene: text(&value["scene"])?,
+            condition: text(&value["condition"])?,
+            figures: value["figures"].as_array()?.iter().map(figure).collect::<Option<_>>()?,
+        })
+    }
 }
 
 /// Rows in the order of their conditions.
@@ -115,6 +133,7 @@ fn quoted(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::eval::kept::Record as _;
 
     fn table() -> Table {
         let column = |name: &str, unit| Column { name: name.into(), title: name.into(), unit };
@@ -153,5 +172,14 @@ mod tests {
         assert_eq!(json["pairs"][2], json!({"scene": "c", "condition": "noise=3", "n": 7.0, "p": 1.0, "q": 0.25}));
         assert_eq!(json["pairs"][1]["p"], Value::Null);
         assert_eq!(json["means"][0]["n"], 15.0);
+    }
+
+    #[test]
+    fn rows_come_back_with_their_gaps() {
+        let row = Row { scene: "a".into(), condition: "noise=3".into(), figures: vec![0.1, f64::NAN, 7.0] };
+        let back = Row::from_json(&serde_json::from_str(&row.to_json().to_string()).unwrap()).unwrap();
+        assert_eq!((&*back.scene, &*back.condition), ("a", "noise=3"));
+        assert_eq!((back.figures[0], back.figures[1].is_nan(), back.figures[2]), (0.1, true, 7.0));
+        assert!(Row::from_json(&json!({ "scene": "a", "condition": "none", "figures": ["x"] })).is_none());
     }
 }

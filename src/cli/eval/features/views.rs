@@ -1,6 +1,7 @@
 //! Pairs of views with known truth, from folders.
 
 use std::{
+    cell::OnceCell,
     fs,
     path::{Path, PathBuf},
 };
@@ -8,88 +9,126 @@ use std::{
 use glam::DMat3;
 use hsad::{
     Error, Result,
-    eval::Truth,
-    io::{Picture, load, pfm},
+    dense::View,
+    eval::{Truth, scene::SceneFiles},
+    io::{Picture, load},
 };
+
+/// A pair of views, read when it is first needed, which may be never.
+pub struct Pair {
+    pub name: String,
+    files: Files,
+    views: OnceCell<Views>,
+}
+
+enum Files {
+    Stereo(SceneFiles),
+    /// Of a homography set.
+    Plane {
+        first: PathBuf,
+        second: PathBuf,
+        matrix: PathBuf,
+    },
+}
 
 /// Two views and where the second has the points of the first.
 pub struct Views {
-    pub name: String,
     pub first: Picture,
     pub second: Picture,
     pub truth: Truth,
 }
 
-/// What a folder must hold.
-const KINDS: &str = "a scene holds left.png, right.png, disp_left.pfm and mostly nonocc.png; a homography set holds \
-                     img1.png and for others of its views, such as 3, img3.png and H1to3p";
+/// What else than scenes a folder may hold.
+const SETS: &str = "a homography set holds img1.png and for others of its views, such as 3, img3.png and H1to3p";
 
-/// The pairs of a folder: a stereo scene is one, a homography set has one for each view after the first, or only the one
-/// that is asked for.
-pub fn read(folder: &Path, view: Option<u32>) -> Result<Vec<Views>> {
-    let name = folder_name(folder);
-    let file = |name: &str| folder.join(name);
-    let wrong = |reason: String| Error::Format { path: folder.into(), reason };
-    if file("disp_left.pfm").is_file() {
-        if let Some(view) = view {
-            return Err(wrong(format!("view {view} was asked for, but this is a stereo scene, with one pair")));
+impl Pair {
+    /// The pairs at `path`: stereo scenes are one each, a homography set has one for each view after the first, or only
+    /// the one that is asked for.
+    ///
+    /// # Errors
+    /// As [`SceneFiles::find`]; [`Error::Format`] if there is no such view.
+    pub fn find(path: &Path, view: Option<u32>) -> Result<Vec<Self>> {
+        if path.join("img1.png").is_file() {
+            return Self::of_set(path, view);
         }
-        return stereo(folder, name).map(|views| vec![views]);
+        let wrong = |reason: String| Error::Format { path: path.into(), reason };
+        let scenes = SceneFiles::find(path).map_err(|error| match error {
+            Error::Format { reason, .. } => wrong(format!("{reason}; {SETS}")),
+            other => other,
+        })?;
+        if let Some(view) = view {
+            return Err(wrong(format!("view {view} was asked for, but here is a stereo scene, with one pair")));
+        }
+        Ok(scenes.into_iter().map(|files| Self::new(files.name.clone(), Files::Stereo(files))).collect())
     }
-    if !file("img1.png").is_file() {
-        return Err(wrong(format!("no truth is here: {KINDS}")));
+
+    fn of_set(folder: &Path, view: Option<u32>) -> Result<Vec<Self>> {
+        let pair = |k: u32| {
+            let [first, second] = [1, k].map(|k| folder.join(format!("img{k}.png")));
+            let matrix = folder.join(format!("H1to{k}p"));
+            matrix
+                .is_file()
+                .then(|| Self::new(format!("{} 1-{k}", folder_name(folder)), Files::Plane { first, second, matrix }))
+        };
+        let pairs: Vec<_> = (2..100).filter(|&k| view.is_none_or(|view| view == k)).filter_map(pair).collect();
+        if pairs.is_empty() {
+            let reason = match view {
+                Some(view) => format!("view {view} was asked for, but there is no H1to{view}p"),
+                None => format!("there is no homography: {SETS}"),
+            };
+            return Err(Error::Format { path: folder.into(), reason });
+        }
+        Ok(pairs)
     }
-    let first = load::load(&file("img1.png"))?;
-    let numbers: Vec<u32> =
-        (2..100).filter(|&k| view.is_none_or(|view| view == k) && matrix_file(folder, k).is_file()).collect();
-    if numbers.is_empty() {
-        return Err(wrong(match view {
-            Some(view) => format!("view {view} was asked for, but there is no H1to{view}p"),
-            None => format!("there is no homography: {KINDS}"),
-        }));
+
+    fn new(name: String, files: Files) -> Self {
+        Self { name, files, views: OnceCell::new() }
     }
-    let pair = |&k: &u32| {
-        let second = load::load(&file(&format!("img{k}.png")))?;
-        let file = matrix_file(folder, k);
-        let truth = Truth::homography(matrix(&file)?, first.size(), second.size())
-            .map_err(|error| Error::Format { path: file, reason: error.to_string() })?;
-        Ok(Views { name: format!("{name} 1-{k}"), first: first.clone(), second, truth })
-    };
-    numbers.iter().map(pair).collect()
+
+    /// The files that it is made of.
+    ///
+    /// # Errors
+    /// As [`SceneFiles::files`].
+    pub fn files(&self) -> Result<Vec<&Path>> {
+        match &self.files {
+            Files::Stereo(files) => files.files(View::Left),
+            Files::Plane { first, second, matrix } => Ok(vec![first, second, matrix]),
+        }
+    }
+
+    /// Both views and the truth about them.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] of a stereo pair.
+    pub fn views(&self) -> Result<&Views> {
+        if let Some(views) = self.views.get() {
+            return Ok(views);
+        }
+        let views = match &self.files {
+            Files::Stereo(files) => {
+                let scene = files.read(View::Left)?;
+                let truth = Truth::stereo(scene.truth, scene.non_occluded.as_ref())?;
+                Views { first: scene.left, second: scene.right, truth }
+            }
+            Files::Plane { first, second, matrix } => {
+                let (first, second) = (load::load(first)?, load::load(second)?);
+                let truth = Truth::homography(read_matrix(matrix)?, first.size(), second.size())
+                    .map_err(|error| Error::Format { path: matrix.clone(), reason: error.to_string() })?;
+                Views { first, second, truth }
+            }
+        };
+        Ok(self.views.get_or_init(|| views))
+    }
 }
 
 /// What a folder is called.
-pub fn folder_name(folder: &Path) -> String {
+fn folder_name(folder: &Path) -> String {
     let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     name.unwrap_or_else(|| folder.display().to_string())
 }
 
-fn stereo(folder: &Path, name: String) -> Result<Views> {
-    let [first, second] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)));
-    let (first, second) = (first?, second?);
-    let misfit = |error: Error| Error::Format { path: folder.into(), reason: error.to_string() };
-    if first.size() != second.size() {
-        return Err(misfit(Error::SizesDiffer { left: first.size(), right: second.size() }));
-    }
-    let disparities = pfm::read(&folder.join("disp_left.pfm"))?;
-    if disparities.size() != first.size() {
-        let (width, height) = disparities.size();
-        let reason =
-            format!("it has {width}x{height} values, but left.png {}x{} pixels", first.width(), first.height());
-        return Err(Error::Format { path: folder.join("disp_left.pfm"), reason });
-    }
-    let mask = folder.join("nonocc.png");
-    let mask = if mask.is_file() { Some(load::load(&mask)?.luma()) } else { None };
-    let truth = Truth::stereo(disparities, mask.as_ref()).map_err(misfit)?;
-    Ok(Views { name, first, second, truth })
-}
-
-fn matrix_file(folder: &Path, view: u32) -> PathBuf {
-    folder.join(format!("H1to{view}p"))
-}
-
 /// Nine numbers, row by row.
-fn matrix(path: &Path) -> Result<DMat3> {
+fn read_matrix(path: &Path) -> Result<DMat3> {
     let text = fs::read_to_string(path).map_err(|source| Error::Io { path: path.into(), source })?;
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     match numbers.as_deref().map(<[f64; 9]>::try_from) {

@@ -14,7 +14,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::anyhow;
 use clap::Args;
 use hsad::{
     Error,
@@ -25,13 +24,13 @@ use serde_json::json;
 
 use self::{
     curve::Figure,
-    results::{Group, groups},
+    results::{Cell, Group, groups},
     run::{Found, Run},
 };
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        scenes,
+        complain, kept, scenes,
     },
     options::RunOptions,
     output::Output,
@@ -140,9 +139,7 @@ impl Paper {
         if !self.run.quiet && !scenes.is_empty() {
             terminal::print(table::LEGEND)?;
         }
-        let Some(last) = failures.pop() else { return Ok(()) };
-        failures.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
-        Err(anyhow!("{last}"))
+        complain(&failures)
     }
 
     fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Error>)> {
@@ -192,10 +189,8 @@ impl Paper {
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
             text += &format!("\ncurves and plots are in {}", folder.join(scene).display());
-            if found.kept > 0 {
-                let kept = found.kept;
-                text += &format!("; {kept} results were there from an earlier run (--fresh computes them again)");
-            }
+            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Done(_))).count();
+            text += &kept::told(found.kept, done);
             text.push('\n');
         }
         terminal::print(&(text + "\n"))

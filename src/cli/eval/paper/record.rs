@@ -9,6 +9,7 @@ use hsad::{
 use serde_json::{Value, json};
 
 use super::method::{Answers, Method};
+use crate::cli::eval::kept;
 
 /// A method's answers under a condition, held against the truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,9 +60,10 @@ impl Record {
             seconds,
         })
     }
+}
 
-    /// For [`Self::from_json`].
-    pub fn to_json(&self) -> Value {
+impl kept::Record for Record {
+    fn to_json(&self) -> Value {
         let Self { condition, method, points, known, shown, right, pixels, everywhere, seconds } = self;
         json!({
             "condition": condition,
@@ -76,8 +78,7 @@ impl Record {
         })
     }
 
-    /// What [`Self::to_json`] made; `None` where something is missing.
-    pub fn from_json(value: &Value) -> Option<Self> {
+    fn from_json(value: &Value) -> Option<Self> {
         let count = |value: &Value| usize::try_from(value.as_u64()?).ok();
         let judged = |digit| match digit {
             '0' => Some(false),
@@ -125,6 +126,7 @@ fn counted(right: &[bool]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::cli::eval::kept::Record as _;
 
     /// With answers that are right where `right` has a 1, of which the picture has the same.
     pub fn record(condition: &str, method: Method, shown: usize, right: &str) -> Record {

@@ -17,22 +17,18 @@ use hsad::{
 
 use super::{Paper, method::Method, record::Record, results::Cell};
 use crate::cli::{
-    eval::{
-        change::Change,
-        kept::{self, Fingerprint},
-    },
-    output::Output,
+    eval::{change::Change, kept::Place},
     report,
     terminal::Progress,
 };
 
-/// What computes, under which conditions, and what its results depend on.
+/// What computes, under which conditions, and where its results are kept.
 pub struct Run<'a> {
     options: &'a Paper,
     changes: &'a [Change],
     backend: &'a Backend,
-    /// Of the program, the device and the options; `None` where no results are kept.
-    fingerprint: Option<Fingerprint>,
+    /// Where the results of all scenes are kept.
+    place: Place,
     pub progress: Progress,
 }
 
@@ -74,11 +70,11 @@ impl Views<'_> {
 
 impl<'a> Run<'a> {
     pub fn new(options: &'a Paper, changes: &'a [Change], backend: &'a Backend) -> Self {
-        let fingerprint = options.output.as_ref().map(|_| {
-            let program = Fingerprint::of_program().with(&report::device(backend).to_string());
-            program.with(&format!("{} {}", options.tolerance, options.seed)).with(&Method::Sparse.described())
-        });
-        Self { options, changes, backend, fingerprint, progress: Progress::new(options.run.quiet) }
+        let place = Place::new(options.output.as_deref(), options.fresh)
+            .with(&report::device(backend).to_string())
+            .with(&format!("{} {}", options.tolerance, options.seed))
+            .with(&Method::Sparse.described());
+        Self { options, changes, backend, place, progress: Progress::new(options.run.quiet) }
     }
 
     /// What all methods make of a scene under all conditions; what fails loses no other condition.
@@ -87,10 +83,7 @@ impl<'a> Run<'a> {
     /// Where a file that results depend on cannot be read.
     pub fn scene(&self, files: &SceneFiles) -> Result<Found> {
         let paths = files.files(View::Left)?;
-        let fingerprint = match &self.fingerprint {
-            Some(options) => Some(paths.into_iter().try_fold(options.clone(), Fingerprint::with_file)?),
-            None => None,
-        };
+        let of_scene = paths.into_iter().try_fold(self.place.clone().below(&files.name), Place::with_file)?;
         let mut found = Found::default();
         let mut views = Views { files, scene: None, changed: None };
         for (number, change) in (1..).zip(self.changes) {
@@ -104,7 +97,9 @@ impl<'a> Run<'a> {
                     continue;
                 }
                 self.progress.begin(method.name());
-                match self.record(&mut views, change, method, &points, fingerprint.clone(), &mut found.kept) {
+                let place = of_scene.clone().below(&change.name).below(method.name());
+                let place = place.with(&change.name).with(&method.described());
+                match self.record(&mut views, change, method, &points, &place, &mut found.kept) {
                     Ok(record) => {
                         if !method.needs_rows() {
                             points.clone_from(&record.points);
@@ -130,16 +125,10 @@ impl<'a> Run<'a> {
         change: &Change,
         method: Method,
         points: &[DVec2],
-        fingerprint: Option<Fingerprint>,
+        place: &Place,
         kept: &mut usize,
     ) -> Result<Record> {
-        let place = self.options.output.as_ref().zip(fingerprint).map(|(root, fingerprint)| {
-            let folder = root.join(&views.files.name).join(&change.name).join(method.name());
-            (folder, fingerprint.with(&change.name).with(&method.described()))
-        });
-        if let (Some((folder, fingerprint)), false) = (&place, self.options.fresh)
-            && let Some(record) = kept::find(folder, fingerprint).as_ref().and_then(Record::from_json)
-        {
+        if let Some(record) = place.find() {
             *kept += 1;
             return Ok(record);
         }
@@ -149,11 +138,7 @@ impl<'a> Run<'a> {
         let seconds = start.elapsed().as_secs_f64();
         let judged = (truth, &scene.truth);
         let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;
-        if let Some((folder, fingerprint)) = &place {
-            let mut output = Output::open(folder)?;
-            kept::add(&mut output, record.to_json(), fingerprint)?;
-            output.finish()?;
-        }
+        place.keep(&record, |_| Ok(()))?;
         Ok(record)
     }
 }
