@@ -65,8 +65,10 @@ pub mod filter;
 pub mod gpu;
 pub mod hybrid;
 pub mod image;
+pub mod input;
 pub mod io;
 pub mod luma;
+pub mod luma_texture;
 pub mod matching;
 pub mod pair;
 pub mod pipeline;
@@ -81,7 +83,7 @@ pub use wgpu;
 
 /// Every stage there is, for checks that need no GPU.
 pub fn stages() -> Vec<gpu::Stage> {
-    let mut stages = vec![luma::stage()];
+    let mut stages = vec![luma::stage(), luma_texture::stage()];
     stages.extend(features::stages());
     stages.extend(dense::stages());
     stages.extend(hybrid::stages());

@@ -7,6 +7,7 @@ use crate::{
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
     hybrid::{self, HybridConfig},
     image::{Luma, reduced},
+    input::Source,
     io::Picture,
     luma::{MAX_SIDE, RgbaToLuma, packed_bytes, unpack, upload},
     reference,
@@ -180,7 +181,14 @@ impl<'b> Pair<'b> {
     pub fn dense(&self, config: &DenseConfig) -> Result<Dense> {
         match &self.device {
             Some(OnDevice { gpu, left, right }) => {
-                dense::Matcher::new(&gpu.device, self.size(), config, left, right)?.run(gpu)
+                let device = &gpu.device;
+                let matcher = dense::Matcher::new(device, self.size(), config)?;
+                let inputs = matcher.inputs(device, Source::Luma(left), Source::Luma(right))?;
+                let mut encoder =
+                    device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
+                inputs.record(&mut encoder);
+                gpu.queue.submit([encoder.finish()]);
+                matcher.run(gpu)
             }
             None => reference::compute_dense(&self.left, &self.right, config),
         }
@@ -200,7 +208,7 @@ fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
         for (first_row, pixels) in bands {
             let rgba = storage_buffer(device, "rows of the picture", pixels.len() as u64)?;
             gpu.queue.write_buffer(&rgba, 0, pixels);
-            let band = RgbaToLuma::new(device, &rgba, width, rows.min(height - first_row))?;
+            let band = RgbaToLuma::new(&device.into(), &rgba, width, rows.min(height - first_row))?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
             band.record(&mut encoder);
             encoder.copy_buffer_to_buffer(band.luma(), 0, &luma, packed_bytes(width, first_row), None);

@@ -3,7 +3,7 @@
 use super::cells::{CELL, CellBand, REACH};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 /// Per cent of a cell's smallest disparities, and of its largest, that are taken for wrong.
@@ -61,7 +61,7 @@ impl CellRanges {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 

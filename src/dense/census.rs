@@ -1,7 +1,7 @@
 //! The census transform, with the luma beside it. `shaders/census.wgsl`.
 
-use super::pad::{Brightness, PadParams};
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use super::pad::PadParams;
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
@@ -28,13 +28,13 @@ impl Census {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 
-    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it, after a change of
-    /// brightness: from the buffer's first word on. Rows outside the picture are those of its edge.
-    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32, brightness: Brightness) -> PadParams {
+    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
+    /// word on. Rows outside the picture are those of its edge.
+    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32) -> PadParams {
         PadParams {
             width,
             height,
@@ -43,7 +43,6 @@ impl Census {
             rows: rows + 4,
             stride: Self::stride(width),
             offset: 0,
-            brightness,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -53,7 +53,7 @@ impl Fill {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 

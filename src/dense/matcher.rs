@@ -1,17 +1,25 @@
 //! The dense half of one pair size: all kernels, all memory, and the order of things.
 
+use std::sync::OnceLock;
+
 use super::{
     blocks,
-    config::{Aggregation, DenseConfig},
-    plan::Plan,
+    config::{Aggregation, DenseConfig, View},
+    inputs::Inputs,
+    map_texture::{MapRows, MapTexel, MapTexture},
+    outputs::{Destination, Disparities, Outputs},
+    pad::Brightness,
+    plan::{Copy, Plan},
     semi_global,
 };
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
-    gpu::{Gpu, Readback, guarded},
+    gpu::{Context, Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer},
     image::{Luma, Plane},
-    luma::{check_packed, unpack, upload},
+    input::{Input, Source, check_buffer, check_texture, try_recording},
+    luma::{check_size, pack, packed_bytes, unpack},
+    luma_texture::LumaTexture,
 };
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
@@ -35,62 +43,68 @@ impl Dense {
 
 /// Dense matching of pairs of one size on a borrowed device.
 ///
+/// It is built once for a size and a configuration; what an application has for it in each frame, textures or buffers, is
+/// prepared once as [`Self::inputs`] and [`Self::outputs`], of which there may be as many as it has frames in flight. Then
+/// [`Inputs::record`] and [`Self::record`] go into an encoder: they submit nothing, map nothing, write no buffer by the
+/// queue and create nothing on the device.
+///
+/// The disparities that are searched are part of the kernels: for others build another matcher. Only
+/// [`Self::set_brightness`] changes what is there.
+///
 /// Pictures whose planes do not fit in one buffer are matched in bands of rows; no result depends
 /// on where they are cut.
 pub struct Matcher {
     size: (u32, u32),
+    /// Packed luma, left and right.
+    luma: [wgpu::Buffer; 2],
     plan: Plan,
+    luma_texture: OnceLock<LumaTexture>,
+    map_textures: [OnceLock<MapTexture>; 2],
 }
 
 impl Matcher {
-    /// Compiles the kernels and allocates all memory for packed `left` and `right` of `size`
-    /// (rows of `width.div_ceil(4)` words, four pixels a word).
+    /// Compiles the kernels and allocates all memory for pairs of `size`.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
-    /// the device cannot bind, and what the device says.
-    pub fn new(
-        device: &wgpu::Device,
-        size: (u32, u32),
-        config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
-    ) -> Result<Self> {
-        Self::with_band_rows(device, size, config, left, right, u32::MAX)
+    /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
+    pub fn new<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        Self::with_band_rows(device, size, config, u32::MAX)
     }
 
     /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn with_band_rows(
-        device: &wgpu::Device,
+    pub fn with_band_rows<'c>(
+        device: impl Into<Context<'c>>,
         size: (u32, u32),
         config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
         band_rows: u32,
     ) -> Result<Self> {
+        let device = &device.into();
         config.validate()?;
-        for luma in [left, right] {
-            check_packed(luma, size.0, size.1)?;
-        }
+        check_size(size.0, size.1)?;
+        check_limits(device)?;
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
-        let plan = guarded(device, "dense matching", || match &config.aggregation {
-            Aggregation::Window { search, .. } => {
-                blocks::plan(device, size, config, *search, [left, right], (limit, band_rows))
-            }
-            Aggregation::Paths(paths) => {
-                semi_global::plan(device, size, config, paths, [left, right], (limit, band_rows))
-            }
-        })?;
-        Ok(Self { size, plan })
+        guarded(device, "dense matching", || {
+            let luma = |label| storage_buffer(device, label, packed_bytes(size.0, size.1));
+            let luma = [luma("left luma")?, luma("right luma")?];
+            let views = [&luma[0], &luma[1]];
+            let plan = match &config.aggregation {
+                Aggregation::Window { search, .. } => {
+                    blocks::plan(device, size, config, *search, views, (limit, band_rows))
+                }
+                Aggregation::Paths(paths) => semi_global::plan(device, size, config, paths, views, (limit, band_rows)),
+            }?;
+            Ok(Self { size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
+        })
     }
 
     /// Bytes of device memory that this matcher holds.
     pub fn memory(&self) -> u64 {
-        self.plan.bytes
+        self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + self.plan.bytes
     }
 
     /// In how many bands of rows the pair is matched.
@@ -98,11 +112,97 @@ impl Matcher {
         self.plan.bands
     }
 
-    /// Records the whole matching, which ends with `disparities` (`i32`) and `confidences` (0 to 255,
-    /// four a word, in rows of `width.div_ceil(4)` words) of every pixel of the reference view in
-    /// the caller's buffers, row by row. Both need `COPY_DST`.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer) {
-        self.plan.record(encoder, disparities, confidences);
+    /// The packed luma of the left and of the right view (see [`crate::luma`]) that is matched: what [`Inputs::record`]
+    /// writes, where it is used, and a [`crate::features::Detector`] can read too. Both have `STORAGE`, `COPY_SRC` and
+    /// `COPY_DST`.
+    pub fn luma(&self) -> [&wgpu::Buffer; 2] {
+        self.luma.each_ref()
+    }
+
+    /// Prepares what turns two views into the matcher's [`Self::luma`]; it holds on to them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
+    /// device has against it.
+    pub fn inputs<'c>(&self, device: impl Into<Context<'c>>, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
+        let device = &device.into();
+        let input = |name, source, luma| Input::with_kernel(device, name, self.size, source, luma, &self.luma_texture);
+        let [left_luma, right_luma] = self.luma();
+        Ok(Inputs([input("the left view", left, left_luma)?, input("the right view", right, right_luma)?]))
+    }
+
+    /// Prepares the way of the answers to `disparities` and, if they are wanted, to `confidences`: a buffer with
+    /// `COPY_DST` for 0 to 255 a pixel, four a word, in rows of `width.div_ceil(4)` words. It holds on to them.
+    ///
+    /// # Errors
+    /// As [`Self::inputs`].
+    pub fn outputs<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        disparities: Destination<'_>,
+        confidences: Option<&wgpu::Buffer>,
+    ) -> Result<Outputs> {
+        let device = &device.into();
+        let (width, height) = self.size;
+        if let Some(buffer) = confidences {
+            check_buffer("the confidences", buffer, packed_bytes(width, height), wgpu::BufferUsages::COPY_DST)?;
+        }
+        let disparities = match disparities {
+            Destination::Buffer(buffer) => {
+                let bytes = 4 * u64::from(width) * u64::from(height);
+                check_buffer("the disparities", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
+                Disparities::Buffer(buffer.clone())
+            }
+            Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view)?),
+        };
+        let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
+        try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs))?;
+        Ok(outputs)
+    }
+
+    /// What brings each of the plan's answers to a texture.
+    fn to_texture(&self, device: &Context<'_>, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
+        let (name, format) = ("the disparities", view.texture().format());
+        let Some(texel) = MapTexel::new(format) else {
+            return Err(Error::Parameter {
+                name,
+                value: format!("a texture of format {format:?}"),
+                expected: format!("it must be one of {:?}", MapTexel::ALL.map(MapTexel::format)),
+            });
+        };
+        check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
+        guarded(device, name, || {
+            let kernel = self.map_textures[texel as usize].get_or_init(|| MapTexture::new(device, texel));
+            let width = self.size.0;
+            let dispatch = |answer: &Copy| {
+                let row = |word: u64| (word / u64::from(width)) as u32;
+                let (rows, first_row) = (row(answer.words), row(answer.to_word));
+                let rows = MapRows { width, rows, first_word: answer.from_word as u32, first_row };
+                kernel.prepare(device, rows, &answer.from, view)
+            };
+            Ok(self.plan.answers().map(dispatch).collect())
+        })
+    }
+
+    /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what
+    /// `queue` is given after this.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for what 32 bits do not hold.
+    pub fn set_brightness(&self, queue: &wgpu::Queue, brightness: Brightness) -> Result<()> {
+        brightness.validate()?;
+        queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));
+        Ok(())
+    }
+
+    /// Records the matching of what [`Self::luma`] holds then; all pixels of the outputs are overwritten, and nothing
+    /// else of them. Recorded twice in one encoder, it is done twice, one after the other, in the same memory.
+    ///
+    /// # Panics
+    /// If `outputs` were prepared for another matcher.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
+        assert_eq!(outputs.of, self.luma[0], "outputs of another matcher");
+        self.plan.record(encoder, outputs);
     }
 }
 
@@ -114,13 +214,15 @@ pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Re
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let (left_luma, right_luma) = (upload(gpu, left)?, upload(gpu, right)?);
-    let matcher = Matcher::new(&gpu.device, left.size(), config, &left_luma, &right_luma)?;
+    let matcher = Matcher::new(&gpu.device, left.size(), config)?;
+    for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
+    }
     matcher.run(gpu)
 }
 
 impl Matcher {
-    /// Submits the whole matching on `gpu` and waits for the result.
+    /// Submits the matching of what [`Self::luma`] holds on `gpu`, and waits for the result.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
@@ -133,9 +235,13 @@ impl Matcher {
             let lengths = [("disparities", pixels), ("confidences", row_words * height as usize)];
             Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
         })?;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
-        self.record(&mut encoder, disparities.buffer(), confidences.buffer());
-        gpu.queue.submit([encoder.finish()]);
+        let outputs = self.outputs(device, Destination::Buffer(disparities.buffer()), Some(confidences.buffer()))?;
+        guarded(device, "dense matching", || {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
+            self.record(&mut encoder, &outputs);
+            gpu.queue.submit([encoder.finish()]);
+            Ok(())
+        })?;
         let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
         let words: Vec<u32> = confidences.read(device, row_words * height as usize)?;
         let confidence = unpack(width, height, &words);

@@ -21,7 +21,10 @@ mod consistency;
 mod cost;
 mod fill;
 mod halve;
+mod inputs;
+mod map_texture;
 mod matcher;
+mod outputs;
 mod pad;
 mod partner_ranges;
 mod path;
@@ -46,7 +49,10 @@ pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
 pub use halve::Halve;
+pub use inputs::Inputs;
+pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use matcher::{Dense, Matcher, compute};
+pub use outputs::{Destination, Outputs};
 pub use pad::{Brightness, Pad, PadParams};
 pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};
@@ -84,6 +90,7 @@ pub fn stages() -> Vec<Stage> {
     }));
     stages.extend([Support::stage(5), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
+    stages.extend(MapTexel::ALL.map(MapTexture::stage));
     stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));
     stages
 }

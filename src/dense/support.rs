@@ -2,7 +2,7 @@
 
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -46,7 +46,7 @@ impl Support {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, least: u32) -> Self {
+    pub fn new(device: &Context<'_>, least: u32) -> Self {
         Self(Kernel::new(device, &Self::stage(least)))
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     disparity::NONE,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -55,7 +55,7 @@ impl WeightedMedian {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, median: Median) -> Self {
+    pub fn new(device: &Context<'_>, median: Median) -> Self {
         Self(Kernel::new(device, &Self::stage(median)))
     }
 

@@ -6,7 +6,7 @@ use super::{
     hessian::{DETERMINANT_SCALE, Hessian},
     integral_columns::IntegralColumns,
     integral_rows::IntegralRows,
-    keypoints::Keypoint,
+    keypoints::{Keypoint, KeypointList},
     nonmax::Nonmax,
     orientation::Orientation,
     too_many,
@@ -14,12 +14,16 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, guarded},
+    gpu::{Context, Gpu, Readback, check_limits, guarded},
     image::Luma,
     luma::{check_packed, upload},
 };
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
+///
+/// What it finds stays on the device, in [`Self::keypoints`] and [`Self::descriptors`], for kernels of the application to
+/// read, or to be copied from where it does not want to wait: [`collect`] makes [`Feature`]s of the copies. [`Self::read`]
+/// does all that at once, and waits.
 pub struct Detector {
     rows: IntegralRows,
     columns: IntegralColumns,
@@ -42,15 +46,17 @@ impl Detector {
     /// # Errors
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
-    pub fn new(
-        device: &wgpu::Device,
+    pub fn new<'c>(
+        device: impl Into<Context<'c>>,
         luma: &wgpu::Buffer,
         width: u32,
         height: u32,
         config: &FeatureConfig,
     ) -> Result<Self> {
+        let device = &device.into();
         config.validate()?;
         check_packed(luma, width, height)?;
+        check_limits(device)?;
         guarded(device, "finding interest points", || {
             let rows = IntegralRows::new(device, luma, width, height)?;
             let integral = rows.sums();
@@ -66,7 +72,17 @@ impl Detector {
         })
     }
 
-    /// Records everything from the integral image to the descriptors.
+    /// How many keypoints were found, and what they are.
+    pub fn keypoints(&self) -> &KeypointList {
+        self.nonmax.list()
+    }
+
+    /// The descriptors: [`DESCRIPTOR_LENGTH`] values of `f32` for each keypoint, in the order of the list.
+    pub fn descriptors(&self) -> &wgpu::Buffer {
+        self.descriptor.descriptors()
+    }
+
+    /// Records everything from the integral image to the descriptors. What was found before is overwritten.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.rows.record(encoder);
         self.columns.record(encoder);
@@ -107,11 +123,15 @@ impl Detector {
         });
         let keypoints = keypoints.read::<Keypoint>(device, found)?;
         let descriptors = descriptors.read::<Values>(device, found)?;
-
-        let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
-        features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
-        Ok(features.into_iter().map(|(keypoint, descriptor)| feature(keypoint, descriptor)).collect())
+        Ok(collect(&keypoints, &descriptors))
     }
+}
+
+/// The features of the keypoints of a list, each with its descriptor, sorted by octave, layer, row and column.
+pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]]) -> Vec<Feature> {
+    let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
+    features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
+    features.into_iter().map(|(keypoint, &descriptor)| feature(keypoint, descriptor)).collect()
 }
 
 /// Finds and describes the interest points of one picture.

@@ -18,7 +18,7 @@ mod detector;
 
 pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
-pub use detector::{Detector, detect};
+pub use detector::{Detector, collect, detect};
 
 use crate::gpu::Stage;
 
