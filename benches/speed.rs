@@ -1,10 +1,14 @@
 //! What the two halves take on a device, cold and warm: `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES]]`.
 //!
 //! One line a measurement: its name, the first run (which compiles) and the minimum and the median of
-//! the others, in milliseconds. `scripts/compare-opencv.py` runs it beside OpenCV.
+//! the others, in milliseconds; below a dense one what each kernel takes by the device's clock. `scripts/compare-opencv.py` runs it beside OpenCV.
 #![expect(clippy::print_stdout, reason = "a benchmark prints")]
 
-use std::{hint::black_box, path::Path, time::Instant};
+use std::{
+    hint::black_box,
+    path::Path,
+    time::{Duration, Instant},
+};
 
 use hsad::{
     config::Preset,
@@ -21,6 +25,7 @@ use hsad::{
 };
 
 const RUNS: usize = 20;
+const PROFILES: usize = 12;
 
 fn main() -> hsad::Result<()> {
     // Cargo adds a --bench of its own.
@@ -93,6 +98,27 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
             submit(gpu, |encoder| matcher.record(encoder, &outputs));
             Ok(())
         })?;
+        kernels(gpu, &matcher)?;
+    }
+    Ok(())
+}
+
+/// What each kernel takes by the device's clock: the sum of its dispatches, each at its fastest.
+fn kernels(gpu: &Gpu, matcher: &Matcher) -> hsad::Result<()> {
+    let (_, mut least) = matcher.profile(gpu)?;
+    for _ in 1..PROFILES {
+        let (_, times) = matcher.profile(gpu)?;
+        least.iter_mut().zip(times).for_each(|(least, time)| least.1 = least.1.min(time.1));
+    }
+    let mut sums: Vec<(&str, usize, Duration)> = Vec::new();
+    for (name, time) in least {
+        match sums.iter_mut().find(|sum| sum.0 == name) {
+            Some(sum) => (sum.1, sum.2) = (sum.1 + 1, sum.2 + time),
+            None => sums.push((name, 1, time)),
+        }
+    }
+    for (name, dispatches, time) in sums {
+        println!("  {name}: {:.2} ms in {dispatches}", 1e3 * time.as_secs_f64());
     }
     Ok(())
 }

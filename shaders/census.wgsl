@@ -17,25 +17,21 @@ struct Params {
 // A word a pixel.
 @group(0) @binding(2) var<storage, read_write> census: array<u32>;
 
-@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let x = 4u * id.x;
-    if x >= params.width || id.y >= params.rows {
-        return;
-    }
-    // Two columns left of the thread's four pixels to two right of them.
-    var window: array<array<u32, 8>, 5>;
-    for (var j = 0; j < 5; j++) { // unroll
-        let first = (id.y + j) * params.stride + id.x;
-        let left = plane[first];
-        let middle = plane[first + 1u];
-        let right = plane[first + 2u];
-        window[j] = array<u32, 8>(
-            (left >> 16u) & 255u, left >> 24u,
-            middle & 255u, (middle >> 8u) & 255u, (middle >> 16u) & 255u, middle >> 24u,
-            right & 255u, (right >> 8u) & 255u,
-        );
-    }
+// Of a row of the plane, the thread's four pixels and two on either side.
+alias Row = array<u32, 8>;
+
+fn row_at(first: u32) -> Row {
+    let left = plane[first];
+    let middle = plane[first + 1u];
+    let right = plane[first + 2u];
+    return Row(
+        (left >> 16u) & 255u, left >> 24u,
+        middle & 255u, (middle >> 8u) & 255u, (middle >> 16u) & 255u, middle >> 24u,
+        right & 255u, (right >> 8u) & 255u,
+    );
+}
+
+fn transformed(window: array<Row, 5>) -> vec4<u32> {
     let centre = vec4<u32>(window[2][2], window[2][3], window[2][4], window[2][5]);
     var bits = vec4<u32>(0u);
     for (var j = 0; j < 5; j++) { // unroll
@@ -46,10 +42,31 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
     }
-    let words = (bits << vec4<u32>(8u)) | centre;
-    for (var t = 0; t < 4; t++) { // unroll
-        if x + t < params.width {
-            census[id.y * params.width + x + t] = words[t];
+    return (bits << vec4<u32>(8u)) | centre;
+}
+
+// A thread transforms four pixels of a row, and those below them in ROWS rows.
+@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = 4u * id.x;
+    let first = ROWS * id.y;
+    if x >= params.width || first >= params.rows {
+        return;
+    }
+    var window: array<Row, 5>;
+    for (var j = 0; j < 4; j++) { // unroll
+        window[j + 1] = row_at((first + j) * params.stride + id.x);
+    }
+    for (var y = first; y < min(first + ROWS, params.rows); y++) {
+        for (var j = 0; j < 4; j++) { // unroll
+            window[j] = window[j + 1];
+        }
+        window[4] = row_at((y + 4u) * params.stride + id.x);
+        let words = transformed(window);
+        for (var t = 0; t < 4; t++) { // unroll
+            if x + t < params.width {
+                census[y * params.width + x + t] = words[t];
+            }
         }
     }
 }

@@ -14,8 +14,14 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> disparities: array<i32>;
+// In a texture, since it is read here and there.
+@group(0) @binding(1) var disparities: texture_2d<u32>;
 @group(0) @binding(2) var<storage, read_write> filled: array<i32>;
+
+// The disparity of a pixel.
+fn disparity_at(pixel: i32) -> i32 {
+    return bitcast<i32>(word_of(disparities, u32(pixel)));
+}
 
 // The quotient, rounded down.
 fn divided(numerator: i32, divisor: i32) -> i32 {
@@ -27,7 +33,7 @@ fn divided(numerator: i32, divisor: i32) -> i32 {
 fn first_with_disparity(row: i32, x: i32, step: i32) -> i32 {
     var column = x + step;
     while column >= 0 && column < i32(params.width) {
-        if disparities[row + column] != NONE {
+        if disparity_at(row + column) != NONE {
             break;
         }
         column += step;
@@ -35,9 +41,21 @@ fn first_with_disparity(row: i32, x: i32, step: i32) -> i32 {
     return column;
 }
 
-// The disparity at x of the surface that ends at column `end`, and lies beyond it in steps of -1 or 1.
-fn surface(row: i32, x: i32, end: i32, step: i32) -> i32 {
-    let first = disparities[row + end];
+// A surface that ends at a column.
+struct Surface {
+    end: i32,
+    // The disparity there.
+    first: i32,
+    // How many disparities are known of it, and what is their mean less the first.
+    count: i32,
+    mean: i32,
+    // By how many sixteenths the disparity changes a column, away from the hole.
+    slope: i32,
+}
+
+// The surface that ends at column `end`, and lies beyond it in steps of -1 or 1.
+fn surface(row: i32, end: i32, step: i32) -> Surface {
+    let first = disparity_at(row + end);
     // All relative to the first: the number of disparities, their sum, and that of each times its place.
     var count = 0;
     var sum = 0;
@@ -48,7 +66,7 @@ fn surface(row: i32, x: i32, end: i32, step: i32) -> i32 {
         if column < 0 || column >= i32(params.width) {
             break;
         }
-        let disparity = disparities[row + column];
+        let disparity = disparity_at(row + column);
         if disparity == NONE || abs(disparity - previous) > SCALE {
             break;
         }
@@ -57,37 +75,56 @@ fn surface(row: i32, x: i32, end: i32, step: i32) -> i32 {
         previous = disparity;
         count++;
     }
-    if count < SHORTEST {
-        return first;
-    }
-    // Sixteenths: 12 sum((place - mean place) disparity) / (count (count^2 - 1)) is the slope.
-    let slope = divided(96 * (2 * moment - (count - 1) * sum), count * (count * count - 1));
-    let limited = clamp(slope, -16 * STEEPEST, 16 * STEEPEST);
-    let change = divided(sum, count) - ((limited * (2 * abs(x - end) + count - 1)) >> 5u);
-    return clamp(first + clamp(change, -FARTHEST, FARTHEST), params.least, params.most);
+    // 12 sum((place - mean place) disparity) / (count (count^2 - 1)) is the slope.
+    let slope = divided(96 * (2 * moment - (count - 1) * sum), max(count * (count * count - 1), 1));
+    return Surface(end, first, count, divided(sum, max(count, 1)), clamp(slope, -16 * STEEPEST, 16 * STEEPEST));
 }
 
+// The disparity at x of a surface that goes on.
+fn continued(surface: Surface, x: i32) -> i32 {
+    let change = surface.mean - ((surface.slope * (2 * abs(x - surface.end) + surface.count - 1)) >> 5u);
+    let sloped = clamp(surface.first + clamp(change, -FARTHEST, FARTHEST), params.least, params.most);
+    return select(sloped, surface.first, surface.count < SHORTEST);
+}
+
+// A thread has four pixels of a row, which mostly lie in one hole.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= params.width || id.y >= params.height {
+    let x = 4 * i32(id.x);
+    let width = i32(params.width);
+    if x >= width || id.y >= params.height {
         return;
     }
-    let x = i32(id.x);
     let row = i32(id.y * params.width);
-    var disparity = disparities[row + x];
-    if disparity == NONE {
-        let left = first_with_disparity(row, x, -1);
-        let right = first_with_disparity(row, x, 1);
-        var from_left = NOTHING;
-        if left >= 0 {
-            from_left = surface(row, x, left, -1);
-        }
-        var from_right = NOTHING;
-        if right < i32(params.width) {
-            from_right = surface(row, x, right, 1);
-        }
-        let nearer = min(from_left, from_right);
-        disparity = select(nearer, NONE, nearer == NOTHING);
+    var disparities_here: vec4<i32>;
+    var pending = 0u;
+    for (var t = 0; t < 4; t++) { // unroll
+        let disparity = disparity_at(row + min(x + t, width - 1));
+        disparities_here[t] = disparity;
+        pending |= select(0u, 1u << t, disparity == NONE);
     }
-    filled[row + x] = disparity;
+    while pending != 0u {
+        let first = x + i32(firstTrailingBit(pending));
+        let left = first_with_disparity(row, first, -1);
+        let right = first_with_disparity(row, first, 1);
+        let from_left = surface(row, max(left, 0), -1);
+        let from_right = surface(row, min(right, width - 1), 1);
+        for (var t = 0; t < 4; t++) { // unroll
+            let nearer = min(
+                select(NOTHING, continued(from_left, x + t), left >= 0),
+                select(NOTHING, continued(from_right, x + t), right < width),
+            );
+            let is_here = (pending & (1u << t)) != 0u && x + t < right;
+            let fills = is_here && nearer != NOTHING;
+            disparities_here[t] = select(disparities_here[t], nearer, fills);
+            pending &= select(0xffffffffu, ~(1u << t), is_here);
+        }
+        // What lies right of the picture is nobody's.
+        pending &= select(0xffffffffu, 0u, right >= width);
+    }
+    for (var t = 0; t < 4; t++) { // unroll
+        if x + t < width {
+            filled[row + x + t] = disparities_here[t];
+        }
+    }
 }

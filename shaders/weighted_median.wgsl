@@ -5,6 +5,9 @@
 // ICCV 2013; here with integer weights and straight from the definition. A neighbour whose luma differs
 // by g weighs 256 / 2^(g / 2^HALVING_BITS), interpolated between whole powers. The median is the least
 // disparity of the window for which those up to it weigh at least half of all.
+//
+// A thread filters four pixels of a row, and those below them in ROWS rows: of the next window it has
+// all but one row, KEPT.
 
 struct Params {
     width: u32,
@@ -21,52 +24,62 @@ struct Params {
 @group(0) @binding(3) var<storage, read> before: array<i32>;
 @group(0) @binding(4) var<storage, read_write> filtered: array<i32>;
 
+// The disparities of a row, from RADIUS columns left of a thread's pixels to RADIUS right of them, and the
+// lumas, packed: of the thread's pixels and four on either side.
+struct Row {
+    disparities: array<i32, SPAN>,
+    luma: array<u32, 3>,
+}
+
+// What a thread sees.
+alias Window = array<Row, SIDE>;
+
 fn weight(difference: vec4<u32>) -> vec4<u32> {
     let sixteenths = (difference << vec4<u32>(4u)) >> vec4<u32>(HALVING_BITS);
     let fraction = sixteenths & vec4<u32>(15u);
     return ((32u - fraction) * 8u) >> min(sixteenths >> vec4<u32>(4u), vec4<u32>(31u));
 }
 
-// A thread filters four pixels of a row.
-@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let x = 4 * i32(id.x);
-    let y = i32(id.y);
+// Row `y` around the thread's pixels, of which x is the first. Outside are no disparities; lumas there are
+// anything.
+fn row_at(x: i32, y: i32) -> Row {
     let width = i32(params.width);
-    let height = i32(params.height);
-    if x >= width || y >= height {
-        return;
+    let nearest_row = clamp(y, 0, i32(params.height) - 1);
+    var row: Row;
+    for (var i = 0; i < SPAN; i++) { // unroll
+        let column = x + i - RADIUS;
+        let nearest = clamp(column, 0, width - 1);
+        let disparity = disparities[nearest_row * width + nearest];
+        row.disparities[i] = select(NONE, disparity, y == nearest_row && column == nearest);
     }
-    let luma_stride = (params.width + 3u) / 4u;
-    let own_word = luma[params.luma_start + u32(y) * luma_stride + id.x];
-    let own = (vec4<u32>(own_word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
+    let luma_stride = (width + 3) / 4;
+    for (var i = 0; i < 3; i++) { // unroll
+        let word = clamp(x / 4 + i - 1, 0, luma_stride - 1);
+        row.luma[i] = luma[params.luma_start + u32(nearest_row * luma_stride + word)];
+    }
+    return row;
+}
 
+// The medians of the thread's pixels where they are wanted; elsewhere anything.
+fn median(window: Window, wanted: vec4<bool>, otherwise: vec4<i32>) -> vec4<i32> {
+    let own = (vec4<u32>(window[RADIUS].luma[1]) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
     var values: array<array<vec4<i32>, SIDE>, SIDE>;
     var weights: array<array<vec4<u32>, SIDE>, SIDE>;
     var total = vec4<u32>(0u);
     var low = vec4<i32>(FARTHEST);
     var high = vec4<i32>(-FARTHEST);
     for (var j = 0; j < SIDE; j++) { // unroll
-        let row = y + j - RADIUS;
-        let nearest_row = clamp(row, 0, height - 1);
-        var neighbours: array<i32, SPAN>;
-        // The words of the thread's pixels and of those left and right of them, which hold at least four more
-        // each. Lumas of columns outside are anything: their disparities do not count.
-        var words: array<u32, 3>;
-        for (var i = 0; i < 3; i++) { // unroll
-            let word = clamp(i32(id.x) + i - 1, 0, i32(luma_stride) - 1);
-            words[i] = luma[params.luma_start + u32(nearest_row) * luma_stride + u32(word)];
-        }
         var lumas: array<u32, SPAN>;
         for (var i = 0; i < SPAN; i++) { // unroll
-            let column = x + i - RADIUS;
-            let nearest = clamp(column, 0, width - 1);
-            let disparity = disparities[nearest_row * width + nearest];
-            neighbours[i] = select(NONE, disparity, row == nearest_row && column == nearest);
-            lumas[i] = (words[(i + 4 - RADIUS) / 4] >> (8u * ((i + 4 - RADIUS) % 4))) & 255u;
+            lumas[i] = (window[j].luma[(i + 4 - RADIUS) / 4] >> (8u * ((i + 4 - RADIUS) % 4))) & 255u;
         }
         for (var i = 0; i < SIDE; i++) { // unroll
-            let value = vec4<i32>(neighbours[i], neighbours[i + 1], neighbours[i + 2], neighbours[i + 3]);
+            let value = vec4<i32>(
+                window[j].disparities[i],
+                window[j].disparities[i + 1],
+                window[j].disparities[i + 2],
+                window[j].disparities[i + 3],
+            );
             let other = vec4<u32>(lumas[i], lumas[i + 1], lumas[i + 2], lumas[i + 3]);
             let difference = vec4<u32>(abs(vec4<i32>(other) - vec4<i32>(own)));
             let counts = value != vec4<i32>(NONE);
@@ -79,7 +92,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             high = select(high, max(high, value), matters);
         }
     }
-    // Halve the span in which the median lies until it is one number.
+    let found = wanted & (total > vec4<u32>(0u));
+    // Halve the span in which the median lies until it is one number. What is not wanted takes no time.
+    low = select(high, low, wanted);
     while any(low < high) {
         let middle = low + ((high - low) >> vec4<u32>(1u));
         var below = vec4<u32>(0u);
@@ -92,12 +107,40 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         high = select(high, middle, reached);
         low = select(middle + 1, low, reached);
     }
-    for (var t = 0; t < 4; t++) { // unroll
-        if x + t < width {
-            let pixel = y * width + x + t;
-            let disparity = disparities[pixel];
-            let wanted = disparity != NONE && (HOLES_ONLY == 0 || before[pixel] == NONE);
-            filtered[pixel] = select(disparity, low[t], wanted && total[t] > 0u);
+    return select(otherwise, low, found);
+}
+
+@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = 4 * i32(id.x);
+    let first = ROWS * i32(id.y);
+    let width = i32(params.width);
+    let height = i32(params.height);
+    if x >= width || first >= height {
+        return;
+    }
+    var window: Window;
+    for (var j = 0; j < KEPT; j++) { // unroll
+        window[j + 1] = row_at(x, first + j - RADIUS);
+    }
+    for (var y = first; y < min(first + ROWS, height); y++) {
+        for (var j = 0; j < KEPT; j++) { // unroll
+            window[j] = window[j + 1];
+        }
+        window[KEPT] = row_at(x, y + RADIUS);
+        let centre = window[RADIUS].disparities;
+        let own = vec4<i32>(centre[RADIUS], centre[RADIUS + 1], centre[RADIUS + 2], centre[RADIUS + 3]);
+        var wanted = own != vec4<i32>(NONE);
+        if HOLES_ONLY != 0 {
+            for (var t = 0; t < 4; t++) { // unroll
+                wanted[t] = wanted[t] && before[y * width + min(x + t, width - 1)] == NONE;
+            }
+        }
+        let result = median(window, wanted, own);
+        for (var t = 0; t < 4; t++) { // unroll
+            if x + t < width {
+                filtered[y * width + x + t] = result[t];
+            }
         }
     }
 }

@@ -2,9 +2,11 @@
 
 use std::sync::OnceLock;
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     error::{Error, Result},
-    gpu::{Context, Dispatch, guarded},
+    gpu::{Context, Dispatch, check_limits, guarded},
     luma::{check_packed, packed_bytes},
     luma_texture::{LumaTexture, TexelFormat},
 };
@@ -35,18 +37,35 @@ impl Input {
     /// # Errors
     /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
     /// device has against it.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new<'c>(
         device: impl Into<Context<'c>>,
         size: (u32, u32),
         source: Source<'_>,
         luma: &wgpu::Buffer,
     ) -> Result<Self> {
+        let device = device.into();
+        wait(&device, Self::new_async(device, size, source, luma))
+    }
+
+    /// As [`Input::new`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Input::new`].
+    pub async fn new_async<'c>(
+        device: impl Into<Context<'c>>,
+        size: (u32, u32),
+        source: Source<'_>,
+        luma: &wgpu::Buffer,
+    ) -> Result<Self> {
+        let device = &device.into();
         check_packed(luma, size.0, size.1)?;
-        Self::with_kernel(&device.into(), "the picture", size, source, luma, &OnceLock::new())
+        check_limits(device)?;
+        Self::with_kernel(device, "the picture", size, source, luma, &OnceLock::new()).await
     }
 
     /// The same of the picture of this `name`, with a kernel that is compiled at most once.
-    pub(crate) fn with_kernel(
+    pub(crate) async fn with_kernel(
         device: &Context<'_>,
         name: &'static str,
         size: (u32, u32),
@@ -58,7 +77,7 @@ impl Input {
             Source::Luma(from) => {
                 check_buffer(name, from, packed_bytes(size.0, size.1), wgpu::BufferUsages::COPY_SRC)?;
                 let (from, to, bytes) = (from.clone(), luma.clone(), packed_bytes(size.0, size.1));
-                return Self(Way::Copy { from, to, bytes }).tried(device, name);
+                return Self(Way::Copy { from, to, bytes }).tried(device, name).await;
             }
             Source::Texture(view) => (view, view.texture().format()),
             Source::TextureAs(view, format) => (view, format),
@@ -74,13 +93,14 @@ impl Input {
         let dispatch = guarded(device, name, || {
             let kernel = kernel.get_or_init(|| LumaTexture::new(device));
             Ok(kernel.prepare(device, size, texel, view, luma))
-        })?;
-        Self(Way::Run(dispatch)).tried(device, name)
+        })
+        .await?;
+        Self(Way::Run(dispatch)).tried(device, name).await
     }
 
     /// Itself, if the device has nothing against its being recorded.
-    fn tried(self, device: &wgpu::Device, name: &str) -> Result<Self> {
-        try_recording(device, name, |encoder| self.record(encoder))?;
+    async fn tried(self, device: &wgpu::Device, name: &str) -> Result<Self> {
+        try_recording(device, name, |encoder| self.record(encoder)).await?;
         Ok(self)
     }
 
@@ -95,7 +115,7 @@ impl Input {
 
 /// Records what is never submitted: what the device would have to say when a caller records it, it says here. A buffer of
 /// another device, for one, cannot be told otherwise.
-pub(crate) fn try_recording(
+pub(crate) async fn try_recording(
     device: &wgpu::Device,
     what: &str,
     record: impl FnOnce(&mut wgpu::CommandEncoder),
@@ -106,6 +126,7 @@ pub(crate) fn try_recording(
         drop(encoder.finish());
         Ok(())
     })
+    .await
 }
 
 /// Refuses a buffer that is too small or may not be used so.

@@ -77,10 +77,10 @@ pub fn pack(luma: &Luma) -> Vec<u32> {
 ///
 /// # Errors
 /// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
-pub(crate) fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
+pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
     let (width, height) = luma.size();
     let allocate = || storage_buffer(&gpu.device, "luma", packed_bytes(width, height));
-    let buffer = guarded(&gpu.device, "the picture", allocate)?;
+    let buffer = guarded(&gpu.device, "the picture", allocate).await?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
     Ok(buffer)
 }

@@ -1,5 +1,7 @@
 //! Two views ready for work: their luma, where the work is done.
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     dense::{self, Dense, DenseConfig},
     error::{Error, Result},
@@ -27,10 +29,29 @@ impl Backend {
     ///
     /// # Errors
     /// As [`Gpu::open`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
+        pollster::block_on(Self::open_async(choice))
+    }
+
+    /// As [`Backend::open`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
         match choice {
             DeviceChoice::Cpu => Ok(Self::Cpu),
-            _ => Ok(Self::Gpu(Box::new(Gpu::open(choice)?))),
+            _ => Ok(Self::Gpu(Box::new(Gpu::open_async(choice).await?))),
+        }
+    }
+
+    /// Runs what may wait for this backend to its end.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn wait<T>(&self, work: impl Future<Output = Result<T>>) -> Result<T> {
+        match self {
+            Self::Gpu(gpu) => wait(&gpu.device, work),
+            // The twins wait for nothing.
+            Self::Cpu => pollster::block_on(work),
         }
     }
 
@@ -62,9 +83,18 @@ impl Backend {
     ///
     /// # Errors
     /// As [`crate::features::detect`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+        self.wait(self.features_async(luma, config))
+    }
+
+    /// As [`Backend::features`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Backend::features`].
+    pub async fn features_async(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self {
-            Self::Gpu(gpu) => features::detect(gpu, luma, config),
+            Self::Gpu(gpu) => features::detect_async(gpu, luma, config).await,
             Self::Cpu => reference::detector::detect(luma, config),
         }
     }
@@ -73,9 +103,18 @@ impl Backend {
     ///
     /// # Errors
     /// As [`hybrid::compute`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn hybrid(&self, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
+        self.wait(self.hybrid_async(left, right, config))
+    }
+
+    /// As [`Backend::hybrid`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Backend::hybrid`].
+    pub async fn hybrid_async(&self, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
         match self {
-            Self::Gpu(gpu) => hybrid::compute(gpu, left, right, config),
+            Self::Gpu(gpu) => hybrid::compute_async(gpu, left, right, config).await,
             Self::Cpu => reference::compute_hybrid(left, right, config),
         }
     }
@@ -83,6 +122,7 @@ impl Backend {
 
 /// A pair of views of one size on a [`Backend`].
 pub struct Pair<'b> {
+    backend: &'b Backend,
     left: Luma,
     right: Luma,
     device: Option<OnDevice<'b>>,
@@ -99,7 +139,16 @@ impl<'b> Pair<'b> {
     ///
     /// # Errors
     /// [`Error::SizesDiffer`]; [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
+        backend.wait(Self::new_async(backend, left, right))
+    }
+
+    /// As [`Pair::new`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Pair::new`].
+    pub async fn new_async(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
         if left.size() != right.size() {
             return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
         }
@@ -112,11 +161,12 @@ impl<'b> Pair<'b> {
             });
         }
         match backend {
-            Backend::Cpu => Ok(Self { left: left.luma(), right: right.luma(), device: None }),
+            Backend::Cpu => Ok(Self { backend, left: left.luma(), right: right.luma(), device: None }),
             Backend::Gpu(gpu) => {
-                let (left_buffer, left) = luma_on(gpu, left)?;
-                let (right_buffer, right) = luma_on(gpu, right)?;
-                Ok(Self { left, right, device: Some(OnDevice { gpu, left: left_buffer, right: right_buffer }) })
+                let (left_buffer, left) = luma_on(gpu, left).await?;
+                let (right_buffer, right) = luma_on(gpu, right).await?;
+                let device = Some(OnDevice { gpu, left: left_buffer, right: right_buffer });
+                Ok(Self { backend, left, right, device })
             }
         }
     }
@@ -130,16 +180,24 @@ impl<'b> Pair<'b> {
     ///
     /// # Errors
     /// [`Error::TooLarge`], [`Error::OutOfMemory`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn reduced(&self, factor: u32) -> Result<Self> {
+        self.backend.wait(self.reduced_async(factor))
+    }
+
+    /// As [`Pair::reduced`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Pair::reduced`].
+    pub async fn reduced_async(&self, factor: u32) -> Result<Self> {
         let (left, right) = (reduced(&self.left, factor), reduced(&self.right, factor));
         let device = match &self.device {
             None => None,
             Some(OnDevice { gpu, .. }) => {
-                let upload = |luma| upload(gpu, luma);
-                Some(OnDevice { gpu, left: upload(&left)?, right: upload(&right)? })
+                Some(OnDevice { gpu, left: upload(gpu, &left).await?, right: upload(gpu, &right).await? })
             }
         };
-        Ok(Self { left, right, device })
+        Ok(Self { backend: self.backend, left, right, device })
     }
 
     /// Width and height of both views.
@@ -151,7 +209,16 @@ impl<'b> Pair<'b> {
     ///
     /// # Errors
     /// As [`crate::features::detect`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn features(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
+        self.backend.wait(self.features_async(config))
+    }
+
+    /// As [`Pair::features`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Pair::features`].
+    pub async fn features_async(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
         let Some(OnDevice { gpu, left, right }) = &self.device else {
             return Ok([
                 reference::detector::detect(&self.left, config)?,
@@ -161,34 +228,43 @@ impl<'b> Pair<'b> {
         let device = &gpu.device;
         let (width, height) = self.size();
         // One detector sees the views one after the other, in a buffer of its own.
-        let view = guarded(device, "the picture", || storage_buffer(device, "luma", left.size()))?;
-        let detector = Detector::new(device, &view, width, height, config)?;
-        let detect = |luma: &wgpu::Buffer| {
+        let view = guarded(device, "the picture", || storage_buffer(device, "luma", left.size())).await?;
+        let detector = Detector::new_async(device, &view, width, height, config).await?;
+        let detect = async |luma: &wgpu::Buffer| {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
             encoder.copy_buffer_to_buffer(luma, 0, &view, 0, None);
             detector.record(&mut encoder);
             gpu.queue.submit([encoder.finish()]);
-            detector.read(device, &gpu.queue)
+            detector.read_async(device, &gpu.queue).await
         };
-        Ok([detect(left)?, detect(right)?])
+        Ok([detect(left).await?, detect(right).await?])
     }
 
     /// A disparity for each pixel of the reference view.
     ///
     /// # Errors
     /// As [`dense::compute`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn dense(&self, config: &DenseConfig) -> Result<Dense> {
+        self.backend.wait(self.dense_async(config))
+    }
+
+    /// As [`Pair::dense`], without blocking on a device.
+    ///
+    /// # Errors
+    /// As [`Pair::dense`].
+    pub async fn dense_async(&self, config: &DenseConfig) -> Result<Dense> {
         match &self.device {
             Some(OnDevice { gpu, left, right }) => {
                 let device = &gpu.device;
-                let matcher = dense::Matcher::new(device, self.size(), config)?;
-                let inputs = matcher.inputs(device, Source::Luma(left), Source::Luma(right))?;
+                let matcher = dense::Matcher::new_async(device, self.size(), config).await?;
+                let inputs = matcher.inputs_async(device, Source::Luma(left), Source::Luma(right)).await?;
                 let mut encoder =
                     device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
                 inputs.record(&mut encoder);
                 gpu.queue.submit([encoder.finish()]);
-                matcher.run(gpu)
+                matcher.run_async(gpu).await
             }
             None => reference::compute_dense(&self.left, &self.right, config),
         }
@@ -197,7 +273,7 @@ impl<'b> Pair<'b> {
 
 /// The luma of a picture, on the device and here. The colours of a large one get there in bands of rows:
 /// they take four times the memory of its luma.
-fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
+async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
     let (device, (width, height)) = (&gpu.device, picture.size());
     let row_bytes = 4 * u64::from(width);
     let rows = (device.limits().max_storage_buffer_binding_size / row_bytes).clamp(1, height.into()) as u32;
@@ -219,7 +295,8 @@ fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
         readback.record(&mut encoder, &luma);
         gpu.queue.submit([encoder.finish()]);
         Ok((luma, readback))
-    })?;
-    let words = readback.read(device, (packed_bytes(width, height) / 4) as usize)?;
+    })
+    .await?;
+    let words = readback.read((packed_bytes(width, height) / 4) as usize).await?;
     Ok((luma, unpack(width, height, &words)))
 }

@@ -1,6 +1,6 @@
 //! The whole way from two pictures to a disparity map.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use crate::{
     config::{Config, Method},
@@ -82,7 +82,21 @@ pub struct Outcome {
 /// [`Error::SizesDiffer`]; [`Error::Parameter`]; [`Error::TooSmall`] for pictures that hold no window;
 /// [`Error::NotRectified`] unless `config.force`; [`Error::NoRange`] where all that is found lies below
 /// `config.least`; and what the steps report.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn run(
+    backend: &Backend,
+    views: (&Picture, &Picture),
+    config: &Config,
+    begin: impl FnMut(Step),
+) -> Result<Outcome> {
+    backend.wait(run_async(backend, views, config, begin))
+}
+
+/// As [`run`], without blocking for longer than the work on the host takes.
+///
+/// # Errors
+/// As [`run`].
+pub async fn run_async(
     backend: &Backend,
     (left, right): (&Picture, &Picture),
     config: &Config,
@@ -100,19 +114,19 @@ pub fn run(
     config.validate()?;
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
-    let pair = Pair::new(backend, left, right)?;
+    let pair = Pair::new_async(backend, left, right).await?;
     enter(Some(Step::Features));
     let factor = reduction(pair.size());
-    let reduced = if factor == 1 { None } else { Some(pair.reduced(factor)?) };
+    let reduced = if factor == 1 { None } else { Some(pair.reduced_async(factor).await?) };
     let sparse = reduced.as_ref().unwrap_or(&pair);
-    let mut features = sparse.features(&config.features)?;
+    let mut features = sparse.features_async(&config.features).await?;
     enter(Some(Step::Seeding));
     let find =
         |features: &[Vec<Feature>; 2]| Seeding::find(sparse.views(), (&features[0], &features[1]), &config.seeding);
     let mut seeding = find(&features)?;
     if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
         // Views that are turned against each other are recognised only with orientations.
-        let turned = sparse.features(&FeatureConfig { upright: false, ..config.features.clone() })?;
+        let turned = sparse.features_async(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
         let found = find(&turned)?;
         if found.rectification.verdict != Verdict::Unknown {
             (features, seeding) = (turned, found);
@@ -140,13 +154,13 @@ pub fn run(
             let dense = config.dense(range, brightness);
             let range = dense.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, pair.dense(&DenseConfig { range, ..dense })?)
+            (range, pair.dense_async(&DenseConfig { range, ..dense }).await?)
         }
         Method::Kamencay(parameters) => {
             let hybrid = config.hybrid(parameters, range, brightness);
             let range = hybrid.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, backend.hybrid(left, right, &HybridConfig { range, ..hybrid })?)
+            (range, backend.hybrid_async(left, right, &HybridConfig { range, ..hybrid }).await?)
         }
     };
     enter(None);

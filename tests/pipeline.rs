@@ -1,7 +1,12 @@
 //! The pipeline from two pictures to a map, where it does more than its steps.
 #![cfg(feature = "cli")]
 
-use std::path::Path;
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
 
 use hsad::{
     config::Preset,
@@ -11,6 +16,7 @@ use hsad::{
     io::{Picture, load, pfm},
     pair::Backend,
     pipeline::{self, RangeSource},
+    wgpu,
 };
 
 fn scene(name: &str) -> std::path::PathBuf {
@@ -21,6 +27,34 @@ fn scene(name: &str) -> std::path::PathBuf {
 fn enlarged(picture: &Picture, factor: u32) -> Picture {
     let (width, height) = picture.size();
     Picture::from_fn(factor * width, factor * height, |x, y| picture.get(x / factor, y / factor))
+}
+
+/// Natively as well, where what is awaited comes when the device is polled.
+#[test]
+fn the_whole_pipeline_can_be_awaited() {
+    fn sent<F: Future + Send>(future: F) -> F {
+        future
+    }
+    let folder = scene("weak");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let Backend::Gpu(gpu) = &backend else { unreachable!("the best is a device") };
+    let config = Preset::Fast.config();
+    let done = AtomicBool::new(false);
+    let awaited = thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                gpu.device.poll(wgpu::PollType::Poll).unwrap();
+                thread::sleep(Duration::from_millis(1));
+            }
+        });
+        let awaited = pollster::block_on(sent(pipeline::run_async(&backend, (&left, &right), &config, |_| ())));
+        done.store(true, Ordering::Relaxed);
+        awaited.unwrap()
+    });
+    let waited_for = pipeline::run(&backend, (&left, &right), &config, |_| ()).unwrap();
+    assert_eq!(awaited.dense, waited_for.dense);
+    assert_eq!(awaited.range, waited_for.range);
 }
 
 /// Points of large pictures are looked for in reduced ones; what they tell must be of the large ones.

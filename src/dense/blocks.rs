@@ -73,7 +73,7 @@ pub(super) fn plan(
         for ((params, view), picture) in layout.padding().into_iter().zip(View::BOTH).zip([left, right]) {
             plan.run(pad.prepare(device, params, &plan.brightness(view), picture, &planes.0));
         }
-        plan.fill_texture(&planes);
+        plan.fill_texture(&planes.0, &planes.1);
         let others = other_view.as_ref().zip(partners).map(|((find_winners, winners, max_difference), partners)| {
             plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));
             (winners, *max_difference)

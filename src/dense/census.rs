@@ -1,6 +1,6 @@
 //! The census transform, with the luma beside it. `shaders/census.wgsl`.
 
-use super::pad::PadParams;
+use super::{pad::PadParams, walk::rows_a_thread};
 use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -14,22 +14,30 @@ shader_struct! {
 }
 
 /// The census kernel.
-pub struct Census(Kernel);
+pub struct Census {
+    kernel: Kernel,
+    rows: u32,
+}
 
 impl Census {
-    /// What the kernel is made of.
-    pub fn stage() -> Stage {
+    /// What the kernel is made of, with so many rows to a thread.
+    pub fn stage(rows: u32) -> Stage {
         Stage {
             name: "census",
             source: include_str!("../../shaders/census.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
-            constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("ROWS", rows.into()),
+            ],
         }
     }
 
     /// Compiles it.
     pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(rows)), rows }
     }
 
     /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
@@ -60,7 +68,7 @@ impl Census {
         census: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, rows, stride: Self::stride(width) };
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
     }
 }

@@ -105,7 +105,7 @@ impl Coarse {
         for ((params, view), half) in layout.padding().into_iter().zip(View::BOTH).zip(&self.halves) {
             plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
         }
-        plan.fill_texture(&self.planes);
+        plan.fill_texture(&self.planes.0, &self.planes.1);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
         plan.run(block_match.prepare(
             device,

@@ -2,7 +2,10 @@
 
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{
+        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
+        uniform_buffer,
+    },
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -36,8 +39,8 @@ impl Fill {
     pub fn stage() -> Stage {
         Stage {
             name: "fill",
-            source: include_str!("../../shaders/fill.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            source: concat!(include_str!("../../shaders/shared/words.wgsl"), include_str!("../../shaders/fill.wgsl")),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Texture, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
@@ -47,6 +50,7 @@ impl Fill {
                 ("FARTHEST", surface::FARTHEST.into()),
                 ("SCALE", SCALE.into()),
                 ("NONE", NONE.into()),
+                ("ROW_BITS", ROW_BITS.into()),
                 ("NOTHING", i32::MAX.into()),
             ],
         }
@@ -63,11 +67,13 @@ impl Fill {
         device: &wgpu::Device,
         (width, height): (u32, u32),
         range: DisparityRange,
-        disparities: &wgpu::Buffer,
+        disparities: &WordTexture,
         filled: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, height, least: range.min * SCALE, most: range.last() * SCALE };
-        let groups = [width.div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "fill", &params), disparities, filled], groups)
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
+        let params = uniform_buffer(device, "fill", &params);
+        let bound: [&dyn Bindable; 3] = [&params, &disparities.view, filled];
+        self.0.dispatch(device, &bound, groups)
     }
 }

@@ -1,6 +1,6 @@
 //! The dense half of one pair size: all kernels, all memory, and the order of things.
 
-use std::sync::OnceLock;
+use std::{sync::OnceLock, time::Duration};
 
 use super::{
     blocks,
@@ -12,10 +12,12 @@ use super::{
     plan::{Copy, Plan},
     semi_global,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
-    gpu::{Context, Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer},
+    gpu::{Context, Dispatch, Gpu, Readback, Stopwatch, check_limits, guarded, storage_buffer},
     image::{Luma, Plane},
     input::{Input, Source, check_buffer, check_texture, try_recording},
     luma::{check_size, pack, packed_bytes, unpack},
@@ -68,15 +70,39 @@ impl Matcher {
     /// # Errors
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
     /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
         Self::with_band_rows(device, size, config, u32::MAX)
+    }
+
+    /// As [`Matcher::new`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::new`].
+    pub async fn new_async<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        Self::with_band_rows_async(device, size, config, u32::MAX).await
     }
 
     /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
     ///
     /// # Errors
     /// As [`Self::new`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn with_band_rows<'c>(
+        device: impl Into<Context<'c>>,
+        size: (u32, u32),
+        config: &DenseConfig,
+        band_rows: u32,
+    ) -> Result<Self> {
+        let device = device.into();
+        wait(&device, Self::with_band_rows_async(device, size, config, band_rows))
+    }
+
+    /// As [`Matcher::with_band_rows`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::new`].
+    pub async fn with_band_rows_async<'c>(
         device: impl Into<Context<'c>>,
         size: (u32, u32),
         config: &DenseConfig,
@@ -100,6 +126,7 @@ impl Matcher {
             }?;
             Ok(Self { size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
         })
+        .await
     }
 
     /// Bytes of device memory that this matcher holds.
@@ -124,11 +151,27 @@ impl Matcher {
     /// # Errors
     /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
     /// device has against it.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn inputs<'c>(&self, device: impl Into<Context<'c>>, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
+        let device = device.into();
+        wait(&device, self.inputs_async(device, left, right))
+    }
+
+    /// As [`Matcher::inputs`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::inputs`].
+    pub async fn inputs_async<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        left: Source<'_>,
+        right: Source<'_>,
+    ) -> Result<Inputs> {
         let device = &device.into();
         let input = |name, source, luma| Input::with_kernel(device, name, self.size, source, luma, &self.luma_texture);
         let [left_luma, right_luma] = self.luma();
-        Ok(Inputs([input("the left view", left, left_luma)?, input("the right view", right, right_luma)?]))
+        let left = input("the left view", left, left_luma).await?;
+        Ok(Inputs([left, input("the right view", right, right_luma).await?]))
     }
 
     /// Prepares the way of the answers to `disparities` and, if they are wanted, to `confidences`: a buffer with
@@ -136,7 +179,22 @@ impl Matcher {
     ///
     /// # Errors
     /// As [`Self::inputs`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn outputs<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        disparities: Destination<'_>,
+        confidences: Option<&wgpu::Buffer>,
+    ) -> Result<Outputs> {
+        let device = device.into();
+        wait(&device, self.outputs_async(device, disparities, confidences))
+    }
+
+    /// As [`Matcher::outputs`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::outputs`].
+    pub async fn outputs_async<'c>(
         &self,
         device: impl Into<Context<'c>>,
         disparities: Destination<'_>,
@@ -153,15 +211,15 @@ impl Matcher {
                 check_buffer("the disparities", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
                 Disparities::Buffer(buffer.clone())
             }
-            Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view)?),
+            Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view).await?),
         };
         let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
-        try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs))?;
+        try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
         Ok(outputs)
     }
 
     /// What brings each of the plan's answers to a texture.
-    fn to_texture(&self, device: &Context<'_>, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
+    async fn to_texture(&self, device: &Context<'_>, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
         let (name, format) = ("the disparities", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
             return Err(Error::Parameter {
@@ -182,6 +240,7 @@ impl Matcher {
             };
             Ok(self.plan.answers().map(dispatch).collect())
         })
+        .await
     }
 
     /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what
@@ -202,7 +261,7 @@ impl Matcher {
     /// If `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
         assert_eq!(outputs.of, self.luma[0], "outputs of another matcher");
-        self.plan.record(encoder, outputs);
+        self.plan.record(encoder, outputs, None);
     }
 }
 
@@ -210,15 +269,24 @@ impl Matcher {
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    wait(&gpu.device, compute_async(gpu, left, right, config))
+}
+
+/// As [`compute`], without blocking.
+///
+/// # Errors
+/// As [`compute`].
+pub async fn compute_async(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let matcher = Matcher::new(&gpu.device, left.size(), config)?;
+    let matcher = Matcher::new_async(&gpu.device, left.size(), config).await?;
     for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
         gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
     }
-    matcher.run(gpu)
+    matcher.run_async(gpu).await
 }
 
 impl Matcher {
@@ -226,7 +294,41 @@ impl Matcher {
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn run(&self, gpu: &Gpu) -> Result<Dense> {
+        wait(&gpu.device, self.run_async(gpu))
+    }
+
+    /// As [`Matcher::run`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::run`].
+    pub async fn run_async(&self, gpu: &Gpu) -> Result<Dense> {
+        self.run_timed(gpu, None).await
+    }
+
+    /// As [`Self::run`], with what each kernel took by the device's own clock, in the order in which they ran; of the
+    /// first 2,048, and without copies and clears.
+    ///
+    /// # Errors
+    /// As [`Self::run`], and [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn profile(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
+        wait(&gpu.device, self.profile_async(gpu))
+    }
+
+    /// As [`Matcher::profile`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::profile`].
+    pub async fn profile_async(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
+        let kernels: Vec<_> = self.plan.kernels().collect();
+        let stopwatch = guarded(&gpu.device, "timestamps", || Stopwatch::new(&gpu.device, kernels.len())).await?;
+        let dense = self.run_timed(gpu, Some(&stopwatch)).await?;
+        Ok((dense, kernels.into_iter().zip(stopwatch.read(gpu).await?).collect()))
+    }
+
+    async fn run_timed(&self, gpu: &Gpu, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
         let (width, height) = self.size;
         let pixels = width as usize * height as usize;
         let device = &gpu.device;
@@ -234,16 +336,22 @@ impl Matcher {
         let [disparities, confidences] = guarded(device, "the disparity map", || {
             let lengths = [("disparities", pixels), ("confidences", row_words * height as usize)];
             Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
-        })?;
-        let outputs = self.outputs(device, Destination::Buffer(disparities.buffer()), Some(confidences.buffer()))?;
+        })
+        .await?;
+        let destination = Destination::Buffer(disparities.buffer());
+        let outputs = self.outputs_async(device, destination, Some(confidences.buffer())).await?;
         guarded(device, "dense matching", || {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
-            self.record(&mut encoder, &outputs);
+            self.plan.record(&mut encoder, &outputs, stopwatch);
+            if let Some(stopwatch) = stopwatch {
+                stopwatch.resolve(&mut encoder);
+            }
             gpu.queue.submit([encoder.finish()]);
             Ok(())
-        })?;
-        let disparity = Plane::new(width, height, disparities.read(device, pixels)?)?;
-        let words: Vec<u32> = confidences.read(device, row_words * height as usize)?;
+        })
+        .await?;
+        let disparity = Plane::new(width, height, disparities.read(pixels).await?)?;
+        let words: Vec<u32> = confidences.read(row_words * height as usize).await?;
         let confidence = unpack(width, height, &words);
         Ok(Dense { disparity, confidence })
     }

@@ -33,6 +33,7 @@ mod refine;
 mod select;
 mod semi_global;
 mod support;
+mod walk;
 mod weighted_median;
 
 use crate::{disparity::DisparityRange, gpu::Stage};
@@ -51,7 +52,9 @@ pub use fill::{Fill, surface};
 pub use halve::Halve;
 pub use inputs::Inputs;
 pub use map_texture::{MapRows, MapTexel, MapTexture};
-pub use matcher::{Dense, Matcher, compute};
+#[cfg(not(target_arch = "wasm32"))]
+pub use matcher::compute;
+pub use matcher::{Dense, Matcher, compute_async};
 pub use outputs::{Destination, Outputs};
 pub use pad::{Brightness, Pad, PadParams};
 pub use partner_ranges::PartnerRanges;
@@ -60,13 +63,14 @@ pub use refine::Refinement;
 pub use select::{Places, Select, Selection};
 pub use semi_global::{OtherView, Paths, SemiGlobal};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
+pub use walk::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use weighted_median::{Median, WeightedMedian};
 
 /// Every stage of the dense half, for checks that need no GPU; block matching once for each
 /// window, either view and what it may be asked for.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage(), PartnerRanges::stage()];
-    stages.extend([Claim::stage(), Census::stage()]);
+    stages.push(Claim::stage());
     stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
     for window in (3..=31).step_by(2) {
         let hardware = [Tile::HARDWARE; 2];
@@ -88,9 +92,12 @@ pub fn stages() -> Vec<Stage> {
         let selection = Selection { stored: 3, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
         Select::stage(&penalties, 2, selection)
     }));
-    stages.extend([Support::stage(5), Fill::stage()]);
+    stages.push(Fill::stage());
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
-    stages.extend(refinement.before().chain(refinement.after()).map(WeightedMedian::stage));
+    for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
+        stages.extend([Census::stage(rows), Support::stage(5, rows)]);
+        stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
+    }
     stages
 }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Dispatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
+    gpu::{Dispatch, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
 };
 
 /// One thing to do.
@@ -16,7 +16,7 @@ pub(super) enum Step {
     Run(Dispatch),
     /// Copies words.
     Copy(Copy),
-    /// Copies a whole buffer to a texture.
+    /// Copies a buffer's first words to a texture.
     ToTexture(wgpu::Buffer, WordTexture),
     /// Sets a whole buffer to 0.
     Clear(wgpu::Buffer),
@@ -92,20 +92,29 @@ impl Plan {
         self.steps.push(Step::Run(dispatch));
     }
 
-    /// Memory for so many words in a buffer and in a texture.
+    /// The same in a texture.
+    pub(super) fn word_texture(
+        &mut self,
+        device: &wgpu::Device,
+        label: &'static str,
+        words: u64,
+    ) -> Result<WordTexture> {
+        self.bytes += 4 * in_rows(words);
+        WordTexture::new(device, label, words)
+    }
+
+    /// Memory for so many words in a buffer that has whole rows of a texture, and in a texture.
     pub(super) fn words(
         &mut self,
         device: &wgpu::Device,
         label: &'static str,
         words: u64,
     ) -> Result<(wgpu::Buffer, WordTexture)> {
-        let buffer = self.buffer(device, label, in_rows(words))?;
-        self.bytes += 4 * in_rows(words);
-        Ok((buffer, WordTexture::new(device, label, words)?))
+        Ok((self.buffer(device, label, in_rows(words))?, self.word_texture(device, label, words)?))
     }
 
-    /// The words of a buffer, on their way to the texture.
-    pub(super) fn fill_texture(&mut self, (buffer, texture): &(wgpu::Buffer, WordTexture)) {
+    /// The first words of a buffer, which has whole rows of the texture, on their way there.
+    pub(super) fn fill_texture(&mut self, buffer: &wgpu::Buffer, texture: &WordTexture) {
         self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
     }
 
@@ -153,12 +162,23 @@ impl Plan {
         })
     }
 
-    /// Records all steps.
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        let mut answer = 0;
+    /// The kernels, in the order in which they run.
+    pub(super) fn kernels(&self) -> impl Iterator<Item = &'static str> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Run(dispatch) => Some(dispatch.name()),
+            _ => None,
+        })
+    }
+
+    /// Records all steps, and the times of the kernels if there is a `stopwatch`.
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs, stopwatch: Option<&Stopwatch>) {
+        let (mut kernel, mut answer) = (0, 0);
         for step in &self.steps {
             match step {
-                Step::Run(dispatch) => dispatch.record(encoder),
+                Step::Run(dispatch) => {
+                    dispatch.record_timed(encoder, stopwatch.and_then(|stopwatch| stopwatch.writes(kernel)));
+                    kernel += 1;
+                }
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
                 Step::Copy(copy) => match &copy.to {

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::Context,
+    gpu::{Context, in_rows, most_words},
 };
 
 /// What is done with a map after its checks.
@@ -64,7 +64,9 @@ pub(super) fn plan_refinement(
 ) -> Result<()> {
     let around =
         SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
-    let fitting = u32::try_from(limit / (4 * match_words(width, 1).0)).unwrap_or(u32::MAX);
+    // A map with holes is a texture as well.
+    let fitting = (limit / (4 * match_words(width, 1).0)).min(most_words(device) / u64::from(width));
+    let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);
     let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * around) }.min(most_rows);
     if rows == 0 {
         return Err(Error::TooLarge {
@@ -77,8 +79,13 @@ pub(super) fn plan_refinement(
     let window_rows = (rows + 2 * around).min(height);
     let (words, _) = match_words(width, window_rows);
     let pixels = u64::from(width) * u64::from(window_rows);
+    let words = words.max(in_rows(pixels));
     let given = plan.buffer(device, "disparities to refine", words)?;
     let supported = plan.buffer(device, "supported disparities", words)?;
+    let with_holes = match refinement.fill {
+        true => Some(plan.word_texture(device, "disparities with holes", pixels)?),
+        false => None,
+    };
     let filtered = plan.buffer(device, "filtered disparities", pixels)?;
     let (support, fill) = (Support::new(device, refinement.support), Fill::new(device));
     // Most filters are alike: each kernel is compiled once, and a filter is its place here.
@@ -117,8 +124,9 @@ pub(super) fn plan_refinement(
             plan.run(filter(place, [maps[0], maps[0], maps[1]]));
             maps.swap(0, 1);
         }
-        if refinement.fill {
-            plan.run(fill.prepare(device, size, range, maps[0], maps[1]));
+        if let Some(with_holes) = &with_holes {
+            plan.fill_texture(maps[0], with_holes);
+            plan.run(fill.prepare(device, size, range, with_holes, maps[1]));
             // Those with holes stay until they are filtered by.
             maps.swap(0, 1);
         }

@@ -1,5 +1,6 @@
 //! Disparities that their neighbours share. `shaders/support.wgsl`.
 
+use super::walk::rows_a_thread;
 use crate::{
     disparity::{NONE, SCALE},
     gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
@@ -13,6 +14,9 @@ pub const SUPPORT_RADIUS: u32 = 3;
 /// By how much disparities may differ that support each other.
 pub const SUPPORT_TOLERANCE: i32 = SCALE;
 
+/// What differs from every disparity by more than the tolerance.
+const FAR: i64 = 1 << 30;
+
 shader_struct! {
     struct Params {
         width: u32,
@@ -22,11 +26,14 @@ shader_struct! {
 }
 
 /// The kernel that takes speckles away.
-pub struct Support(Kernel);
+pub struct Support {
+    kernel: Kernel,
+    rows: u32,
+}
 
 impl Support {
-    /// What the kernel is made of, where `least` pixels of the window must agree.
-    pub fn stage(least: u32) -> Stage {
+    /// What the kernel is made of, where `least` pixels of the window must agree, with so many rows to a thread.
+    pub fn stage(least: u32, rows: u32) -> Stage {
         let side = 2 * SUPPORT_RADIUS + 1;
         Stage {
             name: "support",
@@ -38,16 +45,20 @@ impl Support {
                 ("RADIUS", SUPPORT_RADIUS.into()),
                 ("SIDE", side.into()),
                 ("SPAN", (side + 3).into()),
+                ("KEPT", (side - 1).into()),
+                ("ROWS", rows.into()),
                 ("TOLERANCE", SUPPORT_TOLERANCE.into()),
                 ("LEAST", least.into()),
                 ("NONE", NONE.into()),
+                ("FAR", FAR),
             ],
         }
     }
 
     /// Compiles it.
     pub fn new(device: &Context<'_>, least: u32) -> Self {
-        Self(Kernel::new(device, &Self::stage(least)))
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(least, rows)), rows }
     }
 
     /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
@@ -61,7 +72,7 @@ impl Support {
         supported: &wgpu::Buffer,
     ) -> Dispatch {
         let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, matches, supported], groups)
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&params, matches, supported], groups)
     }
 }

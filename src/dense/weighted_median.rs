@@ -1,5 +1,6 @@
 //! The weighted median of a map. `shaders/weighted_median.wgsl`.
 
+use super::walk::rows_a_thread;
 use crate::{
     disparity::NONE,
     gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
@@ -30,11 +31,14 @@ shader_struct! {
 }
 
 /// The kernel of a weighted median.
-pub struct WeightedMedian(Kernel);
+pub struct WeightedMedian {
+    kernel: Kernel,
+    rows: u32,
+}
 
 impl WeightedMedian {
-    /// What the kernel is made of.
-    pub fn stage(median: Median) -> Stage {
+    /// What the kernel is made of, with so many rows to a thread.
+    pub fn stage(median: Median, rows: u32) -> Stage {
         let side = 2 * median.radius + 1;
         Stage {
             name: "weighted_median",
@@ -45,9 +49,11 @@ impl WeightedMedian {
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("RADIUS", median.radius.into()),
                 ("SIDE", side.into()),
+                ("KEPT", (side - 1).into()),
                 ("SPAN", (side + 3).into()),
                 ("HALVING_BITS", median.halving_bits.into()),
                 ("HOLES_ONLY", median.holes_only.into()),
+                ("ROWS", rows.into()),
                 ("FARTHEST", FARTHEST),
                 ("NONE", NONE.into()),
             ],
@@ -56,7 +62,8 @@ impl WeightedMedian {
 
     /// Compiles it.
     pub fn new(device: &Context<'_>, median: Median) -> Self {
-        Self(Kernel::new(device, &Self::stage(median)))
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(median, rows)), rows }
     }
 
     /// Filters `disparities` into `filtered`, by the packed `luma` of their view, in which their first row is row
@@ -74,7 +81,7 @@ impl WeightedMedian {
             "weighted median",
             &Params { width, height, luma_start: first_row * width.div_ceil(4) },
         );
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
     }
 }

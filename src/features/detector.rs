@@ -12,6 +12,8 @@ use super::{
     too_many,
     workgroups::Workgroups,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     error::Result,
     gpu::{Context, Gpu, Readback, check_limits, guarded},
@@ -46,7 +48,23 @@ impl Detector {
     /// # Errors
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new<'c>(
+        device: impl Into<Context<'c>>,
+        luma: &wgpu::Buffer,
+        width: u32,
+        height: u32,
+        config: &FeatureConfig,
+    ) -> Result<Self> {
+        let device = device.into();
+        wait(&device, Self::new_async(device, luma, width, height, config))
+    }
+
+    /// As [`Detector::new`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Detector::new`].
+    pub async fn new_async<'c>(
         device: impl Into<Context<'c>>,
         luma: &wgpu::Buffer,
         width: u32,
@@ -70,6 +88,7 @@ impl Detector {
             let descriptor = Descriptor::new(device, integral, list, groups, size, config.upright)?;
             Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor })
         })
+        .await
     }
 
     /// How many keypoints were found, and what they are.
@@ -102,11 +121,24 @@ impl Detector {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
+        wait(device, self.read_async(device, queue))
+    }
+
+    /// As [`Detector::read`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Detector::read`].
+    pub async fn read_async(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
         let list = self.nonmax.list();
-        let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
-        submit(device, queue, |encoder| count.record(encoder, list.found()));
-        let found = count.read::<u32>(device, 1)?[0];
+        let count = submit(device, queue, |encoder| {
+            let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
+            count.record(encoder, list.found());
+            count
+        })
+        .await?;
+        let found = count.read::<u32>(1).await?[0];
         if found > list.capacity() {
             return Err(too_many(found as usize, list.capacity()));
         }
@@ -115,14 +147,16 @@ impl Detector {
         }
         let found = found as usize;
         // Staging of its own for each call, so that several threads may read.
-        let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
-        let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
-        submit(device, queue, |encoder| {
+        let (keypoints, descriptors) = submit(device, queue, |encoder| {
+            let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
+            let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
             keypoints.record(encoder, list.keypoints());
             descriptors.record(encoder, self.descriptor.descriptors());
-        });
-        let keypoints = keypoints.read::<Keypoint>(device, found)?;
-        let descriptors = descriptors.read::<Values>(device, found)?;
+            (keypoints, descriptors)
+        })
+        .await?;
+        let keypoints = keypoints.read::<Keypoint>(found).await?;
+        let descriptors = descriptors.read::<Values>(found).await?;
         Ok(collect(&keypoints, &descriptors))
     }
 }
@@ -140,18 +174,36 @@ pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]])
 ///
 /// # Errors
 /// Those of [`Detector::new`] and [`Detector::read`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
-    let (width, height) = picture.size();
-    let buffer = upload(gpu, picture)?;
-    let detector = Detector::new(&gpu.device, &buffer, width, height, config)?;
-    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder));
-    detector.read(&gpu.device, &gpu.queue)
+    wait(&gpu.device, detect_async(gpu, picture, config))
 }
 
-fn submit(device: &wgpu::Device, queue: &wgpu::Queue, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
-    record(&mut encoder);
-    queue.submit([encoder.finish()]);
+/// As [`detect`], without blocking.
+///
+/// # Errors
+/// As [`detect`].
+pub async fn detect_async(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+    let (width, height) = picture.size();
+    let buffer = upload(gpu, picture).await?;
+    let detector = Detector::new_async(&gpu.device, &buffer, width, height, config).await?;
+    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder)).await?;
+    detector.read_async(&gpu.device, &gpu.queue).await
+}
+
+/// Submits what `record` records; what it returns.
+async fn submit<T>(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    record: impl FnOnce(&mut wgpu::CommandEncoder) -> T,
+) -> Result<T> {
+    guarded(device, "finding interest points", || {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
+        let recorded = record(&mut encoder);
+        queue.submit([encoder.finish()]);
+        Ok(recorded)
+    })
+    .await
 }
 
 fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {

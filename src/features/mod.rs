@@ -18,7 +18,9 @@ mod detector;
 
 pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
-pub use detector::{Detector, collect, detect};
+#[cfg(not(target_arch = "wasm32"))]
+pub use detector::detect;
+pub use detector::{Detector, collect, detect_async};
 
 use crate::gpu::Stage;
 

@@ -51,8 +51,17 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`], [`Error::NoSuchDevice`] (which lists those that exist), or
     /// [`Error::Unsupported`] where the adapter refuses. [`DeviceChoice::Cpu`] is no adapter.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
-        let mut adapters = adapters();
+        pollster::block_on(Self::open_async(choice))
+    }
+
+    /// As [`Gpu::open`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
+        let mut adapters = adapters().await;
         if adapters.is_empty() {
             return Err(Error::NoAdapter);
         }
@@ -79,21 +88,32 @@ impl Gpu {
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults()
         };
-        let descriptor = wgpu::DeviceDescriptor { label: Some("hsad"), required_limits, ..Default::default() };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        // Only to tell what kernels take; nothing needs it.
+        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor =
+            wgpu::DeviceDescriptor { label: Some("hsad"), required_features, required_limits, ..Default::default() };
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|e| Error::Unsupported(format!("{}: {e}", adapter.get_info().name)))?;
         Ok(Self { device, queue, info: adapter.get_info() })
     }
 }
 
 /// What each adapter says of itself, the best first. An index here is an index for `--device`.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn list_adapters() -> Vec<wgpu::AdapterInfo> {
-    adapters().iter().map(wgpu::Adapter::get_info).collect()
+    pollster::block_on(list_adapters_async())
 }
 
-fn adapters() -> Vec<wgpu::Adapter> {
+/// As [`list_adapters`], without blocking. A browser shows one at most.
+pub async fn list_adapters_async() -> Vec<wgpu::AdapterInfo> {
+    adapters().await.iter().map(wgpu::Adapter::get_info).collect()
+}
+
+async fn adapters() -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.retain(|a| a.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS));
     // Stable, so that adapters of one kind keep the driver's order.
     adapters.sort_by_key(|a| match a.get_info().device_type {

@@ -170,10 +170,24 @@ enum Groups {
 }
 
 impl Dispatch {
+    /// The kernel's name.
+    pub(crate) fn name(&self) -> &'static str {
+        self.kernel.name
+    }
+
     /// Records it, in a pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.record_timed(encoder, None);
+    }
+
+    /// The same, with the device's clock at the pass's beginning and end written where `timestamp_writes` says.
+    pub(crate) fn record_timed(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
         let label = Some(self.kernel.name);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
         pass.set_pipeline(&self.kernel.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[]);
         match &self.groups {
@@ -261,22 +275,31 @@ fn is_lost(device: &wgpu::Device) -> bool {
 
 /// Runs `build`, which creates things on `device`, and turns what the device has to say about it
 /// into an [`Error`] instead of a call of the application's error handler.
-pub(crate) fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let built = build();
-    let lost = is_lost(device);
-    let errors = [internal, memory, validation].map(|scope| pollster::block_on(scope.pop()));
-    if errors.iter().flatten().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
+pub(crate) async fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+    let ((built, lost), said) = scoped(device, || (build(), is_lost(device)));
+    let mut errors = Vec::new();
+    for error in said {
+        errors.extend(error.await);
+    }
+    if errors.iter().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
         return Err(Error::OutOfMemory(what.into()));
     }
     // Before what else is said then: it is about what was not created.
     if lost {
         return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
     }
-    match errors.into_iter().flatten().next() {
+    match errors.into_iter().next() {
         Some(error) => Err(Error::Unsupported(format!("{what}: {error}"))),
         None => built,
     }
+}
+
+/// What `build` returns, and what the device will have to say. Whatever else happens before that is known lies outside
+/// the scopes: they have ended.
+fn scoped<T>(device: &wgpu::Device, build: impl FnOnce() -> T) -> (T, [impl Future<Output = Option<wgpu::Error>>; 3]) {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let built = build();
+    (built, [internal.pop(), memory.pop(), validation.pop()])
 }

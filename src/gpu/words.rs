@@ -57,7 +57,7 @@ impl WordTexture {
         Ok(Self { texture, view })
     }
 
-    /// Fills it with the words of `buffer`, which has whole rows.
+    /// Fills it with the first words of `buffer`, which has as many whole rows.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * ROW), rows_per_image: None };
         encoder.copy_buffer_to_texture(

@@ -4,6 +4,8 @@ use super::{
     Belief, BeliefCost, BeliefReduce, BeliefSelect, GridBuffers, HybridConfig, Links, MAX_MESSAGE_BYTES, MeanShift,
     Problem, Solver, Strip, Turn, Winner, solve,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::wait;
 use crate::{
     dense::Dense,
     error::Result,
@@ -18,8 +20,17 @@ use crate::{
 /// [`crate::Error::SizesDiffer`]; [`crate::Error::Parameter`] for a configuration that cannot be;
 /// [`crate::Error::TooLarge`] for rows too wide for a strip, or a picture that the device cannot bind; and what the
 /// device says.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
-    compute_within(gpu, left, right, config, MAX_MESSAGE_BYTES)
+    wait(&gpu.device, compute_async(gpu, left, right, config))
+}
+
+/// As [`compute`], without blocking for longer than the work on the host takes.
+///
+/// # Errors
+/// As [`compute`].
+pub async fn compute_async(gpu: &Gpu, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
+    within(gpu, left, right, config, MAX_MESSAGE_BYTES).await
 }
 
 /// As [`compute`], in strips whose messages take at most `message_bytes`, of which no more than
@@ -27,6 +38,7 @@ pub fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &HybridConfig
 ///
 /// # Errors
 /// As [`compute`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn compute_within(
     gpu: &Gpu,
     left: &Picture,
@@ -34,7 +46,17 @@ pub fn compute_within(
     config: &HybridConfig,
     message_bytes: u64,
 ) -> Result<Dense> {
-    solve(left, right, config, message_bytes, &mut OnDevice { gpu, prepared: None })
+    wait(&gpu.device, within(gpu, left, right, config, message_bytes))
+}
+
+async fn within(
+    gpu: &Gpu,
+    left: &Picture,
+    right: &Picture,
+    config: &HybridConfig,
+    message_bytes: u64,
+) -> Result<Dense> {
+    solve(left, right, config, message_bytes, &mut OnDevice { gpu, prepared: None }).await
 }
 
 /// The kernels and the views, once they are there.
@@ -52,7 +74,7 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(gpu: &Gpu, problem: &Problem) -> Result<Self> {
+    async fn new(gpu: &Gpu, problem: &Problem) -> Result<Self> {
         let (device, parameters) = (&Context::from(&gpu.device), &problem.parameters);
         guarded(device, "belief propagation", || {
             Ok(Self {
@@ -63,6 +85,7 @@ impl Prepared {
                 select: BeliefSelect::new(device),
             })
         })
+        .await
     }
 }
 
@@ -73,7 +96,7 @@ fn upload(gpu: &Gpu, label: &'static str, plane: &Plane<u32>) -> Result<wgpu::Bu
 }
 
 impl Solver for OnDevice<'_> {
-    fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
+    async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
         let (device, size) = (&Context::from(&self.gpu.device), problem.left.size());
         let pixels = problem.left.data().len();
         let readback = guarded(device, "mean shift", || {
@@ -84,15 +107,16 @@ impl Solver for OnDevice<'_> {
             let readback = Readback::new(device, "modes", 4 * pixels as u64);
             submit(self.gpu, &[dispatch], &modes, &readback);
             Ok(readback)
-        })?;
-        Plane::new(size.0, size.1, readback.read(device, pixels)?)
+        })
+        .await?;
+        Plane::new(size.0, size.1, readback.read(pixels).await?)
     }
 
-    fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
         let gpu = self.gpu;
         let prepared = match &mut self.prepared {
             Some(prepared) => prepared,
-            none => none.insert(Prepared::new(gpu, problem)?),
+            none => none.insert(Prepared::new(gpu, problem).await?),
         };
         let device = &gpu.device;
         let (count, fours) = (problem.range.count, problem.range.count.div_ceil(4));
@@ -136,8 +160,9 @@ impl Solver for OnDevice<'_> {
             let readback = Readback::new(device, "winners", winners.size());
             submit(gpu, &dispatches, &winners, &readback);
             Ok(readback)
-        })?;
-        readback.read(device, pixels)
+        })
+        .await?;
+        readback.read(pixels).await
     }
 }
 

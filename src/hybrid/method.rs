@@ -27,11 +27,11 @@ pub(crate) struct Problem {
 /// Who does the work on pictures and volumes: a device, or the twins.
 pub(crate) trait Solver {
     /// The left view filtered by mean shift.
-    fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>>;
+    async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>>;
 
     /// The winners of a strip's pixels after belief propagation on grids of these sizes and with these links, the
     /// finest first.
-    fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>>;
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>>;
 }
 
 /// Red, green, blue and the gradient of each pixel after a change of brightness, from the lowest byte of a word on.
@@ -56,7 +56,7 @@ fn mirrored<T: Copy>(plane: &Plane<T>) -> Plane<T> {
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`], [`Error::TooLarge`], and what the solver reports.
-pub(crate) fn solve(
+pub(crate) async fn solve(
     left: &Picture,
     right: &Picture,
     config: &HybridConfig,
@@ -79,14 +79,14 @@ pub(crate) fn solve(
             Problem { left: mirrored(&right), right: mirrored(&left), range, parameters }
         }
     };
-    let modes = solver.modes(&problem)?;
+    let modes = solver.modes(&problem).await?;
     let segments = Segments::new(&modes, parameters.segmentation);
     let mut winners = Vec::with_capacity(modes.data().len());
     for (strip, decided) in strips {
         let links = Links::new(&problem.left, &segments, strip, parameters.links);
         let links = std::iter::successors(Some(links), |links| Some(links.reduced()));
         let grids: Vec<_> = levels((width, strip.rows), parameters.levels).into_iter().zip(links).collect();
-        let found = solver.winners(&problem, strip, &grids)?;
+        let found = solver.winners(&problem, strip, &grids).await?;
         let first = ((decided.first_row - strip.first_row) * width) as usize;
         winners.extend_from_slice(&found[first..][..(decided.rows * width) as usize]);
     }

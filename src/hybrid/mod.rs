@@ -54,6 +54,8 @@ pub use belief_select::{BeliefSelect, Winner};
 pub use config::{HybridConfig, HybridParameters};
 pub use grid::{FAR, MAX_MESSAGE_BYTES, OVERLAP, Strip};
 pub use links::{LinkWeights, Links};
+pub use matcher::compute_async;
+#[cfg(not(target_arch = "wasm32"))]
 pub use matcher::{compute, compute_within};
 pub use mean_shift::{MeanShift, ModeSeeking, STILL};
 pub use method::described;

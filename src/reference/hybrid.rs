@@ -30,17 +30,18 @@ pub fn compute_hybrid_within(
     config: &HybridConfig,
     message_bytes: u64,
 ) -> Result<Dense> {
-    solve(left, right, config, message_bytes, &mut Twins)
+    // The twins wait for nothing.
+    pollster::block_on(solve(left, right, config, message_bytes, &mut Twins))
 }
 
 struct Twins;
 
 impl Solver for Twins {
-    fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
+    async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
         Ok(mean_shift(&problem.left, &problem.parameters.mean_shift))
     }
 
-    fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
         let Problem { left, right, range, parameters } = problem;
         let mut costs = vec![belief_cost([left, right], strip, &parameters.cost, *range)];
         for (level, &(size, _)) in grids.iter().enumerate().take(grids.len() - 1) {

@@ -42,15 +42,18 @@ pub(super) struct Aligned {
 /// Upright points tell small turns and all scales by their rows, which depth does not move ([`Rectification`]); where they
 /// tell nothing, points with orientations are asked. Where rows do not correspond in the end, the views stay turned
 /// alike as far as is known.
-pub(super) fn align(
+pub(super) async fn align(
     backend: &Backend,
     first: &View,
     second: &Luma,
     features: &FeatureConfig,
     matching: &MatchConfig,
 ) -> Result<Aligned> {
-    let mut aligned =
-        Aligned { view: View::new(backend, second.clone(), features)?, map: DAffine2::IDENTITY, rectified: false };
+    let mut aligned = Aligned {
+        view: View::new(backend, second.clone(), features).await?,
+        map: DAffine2::IDENTITY,
+        rectified: false,
+    };
     let mut asked_orientations = false;
     for round in 0..=ROUNDS {
         let matches = match_features(&first.features, &aligned.view.features, matching)?;
@@ -74,20 +77,29 @@ pub(super) fn align(
         } else {
             asked_orientations = true;
             let oriented = FeatureConfig { upright: false, ..features.clone() };
-            let views = [backend.features(&first.luma, &oriented)?, backend.features(second, &oriented)?];
+            let views = [
+                backend.features_async(&first.luma, &oriented).await?,
+                backend.features_async(second, &oriented).await?,
+            ];
             let matches = match_features(&views[0], &views[1], matching)?;
             let centres = [centre(&first.luma), centre(second)];
             let Some(similarity) = Similarity::shown([&views[0], &views[1]], &matches, centres) else { break };
             similarity.undone(centres[0], centres[1])
         };
-        aligned = Aligned { rectified: false, ..turned(backend, &first.luma, second, missing, features)? };
+        aligned = Aligned { rectified: false, ..turned(backend, &first.luma, second, missing, features).await? };
     }
     Ok(aligned)
 }
 
 /// The second view under `map`, in the rows of the first, and as many columns as it has there, up to one width more on
 /// either side.
-fn turned(backend: &Backend, first: &Luma, second: &Luma, map: DAffine2, features: &FeatureConfig) -> Result<Aligned> {
+async fn turned(
+    backend: &Backend,
+    first: &Luma,
+    second: &Luma,
+    map: DAffine2,
+    features: &FeatureConfig,
+) -> Result<Aligned> {
     let [width, height] = [second.width(), second.height()].map(|side| f64::from(side - 1));
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
     let columns = corners.map(|(x, y)| map.transform_point2(DVec2::new(x, y)).x);
@@ -98,7 +110,7 @@ fn turned(backend: &Backend, first: &Luma, second: &Luma, map: DAffine2, feature
     let size = ((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
-    Ok(Aligned { view: View::new(backend, luma, features)?, map, rectified: false })
+    Ok(Aligned { view: View::new(backend, luma, features).await?, map, rectified: false })
 }
 
 fn mean(luma: &Luma) -> u8 {

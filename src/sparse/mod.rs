@@ -104,8 +104,8 @@ struct View {
 }
 
 impl View {
-    fn new(backend: &Backend, luma: Luma, config: &FeatureConfig) -> Result<Self> {
-        let features = backend.features(&luma, config)?;
+    async fn new(backend: &Backend, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = backend.features_async(&luma, config).await?;
         Ok(Self { luma, features })
     }
 }
@@ -117,23 +117,38 @@ type Indexed = (Seed, [usize; 2]);
 ///
 /// # Errors
 /// [`crate::Error::Parameter`]; and as [`Backend::features`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &SparseConfig) -> Result<Sparse> {
+    backend.wait(match_views_async(backend, first, second, config))
+}
+
+/// As [`match_views`], without blocking for longer than the work on the host takes.
+///
+/// # Errors
+/// As [`match_views`].
+pub async fn match_views_async(
+    backend: &Backend,
+    first: &Luma,
+    second: &Luma,
+    config: &SparseConfig,
+) -> Result<Sparse> {
     config.validate()?;
     let SparseConfig { features, matching, adapt } = config;
-    let first = View::new(backend, first.clone(), features)?;
+    let first = View::new(backend, first.clone(), features).await?;
     if !adapt {
-        let second = View::new(backend, second.clone(), features)?;
+        let second = View::new(backend, second.clone(), features).await?;
         let found = match_features(&first.features, &second.features, matching)?;
         let seeds = refined(&first, &second, &found, Rows::Matched);
         return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false, [0.0; 2]));
     }
 
-    let align::Aligned { view: second, map, rectified } = align::align(backend, &first, second, features, matching)?;
+    let align::Aligned { view: second, map, rectified } =
+        align::align(backend, &first, second, features, matching).await?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
     let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
-    let mut firsts = smoothed(backend, first, features)?;
-    let mut seconds = smoothed(backend, second, features)?;
+    let mut firsts = smoothed(backend, first, features).await?;
+    let mut seconds = smoothed(backend, second, features).await?;
     let found = |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
         let (first, second) = (&firsts[a], &seconds[b]);
         let found = match_features(&first.features, &second.features, &matching)?;
@@ -156,11 +171,11 @@ pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &Spar
 }
 
 /// A view smoothed by each of [`SIGMAS`].
-fn smoothed(backend: &Backend, view: View, config: &FeatureConfig) -> Result<Vec<View>> {
+async fn smoothed(backend: &Backend, view: View, config: &FeatureConfig) -> Result<Vec<View>> {
     let mut views = Vec::new();
     for sigma in &SIGMAS[1..] {
         let luma = gaussian(&view.luma.map(|&grey| [grey]), *sigma).map(|&[grey]| grey);
-        views.push(View::new(backend, luma, config)?);
+        views.push(View::new(backend, luma, config).await?);
     }
     views.insert(0, view);
     Ok(views)

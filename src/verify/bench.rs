@@ -3,7 +3,7 @@
 use super::dice::Size;
 use crate::{
     error::Result,
-    gpu::{Context, Gpu, Readback, guarded, storage_buffer},
+    gpu::{Context, Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer, wait},
     image::Luma,
     luma::pack,
 };
@@ -35,6 +35,19 @@ impl<'g> Bench<'g> {
         let buffer = storage_buffer(self.device(), "input", size_of_val(values) as u64)?;
         self.write(&buffer, values);
         Ok(buffer)
+    }
+
+    /// A texture that holds `values`, words one after the other.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`].
+    pub fn upload_words<T: bytemuck::NoUninit>(&self, values: &[T]) -> Result<WordTexture> {
+        let words = (size_of_val(values) as u64).div_ceil(4);
+        let texture = WordTexture::new(self.device(), "input", words)?;
+        let buffer = storage_buffer(self.device(), "input", 4 * in_rows(words))?;
+        self.write(&buffer, values);
+        self.run(|encoder| texture.record(encoder, &buffer));
+        Ok(texture)
     }
 
     /// A picture, packed, in a storage buffer.
@@ -132,7 +145,7 @@ impl<'g> Bench<'g> {
     pub fn download<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>> {
         let readback = Readback::new(self.device(), "result", buffer.size());
         self.run(|encoder| readback.record(encoder, buffer));
-        readback.read(self.device(), buffer.size() as usize / size_of::<T>())
+        wait(self.device(), readback.read(buffer.size() as usize / size_of::<T>()))
     }
 
     /// What `work` returns, or what the device has to say against it.
@@ -140,6 +153,6 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// Those of `work`; [`crate::Error::Unsupported`], [`crate::Error::OutOfMemory`].
     pub fn guarded<T>(&self, what: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        guarded(self.device(), what, work)
+        wait(self.device(), guarded(self.device(), what, work))
     }
 }

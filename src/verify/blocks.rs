@@ -10,7 +10,7 @@ use crate::{
     dense::{BlockMatch, Brightness, CELL, DenseConfig, Layout, Pad, PadParams, Ranges, Tile, View, Wanted},
     disparity::DisparityRange,
     error::Result,
-    gpu::{WordTexture, uniform_buffer},
+    gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
     reference::{CellPlane, block_match, check_consistency, padded, winners},
@@ -106,9 +106,7 @@ impl BlockMatchTrial {
         let plane = |view, params| padded(view, params, Brightness::SAME);
         let (mut planes, right_plane) = (plane(&self.left, &left), plane(&self.right, &right));
         planes.extend(&right_plane[right.offset as usize..]);
-        planes.resize(planes.len().next_multiple_of(2048), 0);
-        let texture = WordTexture::new(device, "planes", planes.len() as u64)?;
-        let buffer = bench.upload(&planes)?;
+        let texture = bench.upload_words(&planes)?;
         let ranges = match &self.ranges {
             None => Ranges::whole(device, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
@@ -122,10 +120,7 @@ impl BlockMatchTrial {
         let matches = bench.output(width * height + confidences)?;
         let kernel = BlockMatch::new(device, &self.config, self.view, wanted, self.tile);
         let dispatch = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
-        bench.run(|encoder| {
-            texture.record(encoder, &buffer);
-            dispatch.record(encoder);
-        });
+        bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)
     }
 

@@ -195,7 +195,7 @@ impl Trial for FillTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (device, size) = (bench.device(), self.disparities.size());
-        let (from, to) = (bench.upload(self.disparities.data())?, bench.output(size.0 * size.1)?);
+        let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(size.0 * size.1)?);
         let dispatch = Fill::new(device).prepare(device, size, self.range, &from, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filled disparities", bench.download::<i32>(&to)?)])

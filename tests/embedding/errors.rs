@@ -143,6 +143,8 @@ fn a_lost_device_is_an_error_and_another_one_goes_on() {
     let map = application.buffer(BYTES, BufferUsages::COPY_DST);
     let luma = application.buffer(BYTES, BufferUsages::STORAGE);
     let view = application.texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
+    let features = FeatureConfig::default();
+    let detector = Detector::new(application.device(), matcher.luma()[0], SIZE.0, SIZE.1, &features).unwrap();
     application.device().destroy();
 
     let device = application.device();
@@ -152,9 +154,10 @@ fn a_lost_device_is_an_error_and_another_one_goes_on() {
         matcher.run(&application.gpu).err(),
         matcher.inputs(device, view, view).err(),
         matcher.outputs(device, Destination::Buffer(&map), None).err(),
-        Detector::new(device, &luma, SIZE.0, SIZE.1, &FeatureConfig::default()).err(),
+        Detector::new(device, &luma, SIZE.0, SIZE.1, &features).err(),
+        detector.read(device, &application.gpu.queue).err(),
         hsad::dense::compute(&application.gpu, &left, &right, &config()).err(),
-        hsad::features::detect(&application.gpu, &left, &FeatureConfig::default()).err(),
+        hsad::features::detect(&application.gpu, &left, &features).err(),
     ];
     for (index, error) in errors.into_iter().enumerate() {
         assert!(matches!(error, Some(Error::DeviceLost(_))), "{index}: {error:?}");

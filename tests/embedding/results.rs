@@ -205,6 +205,24 @@ fn memory_is_what_the_device_gives() {
     }
 }
 
+/// The table of the README, on a device with the limits that it names.
+#[test]
+fn matchers_take_the_memory_that_is_told() {
+    let readme = include_str!("../../README.md");
+    let device = &Application::new().gpu.device;
+    for (size, count) in [((640, 480), 128), ((1920, 1080), 256)] {
+        let start = format!("| {}x{}, {count} | ", size.0, size.1);
+        let row = readme.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
+        let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+        let range = DisparityRange::new(0, count).unwrap();
+        let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
+            let matcher = Matcher::new(device, size, &preset.config().dense(range, Brightness::SAME)).unwrap();
+            (matcher.memory() as f64 / 1e6).round()
+        });
+        assert_eq!(told, measured, "{start}");
+    }
+}
+
 #[test]
 fn brightness_changes_without_another_matcher() {
     let application = Application::new();

@@ -1,5 +1,11 @@
 //! The dense half as a whole, in step with the twins.
 
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
+
 use hsad::{
     config::Preset,
     dense::{
@@ -131,6 +137,46 @@ fn twice_in_one_encoder_and_after_garbage() {
         let (packed, rest) = (pack(&expected.confidence), vec![7; 97 * 33 - 25 * 33]);
         assert_same("confidences", &download::<u32>(confidences), &[packed, rest].concat());
     }
+}
+
+/// An executor may move the future to another thread, and all it needs is someone who polls the device.
+#[test]
+fn awaited_while_another_thread_polls_the_device() {
+    fn sent<F: Future + Send>(future: F) -> F {
+        future
+    }
+    let (left, right) = pair(97, 33);
+    let done = AtomicBool::new(false);
+    let awaited = thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                gpu().device.poll(wgpu::PollType::Poll).unwrap();
+                thread::sleep(Duration::from_millis(1));
+            }
+        });
+        let awaited = pollster::block_on(sent(dense::compute_async(gpu(), &left, &right, &config(View::Left))));
+        done.store(true, Ordering::Relaxed);
+        awaited.unwrap()
+    });
+    assert_same(
+        "disparities",
+        awaited.disparity.data(),
+        compute_dense(&left, &right, &config(View::Left)).unwrap().disparity.data(),
+    );
+}
+
+#[test]
+fn several_threads_wait_for_one_device() {
+    let (left, right) = pair(97, 33);
+    let expected = compute_dense(&left, &right, &config(View::Left)).unwrap();
+    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left)).unwrap();
+    write(&matcher, &left, &right);
+    thread::scope(|scope| {
+        let threads = [0; 4].map(|_| scope.spawn(|| [0; 5].map(|_| matcher.run(gpu()).unwrap())));
+        for maps in threads.map(|thread| thread.join().unwrap()) {
+            maps.iter().for_each(|map| assert_same("disparities", map.disparity.data(), expected.disparity.data()));
+        }
+    });
 }
 
 #[test]

@@ -1,0 +1,70 @@
+//! What kernels take, by the device's own clock.
+
+use std::time::Duration;
+
+use super::{Gpu, Readback};
+use crate::error::{Error, Result};
+
+/// A time before and one after each of some kernels.
+pub(crate) struct Stopwatch {
+    queries: wgpu::QuerySet,
+    kernels: u32,
+    resolved: wgpu::Buffer,
+    times: Readback,
+}
+
+impl Stopwatch {
+    /// For so many kernels, or the first ones that a query set has room for.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`].
+    pub(crate) fn new(device: &wgpu::Device, kernels: usize) -> Result<Self> {
+        if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+            return Err(Error::Unsupported("it has no timestamps (Features::TIMESTAMP_QUERY)".into()));
+        }
+        let kernels = kernels.clamp(1, wgpu::QUERY_SET_MAX_QUERIES as usize / 2) as u32;
+        let label = "timestamps";
+        let bytes = u64::from(2 * kernels * wgpu::QUERY_SIZE);
+        Ok(Self {
+            queries: device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some(label),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2 * kernels,
+            }),
+            kernels,
+            resolved: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            times: Readback::new(device, label, bytes),
+        })
+    }
+
+    /// Where the times of a kernel go; nowhere where there is no room for them.
+    pub(crate) fn writes(&self, kernel: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        (kernel < self.kernels).then_some(wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(2 * kernel),
+            end_of_pass_write_index: Some(2 * kernel + 1),
+        })
+    }
+
+    /// Records how the times come to the host, after the kernels.
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.resolve_query_set(&self.queries, 0..2 * self.kernels, &self.resolved, 0);
+        self.times.record(encoder, &self.resolved);
+    }
+
+    /// What each kernel took, after the submission.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`].
+    pub(crate) async fn read(&self, gpu: &Gpu) -> Result<Vec<Duration>> {
+        let ticks: Vec<u64> = self.times.read(2 * self.kernels as usize).await?;
+        let seconds = f64::from(gpu.queue.get_timestamp_period()) / 1e9;
+        let took = |times: &[u64]| Duration::from_secs_f64(times[1].saturating_sub(times[0]) as f64 * seconds);
+        Ok(ticks.chunks_exact(2).map(took).collect())
+    }
+}
