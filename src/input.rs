@@ -16,9 +16,10 @@ use crate::{
 pub enum Source<'a> {
     /// Packed luma (see [`crate::luma`]) in a buffer with `COPY_SRC`.
     Luma(&'a wgpu::Buffer),
-    /// A view of a texture with `TEXTURE_BINDING`, in the texture's own format.
+    /// A view of a texture with `TEXTURE_BINDING`, in the texture's own format: one of [`TexelFormat::ALL`], which says
+    /// how they become luma.
     Texture(&'a wgpu::TextureView),
-    /// A view of a texture in another of the formats that it may be seen in.
+    /// A view of a texture in another of the formats that it may be seen in, which the view itself does not tell.
     TextureAs(&'a wgpu::TextureView, wgpu::TextureFormat),
 }
 
@@ -90,11 +91,14 @@ impl Input {
             });
         };
         check_texture(name, view.texture(), size, wgpu::TextureUsages::TEXTURE_BINDING)?;
-        let dispatch = guarded(device, name, || {
-            let kernel = kernel.get_or_init(|| LumaTexture::new(device));
-            Ok(kernel.prepare(device, size, texel, view, luma))
+        let (compiled, dispatch) = guarded(device, name, || {
+            let compiled = kernel.get().cloned().unwrap_or_else(|| LumaTexture::new(device));
+            let dispatch = compiled.prepare(device, size, texel, view, luma);
+            Ok((compiled, dispatch))
         })
         .await?;
+        // Only now that nothing is wrong with it.
+        kernel.get_or_init(|| compiled);
         Self(Way::Run(dispatch)).tried(device, name).await
     }
 

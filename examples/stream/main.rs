@@ -46,14 +46,8 @@ impl Scene {
         let crop = |view: &Picture| Picture::from_fn(SIZE.0, SIZE.1, |x, y| view.get(x0 + x, y0 + y));
         let [left, right] = [crop(&self.views[0]), crop(&self.views[1])];
         let darker = |level: u8| (u16::from(level) * 2 / 3) as u8;
-        [
-            left,
-            if index < self.frames / 2 {
-                right
-            } else {
-                right.map(|&[r, g, b, a]| [darker(r), darker(g), darker(b), a])
-            },
-        ]
+        let is_dark = index >= self.frames / 2;
+        [left, if is_dark { right.map(|&[r, g, b, a]| [darker(r), darker(g), darker(b), a]) } else { right }]
     }
 }
 

@@ -60,6 +60,7 @@ pub struct Matcher {
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
     plan: Plan,
+    /// Compiled when the first texture needs them.
     luma_texture: OnceLock<LumaTexture>,
     map_textures: [OnceLock<MapTexture>; 2],
 }
@@ -229,8 +230,9 @@ impl Matcher {
             });
         };
         check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
-        guarded(device, name, || {
-            let kernel = self.map_textures[texel as usize].get_or_init(|| MapTexture::new(device, texel));
+        let stored = &self.map_textures[texel as usize];
+        let (kernel, dispatches) = guarded(device, name, || {
+            let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(device, texel));
             let width = self.size.0;
             let dispatch = |answer: &Copy| {
                 let row = |word: u64| (word / u64::from(width)) as u32;
@@ -238,9 +240,13 @@ impl Matcher {
                 let rows = MapRows { width, rows, first_word: answer.from_word as u32, first_row };
                 kernel.prepare(device, rows, &answer.from, view)
             };
-            Ok(self.plan.answers().map(dispatch).collect())
+            let dispatches = self.plan.answers().map(dispatch).collect();
+            Ok((kernel, dispatches))
         })
-        .await
+        .await?;
+        // Only now that nothing is wrong with it.
+        stored.get_or_init(|| kernel);
+        Ok(dispatches)
     }
 
     /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what

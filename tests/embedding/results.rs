@@ -210,7 +210,7 @@ fn memory_is_what_the_device_gives() {
 fn matchers_take_the_memory_that_is_told() {
     let readme = include_str!("../../README.md");
     let device = &Application::new().gpu.device;
-    for (size, count) in [((640, 480), 128), ((1920, 1080), 256)] {
+    for (size, count) in [((640, 480), 128), ((768, 512), 64), ((1920, 1080), 256)] {
         let start = format!("| {}x{}, {count} | ", size.0, size.1);
         let row = readme.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
         let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();

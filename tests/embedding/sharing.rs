@@ -98,5 +98,8 @@ fn the_pipeline_cache_of_the_application_is_used() {
         let error = error.expect("an error").to_string();
         assert!(error.contains("PipelineCache") && error.contains("device"), "{error}");
     }
+    // Nothing of that is kept.
+    matcher.inputs(own, picture, picture).unwrap();
+    matcher.outputs(own, Destination::Texture(&map), None).unwrap();
     applications.iter().for_each(Application::assert_quiet);
 }
