@@ -12,7 +12,7 @@ use std::{
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, DenseConfig, Matcher},
+    dense::{Brightness, DenseConfig, Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{DeviceChoice, Gpu},
@@ -77,7 +77,6 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
     let preset =
         |preset: Preset| (format!("dense {preset:?}").to_lowercase(), preset.config().dense(range, Brightness::SAME));
     let presets = [Preset::Fast, Preset::Balanced, Preset::Quality].map(preset);
-    let (left_luma, right_luma) = (upload(gpu, left), upload(gpu, right));
     let bytes = 4 * left.data().len() as u64;
     let [map, confidence] = ["disparities", "confidences"].map(|label| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -89,10 +88,14 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
     });
     for (name, config) in [("dense 7x7".into(), blocks)].into_iter().chain(presets) {
         let start = Instant::now();
-        let matcher = Matcher::new(&gpu.device, left.size(), &config, &left_luma, &right_luma)?;
+        let matcher = Matcher::new(&gpu.device, left.size(), &config)?;
         println!("{name}, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
+        for (view, luma) in [left, right].into_iter().zip(matcher.luma()) {
+            gpu.queue.write_buffer(luma, 0, bytemuck::cast_slice(&pack(view)));
+        }
+        let outputs = matcher.outputs(&gpu.device, Destination::Buffer(&map), Some(&confidence))?;
         time(&name, || {
-            submit(gpu, |encoder| matcher.record(encoder, &map, &confidence));
+            submit(gpu, |encoder| matcher.record(encoder, &outputs));
             Ok(())
         })?;
         kernels(gpu, &matcher)?;

@@ -13,19 +13,23 @@ struct Params {
     // Words of a row of the padded plane, and where in the output it begins.
     stride: u32,
     offset: u32,
-    // What pixels are multiplied with, and what is added to them, in 1/256.
+}
+
+// What pixels are multiplied with, and what is added to them, in 1/256.
+struct Brightness {
     gain: i32,
-    brightness: i32,
+    offset: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> luma: array<u32>;
-@group(0) @binding(2) var<storage, read_write> padded: array<u32>;
+@group(0) @binding(1) var<uniform> brightness: Brightness;
+@group(0) @binding(2) var<storage, read> luma: array<u32>;
+@group(0) @binding(3) var<storage, read_write> padded: array<u32>;
 
 // Four pixels after the change of brightness.
 fn brightened(word: u32) -> u32 {
     let pixels = vec4<i32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u));
-    let changed = (params.gain * pixels + params.brightness + 128) >> vec4<u32>(8u);
+    let changed = (brightness.gain * pixels + brightness.offset + 128) >> vec4<u32>(8u);
     let bytes = vec4<u32>(clamp(changed, vec4<i32>(0), vec4<i32>(255)));
     return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }

@@ -11,6 +11,10 @@ pub const SCALE: i32 = 256;
 /// The fixed-point disparity that says 'none here'. Zero is a disparity like any other.
 pub const NONE: i32 = i32::MIN;
 
+/// The number that says 'none here' in a texture of disparities in pixels: [`NONE`] / [`SCALE`], below every disparity.
+/// A number, since shaders need not know infinities or what is not a number.
+pub const NONE_IN_PIXELS: f32 = NONE as f32 / SCALE as f32;
+
 /// A disparity a pixel, in 1/256 px, or [`NONE`].
 ///
 /// In the left view's map, pixel `(x, y)` with disparity `d` corresponds to `(x - d, y)` of the

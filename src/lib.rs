@@ -1,25 +1,69 @@
 //! Stereo depth from two photographs, on any GPU: every heavy stage is a WGSL compute shader run by
 //! [`wgpu`], with a twin on the CPU that ends with the same bytes.
 //!
-//! On a device of your own, with your own encoder; [`dense::Matcher`] submits nothing:
+//! On a device of your own, from your textures to your texture, in your own encoder; [`dense::Matcher`] submits nothing:
 //!
 //! ```
-//! use hsad::{dense::{DenseConfig, Matcher}, disparity::DisparityRange, wgpu};
+//! use hsad::{
+//!     config::Preset,
+//!     dense::{Brightness, Destination, Inputs, Matcher, Outputs},
+//!     disparity::DisparityRange,
+//!     input::Source,
+//!     wgpu,
+//! };
 //!
-//! /// `left` and `right` hold packed luma (see [`hsad::luma`]); the results are an `i32` disparity in
-//! /// 1/256 px and a `u32` confidence a pixel.
-//! fn record_disparity(
-//!     device: &wgpu::Device,
-//!     encoder: &mut wgpu::CommandEncoder,
-//!     [left, right]: [&wgpu::Buffer; 2],
-//!     [disparities, confidences]: [&wgpu::Buffer; 2],
-//! ) -> hsad::Result<()> {
-//!     let config = DenseConfig { consistency: Some(256), ..DenseConfig::new(DisparityRange::new(0, 64)?) };
-//!     // Once for a size: compiles the kernels, allocates all memory.
-//!     let matcher = Matcher::new(device, (640, 480), &config, left, right)?;
-//!     // Once a frame.
-//!     matcher.record(encoder, disparities, confidences);
-//!     Ok(())
+//! struct Stereo {
+//!     matcher: Matcher,
+//!     inputs: Inputs,
+//!     outputs: Outputs,
+//! }
+//!
+//! impl Stereo {
+//!     /// Once for a size: compiles the kernels, allocates all memory. `disparities` is of format R32Float, in pixels.
+//!     fn new(
+//!         device: &wgpu::Device,
+//!         [left, right]: [&wgpu::TextureView; 2],
+//!         disparities: &wgpu::TextureView,
+//!     ) -> hsad::Result<Self> {
+//!         let size = left.texture().size();
+//!         let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64)?, Brightness::SAME);
+//!         let matcher = Matcher::new(device, (size.width, size.height), &config)?;
+//!         let inputs = matcher.inputs(device, Source::Texture(left), Source::Texture(right))?;
+//!         let outputs = matcher.outputs(device, Destination::Texture(disparities), None)?;
+//!         Ok(Self { matcher, inputs, outputs })
+//!     }
+//!
+//!     /// Once a frame.
+//!     fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+//!         self.inputs.record(encoder);
+//!         self.matcher.record(encoder, &self.outputs);
+//!     }
+//! }
+//! ```
+//!
+//! [`input::Source`] says which textures and buffers it takes, [`dense::Destination`] where disparities can go,
+//! [`gpu::REQUIRED_LIMITS`] what a device must offer, and [`gpu::Context`] how an application's pipeline cache is used.
+//! `examples/embed` draws the disparities, `examples/stream` goes through a sequence of frames.
+//!
+//! For a sequence, the features of a frame tell the range and the brightness of those after it, without anything having
+//! to wait: a [`features::Detector`] reads the matcher's luma, and what it found is copied and looked at when it arrives.
+//!
+//! ```
+//! use hsad::{dense::Matcher, features::Feature, image::Luma, pipeline, seeding::{Seeding, SeedingConfig}, wgpu};
+//!
+//! /// What a frame's features tell, for the frames after it; the range that a new matcher is needed for, if one is.
+//! fn learn(
+//!     matcher: &Matcher,
+//!     queue: &wgpu::Queue,
+//!     views: (&Luma, &Luma),
+//!     features: (&[Feature], &[Feature]),
+//!     searched: hsad::disparity::DisparityRange,
+//! ) -> hsad::Result<Option<hsad::disparity::DisparityRange>> {
+//!     let seeding = Seeding::find(views, features, &SeedingConfig::default())?;
+//!     if let Some(found) = &seeding.brightness {
+//!         matcher.set_brightness(queue, pipeline::equalising(found))?;
+//!     }
+//!     Ok(seeding.range.ok().filter(|range| range.min < searched.min || range.last() > searched.last()))
 //! }
 //! ```
 //!
@@ -59,7 +103,7 @@
 //!
 //! # The way through
 //!
-//! [`io`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
+//! [`io`] or [`input`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
 //! [`pipeline`]; where its method is asked for, [`hybrid`] stands in the place of [`dense`]. Each stage has one name in
 //! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/reference/<stage>.rs` (its twin) and
 //! `tests/kernels/<stage>.rs`.
@@ -77,8 +121,10 @@ pub mod filter;
 pub mod gpu;
 pub mod hybrid;
 pub mod image;
+pub mod input;
 pub mod io;
 pub mod luma;
+pub mod luma_texture;
 pub mod matching;
 pub mod pair;
 pub mod pipeline;
@@ -93,7 +139,7 @@ pub use wgpu;
 
 /// Every stage there is, for checks that need no GPU.
 pub fn stages() -> Vec<gpu::Stage> {
-    let mut stages = vec![luma::stage()];
+    let mut stages = vec![luma::stage(), luma_texture::stage()];
     stages.extend(features::stages());
     stages.extend(dense::stages());
     stages.extend(hybrid::stages());

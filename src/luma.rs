@@ -5,7 +5,10 @@
 
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, guarded, shader_struct, storage_buffer, uniform_buffer},
+    gpu::{
+        Binding, Context, Dispatch, Gpu, Kernel, ShaderType, Stage, guarded, shader_struct, storage_buffer,
+        uniform_buffer,
+    },
     image::Luma,
 };
 
@@ -36,20 +39,30 @@ pub fn packed_bytes(width: u32, height: u32) -> u64 {
 /// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
 pub const MAX_SIDE: u32 = 1 << 19;
 
-/// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size.
-pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Result<()> {
-    let refuse = |expected: String| {
-        Err(Error::Parameter { name: "the picture", value: format!("{width}x{height} pixels"), expected })
-    };
+fn refuse(width: u32, height: u32, expected: String) -> Result<()> {
+    Err(Error::Parameter { name: "the picture", value: format!("{width}x{height} pixels"), expected })
+}
+
+/// Refuses sizes that no kernel could work on.
+pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
     if width.min(height) == 0 || width.max(height) > MAX_SIDE {
-        return refuse(format!("its sides must be 1 to {MAX_SIDE}"));
+        return refuse(width, height, format!("its sides must be 1 to {MAX_SIDE}"));
     }
-    if luma.size() < packed_bytes(width, height) {
-        return refuse(format!(
-            "its packed luma, {} bytes, is more than the {} given",
-            packed_bytes(width, height),
-            luma.size()
-        ));
+    Ok(())
+}
+
+/// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
+/// may read.
+pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Result<()> {
+    check_size(width, height)?;
+    let bytes = packed_bytes(width, height);
+    if luma.size() < bytes {
+        let given = luma.size();
+        return refuse(width, height, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
+    }
+    if !luma.usage().contains(wgpu::BufferUsages::STORAGE) {
+        let value = format!("a buffer with the usages {:?}", luma.usage());
+        return Err(Error::Parameter { name: "packed luma", value, expected: "it needs STORAGE".into() });
     }
     Ok(())
 }
@@ -92,7 +105,7 @@ impl RgbaToLuma {
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind the picture.
-    pub fn new(device: &wgpu::Device, pixels: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
+    pub fn new(device: &Context<'_>, pixels: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
         let params = uniform_buffer(device, "luma size", &Params { width, height });
         let luma = storage_buffer(device, "luma", packed_bytes(width, height))?;
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];

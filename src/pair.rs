@@ -9,6 +9,7 @@ use crate::{
     gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
     hybrid::{self, HybridConfig},
     image::{Luma, reduced},
+    input::Source,
     io::Picture,
     luma::{MAX_SIDE, RgbaToLuma, packed_bytes, unpack, upload},
     reference,
@@ -256,7 +257,13 @@ impl<'b> Pair<'b> {
     pub async fn dense_async(&self, config: &DenseConfig) -> Result<Dense> {
         match &self.device {
             Some(OnDevice { gpu, left, right }) => {
-                let matcher = dense::Matcher::new_async(&gpu.device, self.size(), config, left, right).await?;
+                let device = &gpu.device;
+                let matcher = dense::Matcher::new_async(device, self.size(), config).await?;
+                let inputs = matcher.inputs_async(device, Source::Luma(left), Source::Luma(right)).await?;
+                let mut encoder =
+                    device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
+                inputs.record(&mut encoder);
+                gpu.queue.submit([encoder.finish()]);
                 matcher.run_async(gpu).await
             }
             None => reference::compute_dense(&self.left, &self.right, config),
@@ -277,7 +284,7 @@ async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
         for (first_row, pixels) in bands {
             let rgba = storage_buffer(device, "rows of the picture", pixels.len() as u64)?;
             gpu.queue.write_buffer(&rgba, 0, pixels);
-            let band = RgbaToLuma::new(device, &rgba, width, rows.min(height - first_row))?;
+            let band = RgbaToLuma::new(&device.into(), &rgba, width, rows.min(height - first_row))?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("luma") });
             band.record(&mut encoder);
             encoder.copy_buffer_to_buffer(band.luma(), 0, &luma, packed_bytes(width, first_row), None);

@@ -3,14 +3,15 @@
 use super::{
     cells::Ranges,
     config::{DenseConfig, View},
-    pad::{Brightness, PadParams},
+    pad::PadParams,
     select::answer_constants,
 };
 use crate::{
     disparity::{DisparityRange, SCALE},
     error::Result,
     gpu::{
-        Bindable, Binding, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct, uniform_buffer,
+        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
+        uniform_buffer,
     },
 };
 
@@ -138,7 +139,7 @@ impl BlockMatch {
     }
 
     /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
-    pub fn new(device: &wgpu::Device, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
+    pub fn new(device: &Context<'_>, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
         let kernel = Kernel::new(device, &Self::stage(config, view, wanted, tile));
         Self { kernel, view, uniqueness: config.uniqueness, tile }
     }
@@ -230,9 +231,9 @@ impl Layout {
         2 * u64::from(self.padded_rows()) * u64::from(self.stride())
     }
 
-    /// How the left and the right picture are padded, the right one after a change of its brightness.
-    pub fn padding(&self, brightness: Brightness) -> [PadParams; 2] {
-        [View::Left, View::Right].map(|view| PadParams {
+    /// How the left and the right picture are padded.
+    pub fn padding(&self) -> [PadParams; 2] {
+        View::BOTH.map(|view| PadParams {
             width: self.width,
             height: self.height,
             first_word: -((margin(self.radius) / 4 + self.reach(view)) as i32),
@@ -240,7 +241,6 @@ impl Layout {
             rows: self.padded_rows(),
             stride: self.stride(),
             offset: self.offset(view),
-            brightness: if view == View::Left { Brightness::SAME } else { brightness },
         })
     }
 

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{in_rows, most_words},
+    gpu::{Context, in_rows, most_words},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -28,7 +28,7 @@ const MAX_BAND_WORK: u64 = 1 << 30;
 /// The plan for packed `left` and `right` of `size`, in bands for which no buffer needs more than `limit` bytes, nor more
 /// than `band_rows` rows.
 pub(super) fn plan(
-    device: &wgpu::Device,
+    device: &Context<'_>,
     size: (u32, u32),
     config: &DenseConfig,
     search: Search,
@@ -44,7 +44,7 @@ pub(super) fn plan(
     let pad = Pad::new(device);
     let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
 
-    let mut plan = Plan::new(height.div_ceil(band_rows) as usize);
+    let mut plan = Plan::new(device, config, height.div_ceil(band_rows) as usize);
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
@@ -70,9 +70,9 @@ pub(super) fn plan(
             None => (&whole_range, Some(&whole_range)),
             Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
         };
-        let [pad_left, pad_right] = layout.padding(config.brightness);
-        plan.run(pad.prepare(device, pad_left, left, &planes.0));
-        plan.run(pad.prepare(device, pad_right, right, &planes.0));
+        for ((params, view), picture) in layout.padding().into_iter().zip(View::BOTH).zip([left, right]) {
+            plan.run(pad.prepare(device, params, &plan.brightness(view), picture, &planes.0));
+        }
         plan.fill_texture(&planes.0, &planes.1);
         let others = other_view.as_ref().zip(partners).map(|((find_winners, winners, max_difference), partners)| {
             plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));

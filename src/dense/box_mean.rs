@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::band::VolumeBand;
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -38,7 +38,7 @@ impl BoxMean {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, side: u32) -> Self {
+    pub fn new(device: &Context<'_>, side: u32) -> Self {
         Self(Kernel::new(device, &Self::stage(side)))
     }
 

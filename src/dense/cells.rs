@@ -1,9 +1,7 @@
 //! The cells of a picture, each with disparities of its own to search.
 
-use wgpu::util::DeviceExt;
-
 use super::config::DenseConfig;
-use crate::disparity::DisparityRange;
+use crate::{disparity::DisparityRange, gpu::buffer_of};
 
 /// The side of a cell in pixels.
 pub const CELL: u32 = 16;
@@ -24,11 +22,8 @@ pub struct Ranges {
 impl Ranges {
     /// One range for all pixels.
     pub fn whole(device: &wgpu::Device, range: DisparityRange) -> Self {
-        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("the whole range"),
-            contents: bytemuck::bytes_of(&[0, range.count]),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
+        let words = [0, range.count];
+        let buffer = buffer_of(device, "the whole range", bytemuck::bytes_of(&words), wgpu::BufferUsages::STORAGE);
         Self { buffer, shift: 31, columns: 1 }
     }
 

@@ -1,10 +1,7 @@
 //! The census transform, with the luma beside it. `shaders/census.wgsl`.
 
-use super::{
-    pad::{Brightness, PadParams},
-    walk::rows_a_thread,
-};
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use super::{pad::PadParams, walk::rows_a_thread};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
@@ -38,14 +35,14 @@ impl Census {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         let rows = rows_a_thread(device);
         Self { kernel: Kernel::new(device, &Self::stage(rows)), rows }
     }
 
-    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it, after a change of
-    /// brightness: from the buffer's first word on. Rows outside the picture are those of its edge.
-    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32, brightness: Brightness) -> PadParams {
+    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
+    /// word on. Rows outside the picture are those of its edge.
+    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32) -> PadParams {
         PadParams {
             width,
             height,
@@ -54,7 +51,6 @@ impl Census {
             rows: rows + 4,
             stride: Self::stride(width),
             offset: 0,
-            brightness,
         }
     }
 

@@ -1,7 +1,7 @@
 //! What the other view sees, told from one view's winners. `shaders/claim.wgsl`.
 
 use super::{band::VolumeBand, config::View, select::INDEX_BITS};
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
@@ -34,7 +34,7 @@ impl Claim {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 

@@ -13,7 +13,12 @@ use super::{
     partner_ranges::PartnerRanges,
     plan::{Plan, match_words},
 };
-use crate::{disparity::DisparityRange, error::Result, gpu::WordTexture, luma::packed_bytes};
+use crate::{
+    disparity::DisparityRange,
+    error::Result,
+    gpu::{Context, WordTexture},
+    luma::packed_bytes,
+};
 
 /// The kernels and the memory of the search at half the size.
 pub(super) struct Coarse {
@@ -35,7 +40,7 @@ pub(super) struct Coarse {
 impl Coarse {
     /// Allocates memory for bands of `band_rows` rows, and plans the halving of `pictures`.
     pub(super) fn new(
-        device: &wgpu::Device,
+        device: &Context<'_>,
         plan: &mut Plan,
         size: (u32, u32),
         config: &DenseConfig,
@@ -97,8 +102,8 @@ impl Coarse {
         let half_size = (band.map_width, self.size.1.div_ceil(2));
         let tile = Tile::of(device, Wanted::Matches);
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, &[tile])?;
-        for (params, half) in layout.padding(self.half.brightness).into_iter().zip(&self.halves) {
-            plan.run(pad.prepare(device, params, half, &self.planes.0));
+        for ((params, view), half) in layout.padding().into_iter().zip(View::BOTH).zip(&self.halves) {
+            plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
         let confidence_offset = match_words(band.map_width, band.map_rows).1;

@@ -16,6 +16,9 @@ pub enum View {
 }
 
 impl View {
+    /// Left, then right.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
     /// The other one.
     pub fn other(self) -> Self {
         match self {

@@ -3,7 +3,7 @@
 use super::{config::View, select::INDEX_BITS};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
@@ -57,7 +57,7 @@ impl Consistency {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, others: Others) -> Self {
+    pub fn new(device: &Context<'_>, others: Others) -> Self {
         Self { kernel: Kernel::new(device, &Self::stage(others)), others }
     }
 

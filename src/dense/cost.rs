@@ -1,7 +1,7 @@
 //! The matching cost of each pixel and disparity. `shaders/cost.wgsl`.
 
 use super::{band::VolumeBand, config::View};
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -76,7 +76,7 @@ impl CostVolume {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, cost: &Cost, view: View) -> Self {
+    pub fn new(device: &Context<'_>, cost: &Cost, view: View) -> Self {
         Self(Kernel::new(device, &Self::stage(cost, view)))
     }
 

@@ -3,7 +3,8 @@
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
     gpu::{
-        Bindable, Binding, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct, uniform_buffer,
+        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
+        uniform_buffer,
     },
 };
 
@@ -56,7 +57,7 @@ impl Fill {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 

@@ -1,11 +1,15 @@
 //! The dense half of one pair size: all kernels, all memory, and the order of things.
 
-use std::time::Duration;
+use std::{sync::OnceLock, time::Duration};
 
 use super::{
     blocks,
-    config::{Aggregation, DenseConfig},
-    plan::Plan,
+    config::{Aggregation, DenseConfig, View},
+    inputs::Inputs,
+    map_texture::{MapRows, MapTexel, MapTexture},
+    outputs::{Destination, Disparities, Outputs},
+    pad::Brightness,
+    plan::{Copy, Plan},
     semi_global,
 };
 #[cfg(not(target_arch = "wasm32"))]
@@ -13,9 +17,11 @@ use crate::gpu::wait;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
-    gpu::{Gpu, Readback, Stopwatch, guarded},
+    gpu::{Context, Dispatch, Gpu, Readback, Stopwatch, check_limits, guarded, storage_buffer},
     image::{Luma, Plane},
-    luma::{check_packed, unpack, upload},
+    input::{Input, Source, check_buffer, check_texture, try_recording},
+    luma::{check_size, pack, packed_bytes, unpack},
+    luma_texture::LumaTexture,
 };
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
@@ -39,43 +45,43 @@ impl Dense {
 
 /// Dense matching of pairs of one size on a borrowed device.
 ///
+/// It is built once for a size and a configuration; what an application has for it in each frame, textures or buffers, is
+/// prepared once as [`Self::inputs`] and [`Self::outputs`], of which there may be as many as it has frames in flight. Then
+/// [`Inputs::record`] and [`Self::record`] go into an encoder: they submit nothing, map nothing, write no buffer by the
+/// queue and create nothing on the device.
+///
+/// The disparities that are searched are part of the kernels: for others build another matcher. Only
+/// [`Self::set_brightness`] changes what is there.
+///
 /// Pictures whose planes do not fit in one buffer are matched in bands of rows; no result depends
 /// on where they are cut.
 pub struct Matcher {
     size: (u32, u32),
+    /// Packed luma, left and right.
+    luma: [wgpu::Buffer; 2],
     plan: Plan,
+    /// Compiled when the first texture needs them.
+    luma_texture: OnceLock<LumaTexture>,
+    map_textures: [OnceLock<MapTexture>; 2],
 }
 
 impl Matcher {
-    /// Compiles the kernels and allocates all memory for packed `left` and `right` of `size`
-    /// (rows of `width.div_ceil(4)` words, four pixels a word).
+    /// Compiles the kernels and allocates all memory for pairs of `size`.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
-    /// the device cannot bind, and what the device says.
+    /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        device: &wgpu::Device,
-        size: (u32, u32),
-        config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
-    ) -> Result<Self> {
-        wait(device, Self::new_async(device, size, config, left, right))
+    pub fn new<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        Self::with_band_rows(device, size, config, u32::MAX)
     }
 
     /// As [`Matcher::new`], without blocking.
     ///
     /// # Errors
     /// As [`Matcher::new`].
-    pub async fn new_async(
-        device: &wgpu::Device,
-        size: (u32, u32),
-        config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
-    ) -> Result<Self> {
-        Self::with_band_rows_async(device, size, config, left, right, u32::MAX).await
+    pub async fn new_async<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        Self::with_band_rows_async(device, size, config, u32::MAX).await
     }
 
     /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
@@ -83,50 +89,50 @@ impl Matcher {
     /// # Errors
     /// As [`Self::new`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn with_band_rows(
-        device: &wgpu::Device,
+    pub fn with_band_rows<'c>(
+        device: impl Into<Context<'c>>,
         size: (u32, u32),
         config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
         band_rows: u32,
     ) -> Result<Self> {
-        wait(device, Self::with_band_rows_async(device, size, config, left, right, band_rows))
+        let device = device.into();
+        wait(&device, Self::with_band_rows_async(device, size, config, band_rows))
     }
 
     /// As [`Matcher::with_band_rows`], without blocking.
     ///
     /// # Errors
     /// As [`Matcher::new`].
-    pub async fn with_band_rows_async(
-        device: &wgpu::Device,
+    pub async fn with_band_rows_async<'c>(
+        device: impl Into<Context<'c>>,
         size: (u32, u32),
         config: &DenseConfig,
-        left: &wgpu::Buffer,
-        right: &wgpu::Buffer,
         band_rows: u32,
     ) -> Result<Self> {
+        let device = &device.into();
         config.validate()?;
-        for luma in [left, right] {
-            check_packed(luma, size.0, size.1)?;
-        }
+        check_size(size.0, size.1)?;
+        check_limits(device)?;
         // The kernels count words and pixels in 32 bits.
         let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
-        let plan = guarded(device, "dense matching", || match &config.aggregation {
-            Aggregation::Window { search, .. } => {
-                blocks::plan(device, size, config, *search, [left, right], (limit, band_rows))
-            }
-            Aggregation::Paths(paths) => {
-                semi_global::plan(device, size, config, paths, [left, right], (limit, band_rows))
-            }
+        guarded(device, "dense matching", || {
+            let luma = |label| storage_buffer(device, label, packed_bytes(size.0, size.1));
+            let luma = [luma("left luma")?, luma("right luma")?];
+            let views = [&luma[0], &luma[1]];
+            let plan = match &config.aggregation {
+                Aggregation::Window { search, .. } => {
+                    blocks::plan(device, size, config, *search, views, (limit, band_rows))
+                }
+                Aggregation::Paths(paths) => semi_global::plan(device, size, config, paths, views, (limit, band_rows)),
+            }?;
+            Ok(Self { size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
         })
-        .await?;
-        Ok(Self { size, plan })
+        .await
     }
 
     /// Bytes of device memory that this matcher holds.
     pub fn memory(&self) -> u64 {
-        self.plan.bytes
+        self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + self.plan.bytes
     }
 
     /// In how many bands of rows the pair is matched.
@@ -134,11 +140,134 @@ impl Matcher {
         self.plan.bands
     }
 
-    /// Records the whole matching, which ends with `disparities` (`i32`) and `confidences` (0 to 255,
-    /// four a word, in rows of `width.div_ceil(4)` words) of every pixel of the reference view in
-    /// the caller's buffers, row by row. Both need `COPY_DST`.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer) {
-        self.plan.record(encoder, disparities, confidences, None);
+    /// The packed luma of the left and of the right view (see [`crate::luma`]) that is matched: what [`Inputs::record`]
+    /// writes, where it is used, and a [`crate::features::Detector`] can read too. Both have `STORAGE`, `COPY_SRC` and
+    /// `COPY_DST`.
+    pub fn luma(&self) -> [&wgpu::Buffer; 2] {
+        self.luma.each_ref()
+    }
+
+    /// Prepares what turns two views into the matcher's [`Self::luma`]; it holds on to them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
+    /// device has against it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn inputs<'c>(&self, device: impl Into<Context<'c>>, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
+        let device = device.into();
+        wait(&device, self.inputs_async(device, left, right))
+    }
+
+    /// As [`Matcher::inputs`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::inputs`].
+    pub async fn inputs_async<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        left: Source<'_>,
+        right: Source<'_>,
+    ) -> Result<Inputs> {
+        let device = &device.into();
+        let input = |name, source, luma| Input::with_kernel(device, name, self.size, source, luma, &self.luma_texture);
+        let [left_luma, right_luma] = self.luma();
+        let left = input("the left view", left, left_luma).await?;
+        Ok(Inputs([left, input("the right view", right, right_luma).await?]))
+    }
+
+    /// Prepares the way of the answers to `disparities` and, if they are wanted, to `confidences`: a buffer with
+    /// `COPY_DST` for 0 to 255 a pixel, four a word, in rows of `width.div_ceil(4)` words. It holds on to them.
+    ///
+    /// # Errors
+    /// As [`Self::inputs`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn outputs<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        disparities: Destination<'_>,
+        confidences: Option<&wgpu::Buffer>,
+    ) -> Result<Outputs> {
+        let device = device.into();
+        wait(&device, self.outputs_async(device, disparities, confidences))
+    }
+
+    /// As [`Matcher::outputs`], without blocking.
+    ///
+    /// # Errors
+    /// As [`Matcher::outputs`].
+    pub async fn outputs_async<'c>(
+        &self,
+        device: impl Into<Context<'c>>,
+        disparities: Destination<'_>,
+        confidences: Option<&wgpu::Buffer>,
+    ) -> Result<Outputs> {
+        let device = &device.into();
+        let (width, height) = self.size;
+        if let Some(buffer) = confidences {
+            check_buffer("the confidences", buffer, packed_bytes(width, height), wgpu::BufferUsages::COPY_DST)?;
+        }
+        let disparities = match disparities {
+            Destination::Buffer(buffer) => {
+                let bytes = 4 * u64::from(width) * u64::from(height);
+                check_buffer("the disparities", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
+                Disparities::Buffer(buffer.clone())
+            }
+            Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view).await?),
+        };
+        let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
+        try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
+        Ok(outputs)
+    }
+
+    /// What brings each of the plan's answers to a texture.
+    async fn to_texture(&self, device: &Context<'_>, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
+        let (name, format) = ("the disparities", view.texture().format());
+        let Some(texel) = MapTexel::new(format) else {
+            return Err(Error::Parameter {
+                name,
+                value: format!("a texture of format {format:?}"),
+                expected: format!("it must be one of {:?}", MapTexel::ALL.map(MapTexel::format)),
+            });
+        };
+        check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
+        let stored = &self.map_textures[texel as usize];
+        let (kernel, dispatches) = guarded(device, name, || {
+            let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(device, texel));
+            let width = self.size.0;
+            let dispatch = |answer: &Copy| {
+                let row = |word: u64| (word / u64::from(width)) as u32;
+                let (rows, first_row) = (row(answer.words), row(answer.to_word));
+                let rows = MapRows { width, rows, first_word: answer.from_word as u32, first_row };
+                kernel.prepare(device, rows, &answer.from, view)
+            };
+            let dispatches = self.plan.answers().map(dispatch).collect();
+            Ok((kernel, dispatches))
+        })
+        .await?;
+        // Only now that nothing is wrong with it.
+        stored.get_or_init(|| kernel);
+        Ok(dispatches)
+    }
+
+    /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what
+    /// `queue` is given after this.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for what 32 bits do not hold.
+    pub fn set_brightness(&self, queue: &wgpu::Queue, brightness: Brightness) -> Result<()> {
+        brightness.validate()?;
+        queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));
+        Ok(())
+    }
+
+    /// Records the matching of what [`Self::luma`] holds then; all pixels of the outputs are overwritten, and nothing
+    /// else of them. Recorded twice in one encoder, it is done twice, one after the other, in the same memory.
+    ///
+    /// # Panics
+    /// If `outputs` were prepared for another matcher.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
+        assert_eq!(outputs.of, self.luma[0], "outputs of another matcher");
+        self.plan.record(encoder, outputs, None);
     }
 }
 
@@ -159,13 +288,15 @@ pub async fn compute_async(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseC
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let (left_luma, right_luma) = (upload(gpu, left).await?, upload(gpu, right).await?);
-    let matcher = Matcher::new_async(&gpu.device, left.size(), config, &left_luma, &right_luma).await?;
+    let matcher = Matcher::new_async(&gpu.device, left.size(), config).await?;
+    for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
+    }
     matcher.run_async(gpu).await
 }
 
 impl Matcher {
-    /// Submits the whole matching on `gpu` and waits for the result.
+    /// Submits the matching of what [`Self::luma`] holds on `gpu`, and waits for the result.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
@@ -213,12 +344,18 @@ impl Matcher {
             Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
         })
         .await?;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
-        self.plan.record(&mut encoder, disparities.buffer(), confidences.buffer(), stopwatch);
-        if let Some(stopwatch) = stopwatch {
-            stopwatch.resolve(&mut encoder);
-        }
-        gpu.queue.submit([encoder.finish()]);
+        let destination = Destination::Buffer(disparities.buffer());
+        let outputs = self.outputs_async(device, destination, Some(confidences.buffer())).await?;
+        guarded(device, "dense matching", || {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
+            self.plan.record(&mut encoder, &outputs, stopwatch);
+            if let Some(stopwatch) = stopwatch {
+                stopwatch.resolve(&mut encoder);
+            }
+            gpu.queue.submit([encoder.finish()]);
+            Ok(())
+        })
+        .await?;
         let disparity = Plane::new(width, height, disparities.read(pixels).await?)?;
         let words: Vec<u32> = confidences.read(row_words * height as usize).await?;
         let confidence = unpack(width, height, &words);

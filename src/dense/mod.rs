@@ -21,7 +21,10 @@ mod consistency;
 mod cost;
 mod fill;
 mod halve;
+mod inputs;
+mod map_texture;
 mod matcher;
+mod outputs;
 mod pad;
 mod partner_ranges;
 mod path;
@@ -47,9 +50,12 @@ pub use consistency::{Consistency, Others};
 pub use cost::{Cost, CostVolume, Difference, MAX_COST, WEIGHT_BITS};
 pub use fill::{Fill, surface};
 pub use halve::Halve;
+pub use inputs::Inputs;
+pub use map_texture::{MapRows, MapTexel, MapTexture};
 #[cfg(not(target_arch = "wasm32"))]
 pub use matcher::compute;
 pub use matcher::{Dense, Matcher, compute_async};
+pub use outputs::{Destination, Outputs};
 pub use pad::{Brightness, Pad, PadParams};
 pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};
@@ -88,6 +94,7 @@ pub fn stages() -> Vec<Stage> {
     }));
     stages.push(Fill::stage());
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
+    stages.extend(MapTexel::ALL.map(MapTexture::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
         stages.extend([Census::stage(rows), Support::stage(5, rows)]);
         stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));

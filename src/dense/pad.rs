@@ -2,18 +2,20 @@
 
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
-/// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Brightness {
-    /// In 1/256, up to 2^20 either way.
-    pub gain: i32,
-    /// In 1/256, up to 2^20 either way.
-    pub offset: i32,
+shader_struct! {
+    /// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
+    #[derive(PartialEq, Eq)]
+    pub struct Brightness {
+        /// In 1/256, up to 2^20 either way.
+        pub gain: i32,
+        /// In 1/256, up to 2^20 either way.
+        pub offset: i32,
+    }
 }
 
 impl Brightness {
@@ -53,8 +55,6 @@ pub struct PadParams {
     pub stride: u32,
     /// Word of the buffer at which the plane begins.
     pub offset: u32,
-    /// The change of brightness on the way.
-    pub brightness: Brightness,
 }
 
 shader_struct! {
@@ -67,8 +67,6 @@ shader_struct! {
         rows: u32,
         stride: u32,
         offset: u32,
-        gain: i32,
-        brightness: i32,
     }
 }
 
@@ -81,28 +79,34 @@ impl Pad {
         Stage {
             name: "pad",
             source: include_str!("../../shaders/pad.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            bindings: &[
+                Binding::Uniform(Params::SHAPE),
+                Binding::Uniform(Brightness::SHAPE),
+                Binding::Read,
+                Binding::Write,
+            ],
             constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
         }
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 
-    /// Pads packed `luma` into `padded`, as `params` say.
+    /// Pads packed `luma` into `padded`, as `params` say, with the change of `brightness` that a uniform buffer holds
+    /// when it runs.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         params: PadParams,
+        brightness: &wgpu::Buffer,
         luma: &wgpu::Buffer,
         padded: &wgpu::Buffer,
     ) -> Dispatch {
-        let PadParams { width, height, first_word, first_row, rows, stride, offset, brightness } = params;
-        let Brightness { gain, offset: brightness } = brightness;
-        let params = Params { width, height, first_word, first_row, rows, stride, offset, gain, brightness };
+        let PadParams { width, height, first_word, first_row, rows, stride, offset } = params;
+        let params = Params { width, height, first_word, first_row, rows, stride, offset };
         let groups = [stride.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "pad", &params), luma, padded], groups)
+        self.0.dispatch(device, &[&uniform_buffer(device, "pad", &params), brightness, luma, padded], groups)
     }
 }

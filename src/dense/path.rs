@@ -3,7 +3,7 @@
 use super::{band::VolumeBand, cost::MAX_COST};
 use crate::{
     error::{Error, Result},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: u32 = 16;
@@ -146,7 +146,7 @@ impl Path {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, penalties: &Penalties, words: u32) -> Self {
+    pub fn new(device: &Context<'_>, penalties: &Penalties, words: u32) -> Self {
         Self(Kernel::new(device, &Self::stage(penalties, words)))
     }
 

@@ -1,8 +1,13 @@
 //! What a matcher does, in order, and the memory that it does it in.
 
+use super::{
+    config::{DenseConfig, View},
+    outputs::Outputs,
+    pad::Brightness,
+};
 use crate::{
     error::Result,
-    gpu::{Dispatch, Stopwatch, WordTexture, in_rows, storage_buffer, store},
+    gpu::{Dispatch, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
 };
 
 /// One thing to do.
@@ -24,6 +29,13 @@ pub(super) struct Copy {
     pub(super) to: Target,
     pub(super) to_word: u64,
     pub(super) words: u64,
+}
+
+impl Copy {
+    /// Records it, into `to`.
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
+        encoder.copy_buffer_to_buffer(&self.from, 4 * self.from_word, to, 4 * self.to_word, Some(4 * self.words));
+    }
 }
 
 /// Where words go.
@@ -49,6 +61,8 @@ pub(super) struct Plan {
     steps: Vec<Step>,
     /// Where the answers of all bands come together, if something is done with them then.
     whole: Option<Whole>,
+    /// How the brightness of the left and of the right view is changed.
+    brightness: [wgpu::Buffer; 2],
     pub(super) bytes: u64,
     /// In how many bands of rows the pair is matched.
     pub(super) bands: usize,
@@ -56,8 +70,16 @@ pub(super) struct Plan {
 
 impl Plan {
     /// No steps yet, for so many bands.
-    pub(super) fn new(bands: usize) -> Self {
-        Self { steps: Vec::new(), whole: None, bytes: 0, bands }
+    pub(super) fn new(device: &wgpu::Device, config: &DenseConfig, bands: usize) -> Self {
+        let brightness =
+            [Brightness::SAME, config.brightness].map(|change| uniform_buffer(device, "brightness", &change));
+        Self { steps: Vec::new(), whole: None, brightness, bytes: 0, bands }
+    }
+
+    /// How the brightness of a view is changed: a [`Brightness`] in a uniform buffer, one for all bands.
+    pub(super) fn brightness(&self, view: View) -> wgpu::Buffer {
+        let [left, right] = &self.brightness;
+        if view == View::Left { left.clone() } else { right.clone() }
     }
 
     /// Memory for so many words, for the plan's lifetime.
@@ -132,6 +154,14 @@ impl Plan {
         }
     }
 
+    /// What is copied to the caller's disparities, in order: together a word for each pixel.
+    pub(super) fn answers(&self) -> impl Iterator<Item = &Copy> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Copy(copy) if matches!(copy.to, Target::Disparities) => Some(copy),
+            _ => None,
+        })
+    }
+
     /// The kernels, in the order in which they run.
     pub(super) fn kernels(&self) -> impl Iterator<Item = &'static str> {
         self.steps.iter().filter_map(|step| match step {
@@ -141,14 +171,8 @@ impl Plan {
     }
 
     /// Records all steps, and the times of the kernels if there is a `stopwatch`.
-    pub(super) fn record(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        disparities: &wgpu::Buffer,
-        confidences: &wgpu::Buffer,
-        stopwatch: Option<&Stopwatch>,
-    ) {
-        let mut kernel = 0;
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs, stopwatch: Option<&Stopwatch>) {
+        let (mut kernel, mut answer) = (0, 0);
         for step in &self.steps {
             match step {
                 Step::Run(dispatch) => {
@@ -157,14 +181,14 @@ impl Plan {
                 }
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
-                Step::Copy(Copy { from, from_word, to, to_word, words }) => {
-                    let to = match to {
-                        Target::Buffer(buffer) => buffer,
-                        Target::Disparities => disparities,
-                        Target::Confidences => confidences,
-                    };
-                    encoder.copy_buffer_to_buffer(from, 4 * from_word, to, 4 * to_word, Some(4 * words));
-                }
+                Step::Copy(copy) => match &copy.to {
+                    Target::Buffer(buffer) => copy.record(encoder, buffer),
+                    Target::Disparities => {
+                        outputs.record_disparities(encoder, copy, answer);
+                        answer += 1;
+                    }
+                    Target::Confidences => outputs.record_confidences(encoder, copy),
+                },
             }
         }
     }

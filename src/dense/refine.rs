@@ -12,7 +12,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{in_rows, most_words},
+    gpu::{Context, in_rows, most_words},
 };
 
 /// What is done with a map after its checks.
@@ -53,7 +53,7 @@ impl Refinement {
 /// windows of rows, each with so many more around it that what is handed out is the same.
 #[expect(clippy::too_many_arguments, reason = "what is refined, how, and within which limits")]
 pub(super) fn plan_refinement(
-    device: &wgpu::Device,
+    device: &Context<'_>,
     plan: &mut Plan,
     (width, height): (u32, u32),
     refinement: &Refinement,

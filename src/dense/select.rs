@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
 };
 
 /// The bits of a key that hold the disparity's index.
@@ -92,7 +92,7 @@ impl Select {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, penalties: &Penalties, words: u32, selection: Selection) -> Self {
+    pub fn new(device: &Context<'_>, penalties: &Penalties, words: u32, selection: Selection) -> Self {
         Self { kernel: Kernel::new(device, &Self::stage(penalties, words, selection)), selection }
     }
 

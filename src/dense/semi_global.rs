@@ -17,7 +17,7 @@ use super::{
     config::{DenseConfig, View},
     consistency::{Consistency, Others},
     cost::{Cost, CostVolume},
-    pad::{Brightness, Pad},
+    pad::Pad,
     path::{Direction, Path, Penalties},
     plan::{Copy, Plan, Target, match_words},
     refine::plan_refinement,
@@ -26,6 +26,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
+    gpu::Context,
 };
 
 /// The largest side of a window over which costs are averaged.
@@ -137,8 +138,8 @@ struct Shared {
     band_rows: u32,
     /// How many rows around a band its windows reach.
     radius: u32,
-    /// The left and the right picture, and how its brightness is changed.
-    pictures: [(wgpu::Buffer, Brightness); 2],
+    /// The left and the right picture, each with how its brightness is changed.
+    pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
     pad: Pad,
     transform: Census,
     padded: wgpu::Buffer,
@@ -173,7 +174,7 @@ struct Side {
 /// The plan for packed `left` and `right` of `size`, in bands for which no buffer needs more than `limit` bytes, nor more
 /// than `band_rows` rows.
 pub(super) fn plan(
-    device: &wgpu::Device,
+    device: &Context<'_>,
     size: (u32, u32),
     config: &DenseConfig,
     semi_global: &SemiGlobal,
@@ -194,11 +195,11 @@ pub(super) fn plan(
     let bands: Vec<VolumeBand> = (0..height).step_by(band_rows as usize).map(band).collect();
     let row_words = u64::from(bands[0].row_words());
 
-    let mut plan = Plan::new(bands.len());
+    let mut plan = Plan::new(device, config, bands.len());
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let path_words = row_words * (u64::from(band_rows) + 2);
     let cost_words = row_words * u64::from((band_rows + 2 * radius).min(height));
-    let padding = Census::padding(size, 0, band_rows + 2 * around, Brightness::SAME);
+    let padding = Census::padding(size, 0, band_rows + 2 * around);
     let transformed = u64::from(width) * u64::from(band_rows + 2 * around);
     let penalties = semi_global.followed_with();
     let box_mean = match semi_global.window {
@@ -209,7 +210,7 @@ pub(super) fn plan(
         size,
         band_rows,
         radius,
-        pictures: [(views[0].clone(), Brightness::SAME), (views[1].clone(), config.brightness)],
+        pictures: [(views[0].clone(), plan.brightness(View::Left)), (views[1].clone(), plan.brightness(View::Right))],
         pad: Pad::new(device),
         transform: Census::new(device),
         padded: plan.buffer(device, "padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
@@ -303,8 +304,8 @@ impl Shared {
         let around = self.radius + 1;
         let rows = self.band_rows.min(self.size.1 - first_row) + 2 * around;
         for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
-            let padding = Census::padding(self.size, first_row.cast_signed() - around.cast_signed(), rows, *brightness);
-            plan.run(self.pad.prepare(device, padding, picture, &self.padded));
+            let padding = Census::padding(self.size, first_row.cast_signed() - around.cast_signed(), rows);
+            plan.run(self.pad.prepare(device, padding, brightness, picture, &self.padded));
             plan.run(self.transform.prepare(device, (self.size.0, rows), &self.padded, census));
         }
     }

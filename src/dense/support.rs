@@ -3,7 +3,7 @@
 use super::walk::rows_a_thread;
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -56,7 +56,7 @@ impl Support {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, least: u32) -> Self {
+    pub fn new(device: &Context<'_>, least: u32) -> Self {
         let rows = rows_a_thread(device);
         Self { kernel: Kernel::new(device, &Self::stage(least, rows)), rows }
     }

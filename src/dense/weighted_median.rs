@@ -3,7 +3,7 @@
 use super::walk::rows_a_thread;
 use crate::{
     disparity::NONE,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -61,7 +61,7 @@ impl WeightedMedian {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, median: Median) -> Self {
+    pub fn new(device: &Context<'_>, median: Median) -> Self {
         let rows = rows_a_thread(device);
         Self { kernel: Kernel::new(device, &Self::stage(median, rows)), rows }
     }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
 };
 
 /// The stage, for axes of the picture (`upright`) or along each keypoint's orientation.
@@ -37,7 +37,7 @@ impl Descriptor {
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind so many descriptors.
     pub fn new(
-        device: &wgpu::Device,
+        device: &Context<'_>,
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,

@@ -6,7 +6,7 @@ use super::{
     hessian::{DETERMINANT_SCALE, Hessian},
     integral_columns::IntegralColumns,
     integral_rows::IntegralRows,
-    keypoints::Keypoint,
+    keypoints::{Keypoint, KeypointList},
     nonmax::Nonmax,
     orientation::Orientation,
     too_many,
@@ -16,12 +16,16 @@ use super::{
 use crate::gpu::wait;
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, guarded},
+    gpu::{Context, Gpu, Readback, check_limits, guarded},
     image::Luma,
     luma::{check_packed, upload},
 };
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
+///
+/// What it finds stays on the device, in [`Self::keypoints`] and [`Self::descriptors`], for kernels of the application to
+/// read, or to be copied from where it does not want to wait: [`collect`] makes [`Feature`]s of the copies. [`Self::read`]
+/// does all that at once, and waits.
 pub struct Detector {
     rows: IntegralRows,
     columns: IntegralColumns,
@@ -45,29 +49,32 @@ impl Detector {
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(
-        device: &wgpu::Device,
+    pub fn new<'c>(
+        device: impl Into<Context<'c>>,
         luma: &wgpu::Buffer,
         width: u32,
         height: u32,
         config: &FeatureConfig,
     ) -> Result<Self> {
-        wait(device, Self::new_async(device, luma, width, height, config))
+        let device = device.into();
+        wait(&device, Self::new_async(device, luma, width, height, config))
     }
 
     /// As [`Detector::new`], without blocking.
     ///
     /// # Errors
     /// As [`Detector::new`].
-    pub async fn new_async(
-        device: &wgpu::Device,
+    pub async fn new_async<'c>(
+        device: impl Into<Context<'c>>,
         luma: &wgpu::Buffer,
         width: u32,
         height: u32,
         config: &FeatureConfig,
     ) -> Result<Self> {
+        let device = &device.into();
         config.validate()?;
         check_packed(luma, width, height)?;
+        check_limits(device)?;
         guarded(device, "finding interest points", || {
             let rows = IntegralRows::new(device, luma, width, height)?;
             let integral = rows.sums();
@@ -84,7 +91,17 @@ impl Detector {
         .await
     }
 
-    /// Records everything from the integral image to the descriptors.
+    /// How many keypoints were found, and what they are.
+    pub fn keypoints(&self) -> &KeypointList {
+        self.nonmax.list()
+    }
+
+    /// The descriptors: [`DESCRIPTOR_LENGTH`] values of `f32` for each keypoint, in the order of the list.
+    pub fn descriptors(&self) -> &wgpu::Buffer {
+        self.descriptor.descriptors()
+    }
+
+    /// Records everything from the integral image to the descriptors. What was found before is overwritten.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.rows.record(encoder);
         self.columns.record(encoder);
@@ -115,8 +132,12 @@ impl Detector {
     /// As [`Detector::read`].
     pub async fn read_async(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
         let list = self.nonmax.list();
-        let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
-        submit(device, queue, |encoder| count.record(encoder, list.found()));
+        let count = submit(device, queue, |encoder| {
+            let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
+            count.record(encoder, list.found());
+            count
+        })
+        .await?;
         let found = count.read::<u32>(1).await?[0];
         if found > list.capacity() {
             return Err(too_many(found as usize, list.capacity()));
@@ -126,19 +147,25 @@ impl Detector {
         }
         let found = found as usize;
         // Staging of its own for each call, so that several threads may read.
-        let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
-        let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
-        submit(device, queue, |encoder| {
+        let (keypoints, descriptors) = submit(device, queue, |encoder| {
+            let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
+            let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
             keypoints.record(encoder, list.keypoints());
             descriptors.record(encoder, self.descriptor.descriptors());
-        });
+            (keypoints, descriptors)
+        })
+        .await?;
         let keypoints = keypoints.read::<Keypoint>(found).await?;
         let descriptors = descriptors.read::<Values>(found).await?;
-
-        let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
-        features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
-        Ok(features.into_iter().map(|(keypoint, descriptor)| feature(keypoint, descriptor)).collect())
+        Ok(collect(&keypoints, &descriptors))
     }
+}
+
+/// The features of the keypoints of a list, each with its descriptor, sorted by octave, layer, row and column.
+pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]]) -> Vec<Feature> {
+    let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
+    features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
+    features.into_iter().map(|(keypoint, &descriptor)| feature(keypoint, descriptor)).collect()
 }
 
 /// Finds and describes the interest points of one picture.
@@ -160,14 +187,23 @@ pub async fn detect_async(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> 
     let (width, height) = picture.size();
     let buffer = upload(gpu, picture).await?;
     let detector = Detector::new_async(&gpu.device, &buffer, width, height, config).await?;
-    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder));
+    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder)).await?;
     detector.read_async(&gpu.device, &gpu.queue).await
 }
 
-fn submit(device: &wgpu::Device, queue: &wgpu::Queue, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
-    record(&mut encoder);
-    queue.submit([encoder.finish()]);
+/// Submits what `record` records; what it returns.
+async fn submit<T>(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    record: impl FnOnce(&mut wgpu::CommandEncoder) -> T,
+) -> Result<T> {
+    guarded(device, "finding interest points", || {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
+        let recorded = record(&mut encoder);
+        queue.submit([encoder.finish()]);
+        Ok(recorded)
+    })
+    .await
 }
 
 fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {

@@ -4,7 +4,7 @@
 use super::FeatureConfig;
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
 };
 
 /// Layers of an octave.
@@ -109,7 +109,7 @@ impl Hessian {
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind an octave's responses.
     pub fn new(
-        device: &wgpu::Device,
+        device: &Context<'_>,
         integral: &wgpu::Buffer,
         width: u32,
         height: u32,

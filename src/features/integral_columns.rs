@@ -1,7 +1,7 @@
 //! The second half of the integral image: the row sums, summed along columns.
 //! `shaders/integral_columns.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: u32 = 64;
 
@@ -28,7 +28,7 @@ pub struct IntegralColumns(Dispatch);
 impl IntegralColumns {
     /// Works in place, on the `sums` of [`super::integral_rows`]: what comes out has, at `(x, y)`,
     /// the sum over all columns below `x` of the rows below `y`, modulo 2^32.
-    pub fn new(device: &wgpu::Device, sums: &wgpu::Buffer, width: u32, height: u32) -> Self {
+    pub fn new(device: &Context<'_>, sums: &wgpu::Buffer, width: u32, height: u32) -> Self {
         let params = uniform_buffer(device, "integral_columns", &Params { width, height });
         let groups = [(width + 1).div_ceil(WORKGROUP), 1, 1];
         Self(Kernel::new(device, &stage()).dispatch(device, &[&params, sums], groups))

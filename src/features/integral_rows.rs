@@ -3,7 +3,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
 };
 
 const WORKGROUP: u32 = 64;
@@ -36,7 +36,7 @@ impl IntegralRows {
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind the sums.
-    pub fn new(device: &wgpu::Device, luma: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
+    pub fn new(device: &Context<'_>, luma: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
         let params = uniform_buffer(device, "integral_rows", &Params { width, height });
         let sums = storage_buffer(device, "integral image", 4 * (u64::from(width) + 1) * (u64::from(height) + 1))?;
         let groups = [(height + 1).div_ceil(WORKGROUP), 1, 1];

@@ -47,7 +47,7 @@ shader_struct! {
 /// The uniform that `haar.wgsl` declares.
 pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 
-/// Room for the keypoints of a picture, on the device.
+/// Room for the keypoints of a picture, on the device, in buffers with `STORAGE`, `COPY_SRC` and `COPY_DST`.
 pub struct KeypointList {
     found: wgpu::Buffer,
     keypoints: wgpu::Buffer,

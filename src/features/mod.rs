@@ -20,7 +20,7 @@ pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
 #[cfg(not(target_arch = "wasm32"))]
 pub use detector::detect;
-pub use detector::{Detector, detect_async};
+pub use detector::{Detector, collect, detect_async};
 
 use crate::gpu::Stage;
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -54,7 +54,7 @@ impl Nonmax {
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device cannot bind the list.
     pub fn new(
-        device: &wgpu::Device,
+        device: &Context<'_>,
         hessian: &Hessian,
         width: u32,
         height: u32,

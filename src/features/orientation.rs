@@ -2,7 +2,7 @@
 //! `shaders/orientation.wgsl`.
 
 use super::keypoints::{DISPATCH_WIDTH, KeypointList, PARAMS, Params};
-use crate::gpu::{Binding, Dispatch, Kernel, Stage, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, Stage, uniform_buffer};
 
 const WORKGROUP: u32 = 64;
 
@@ -35,7 +35,7 @@ impl Orientation {
     /// Reads the `integral` image of a picture of `size` and writes the orientations in the `list`
     /// of its keypoints, a workgroup each; `groups` says how many (see [`super::workgroups`]).
     pub fn new(
-        device: &wgpu::Device,
+        device: &Context<'_>,
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,

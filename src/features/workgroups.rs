@@ -2,7 +2,7 @@
 //! so that nothing has to be read back in between. `shaders/workgroups.wgsl`.
 
 use super::keypoints::{DISPATCH_WIDTH, KeypointList};
-use crate::gpu::{Binding, Dispatch, Kernel, Stage};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, Stage};
 
 /// The stage.
 pub fn stage() -> Stage {
@@ -25,7 +25,7 @@ pub struct Workgroups {
 
 impl Workgroups {
     /// Reads the counter of `list`.
-    pub fn new(device: &wgpu::Device, list: &KeypointList) -> Self {
+    pub fn new(device: &Context<'_>, list: &KeypointList) -> Self {
         let groups = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("workgroups"),
             size: size_of::<wgpu::util::DispatchIndirectArgs>() as u64,

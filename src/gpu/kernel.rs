@@ -1,8 +1,6 @@
 //! A kernel: WGSL text with its constants written in front, its bindings and its pipeline.
 
-use wgpu::util::DeviceExt;
-
-use super::{shader_struct::Shape, unroll::unrolled};
+use super::{context::Context, shader_struct::Shape, unroll::unrolled};
 use crate::error::{Error, Result};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
@@ -16,6 +14,10 @@ pub enum Binding {
     Write,
     /// A texture of one `u32` a texel that is only read.
     Texture,
+    /// A texture of floats that is only read, and not sampled.
+    Picture,
+    /// A texture of this format that is only written.
+    Map(wgpu::TextureFormat),
 }
 
 /// What is bound: a whole buffer, or a texture.
@@ -69,9 +71,11 @@ pub(crate) struct Kernel {
 
 impl Kernel {
     /// Compiles `stage`, whose entry point is `main`.
-    pub(crate) fn new(device: &wgpu::Device, stage: &Stage) -> Self {
+    pub(crate) fn new(device: &Context<'_>, stage: &Stage) -> Self {
         let label = Some(stage.name);
         let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let view_dimension = wgpu::TextureViewDimension::D2;
+        let texture = |sample_type| wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
         let entries: Vec<_> = (0..)
             .zip(stage.bindings)
             .map(|(binding, kind)| wgpu::BindGroupLayoutEntry {
@@ -81,10 +85,12 @@ impl Kernel {
                     Binding::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
                     Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
                     Binding::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-                    Binding::Texture => wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Uint,
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
+                    Binding::Texture => texture(wgpu::TextureSampleType::Uint),
+                    Binding::Picture => texture(wgpu::TextureSampleType::Float { filterable: false }),
+                    Binding::Map(format) => wgpu::BindingType::StorageTexture {
+                        access: wgpu::StorageTextureAccess::WriteOnly,
+                        format: *format,
+                        view_dimension,
                     },
                 },
                 count: None,
@@ -109,7 +115,7 @@ impl Kernel {
                 zero_initialize_workgroup_memory: false,
                 ..Default::default()
             },
-            cache: None,
+            cache: device.cache,
         });
         Self { name: stage.name, layout, pipeline }
     }
@@ -239,25 +245,53 @@ pub(crate) fn uniform_buffer<P: bytemuck::NoUninit>(
     label: &'static str,
     params: &P,
 ) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents: bytemuck::bytes_of(params),
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-    })
+    buffer_of(device, label, bytemuck::bytes_of(params), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST)
+}
+
+/// A buffer that holds `contents`, whole words, from the start.
+pub(crate) fn buffer_of(
+    device: &wgpu::Device,
+    label: &'static str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let size = contents.len() as u64;
+    let buffer =
+        device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: true });
+    // Where there is nothing to be written to, the device has said why: see `guarded`.
+    if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+        view.copy_from_slice(contents);
+    }
+    buffer.unmap();
+    buffer
+}
+
+/// Whether the device creates nothing any more, which it does not say by itself.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let usage = wgpu::BufferUsages::COPY_SRC;
+    let probe = wgpu::BufferDescriptor { label: Some("probe"), size: 4, usage, mapped_at_creation: true };
+    device.create_buffer(&probe).get_mapped_range_mut(..).is_err()
 }
 
 /// Runs `build`, which creates things on `device`, and turns what the device has to say about it
 /// into an [`Error`] instead of a call of the application's error handler.
 pub(crate) async fn guarded<T>(device: &wgpu::Device, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let (built, said) = scoped(device, build);
+    let ((built, lost), said) = scoped(device, || (build(), is_lost(device)));
+    let mut errors = Vec::new();
     for error in said {
-        match error.await {
-            None => {}
-            Some(wgpu::Error::OutOfMemory { .. }) => return Err(Error::OutOfMemory(what.into())),
-            Some(error) => return Err(Error::Unsupported(format!("{what}: {error}"))),
-        }
+        errors.extend(error.await);
     }
-    built
+    if errors.iter().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
+        return Err(Error::OutOfMemory(what.into()));
+    }
+    // Before what else is said then: it is about what was not created.
+    if lost {
+        return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
+    }
+    match errors.into_iter().next() {
+        Some(error) => Err(Error::Unsupported(format!("{what}: {error}"))),
+        None => built,
+    }
 }
 
 /// What `build` returns, and what the device will have to say. Whatever else happens before that is known lies outside

@@ -1,7 +1,9 @@
 //! The bit of wgpu that every stage shares: choosing a device, building kernels, reading results.
 
+mod context;
 mod device;
 mod kernel;
+mod limits;
 mod readback;
 mod shader_struct;
 mod stopwatch;
@@ -10,11 +12,14 @@ mod unroll;
 mod wait;
 mod words;
 
+pub use context::Context;
 #[cfg(not(target_arch = "wasm32"))]
 pub use device::list_adapters;
 pub use device::{DeviceChoice, Gpu, list_adapters_async};
-pub(crate) use kernel::{Bindable, Kernel, guarded, storage_buffer, store, uniform_buffer};
+pub(crate) use kernel::{Bindable, Kernel, buffer_of, guarded, storage_buffer, store, uniform_buffer};
 pub use kernel::{Binding, Dispatch, Stage};
+pub(crate) use limits::check_limits;
+pub use limits::{Limit, REQUIRED_LIMITS};
 pub(crate) use readback::Readback;
 pub(crate) use shader_struct::shader_struct;
 pub use shader_struct::{Member, ShaderType, Shape};

@@ -1,6 +1,6 @@
 //! Belief propagation: half of the nodes send. `shaders/belief.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -65,7 +65,7 @@ impl Belief {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, smoothness: &Smoothness, fours: u32) -> Self {
+    pub fn new(device: &Context<'_>, smoothness: &Smoothness, fours: u32) -> Self {
         Self(Kernel::new(device, &Self::stage(smoothness, fours)))
     }
 

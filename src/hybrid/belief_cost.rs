@@ -4,7 +4,7 @@ use super::grid::{FAR, Strip};
 use crate::{
     dense::Difference,
     disparity::DisparityRange,
-    gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -64,7 +64,7 @@ impl BeliefCost {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, cost: &WindowCost) -> Self {
+    pub fn new(device: &Context<'_>, cost: &WindowCost) -> Self {
         Self(Kernel::new(device, &Self::stage(cost)))
     }
 

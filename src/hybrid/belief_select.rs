@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -68,7 +68,7 @@ impl BeliefSelect {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &Context<'_>) -> Self {
         Self(Kernel::new(device, &Self::stage()))
     }
 

@@ -9,7 +9,7 @@ use crate::gpu::wait;
 use crate::{
     dense::Dense,
     error::Result,
-    gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
+    gpu::{Context, Dispatch, Gpu, Readback, guarded, storage_buffer},
     image::Plane,
     io::Picture,
 };
@@ -75,7 +75,7 @@ struct Prepared {
 
 impl Prepared {
     async fn new(gpu: &Gpu, problem: &Problem) -> Result<Self> {
-        let (device, parameters) = (&gpu.device, &problem.parameters);
+        let (device, parameters) = (&Context::from(&gpu.device), &problem.parameters);
         guarded(device, "belief propagation", || {
             Ok(Self {
                 views: [upload(gpu, "left view", &problem.left)?, upload(gpu, "right view", &problem.right)?],
@@ -97,7 +97,7 @@ fn upload(gpu: &Gpu, label: &'static str, plane: &Plane<u32>) -> Result<wgpu::Bu
 
 impl Solver for OnDevice<'_> {
     async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
-        let (device, size) = (&self.gpu.device, problem.left.size());
+        let (device, size) = (&Context::from(&self.gpu.device), problem.left.size());
         let pixels = problem.left.data().len();
         let readback = guarded(device, "mean shift", || {
             let view = upload(self.gpu, "left view", &problem.left)?;

@@ -1,6 +1,6 @@
 //! Mean-shift filtering. `shaders/mean_shift.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -47,7 +47,7 @@ impl MeanShift {
     }
 
     /// Compiles it.
-    pub fn new(device: &wgpu::Device, seeking: &ModeSeeking) -> Self {
+    pub fn new(device: &Context<'_>, seeking: &ModeSeeking) -> Self {
         Self(Kernel::new(device, &Self::stage(seeking)))
     }
 

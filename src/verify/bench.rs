@@ -1,8 +1,9 @@
 //! A device on which single kernels run: buffers on their way there and back.
 
+use super::dice::Size;
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer, wait},
+    gpu::{Context, Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer, wait},
     image::Luma,
     luma::pack,
 };
@@ -12,17 +13,18 @@ use crate::{
 pub struct Bench<'g> {
     /// The device.
     pub gpu: &'g Gpu,
+    device: Context<'g>,
 }
 
 impl<'g> Bench<'g> {
     /// On an open device.
     pub fn new(gpu: &'g Gpu) -> Self {
-        Self { gpu }
+        Self { gpu, device: (&gpu.device).into() }
     }
 
-    /// The device.
-    pub fn device(&self) -> &'g wgpu::Device {
-        &self.gpu.device
+    /// The device, to build kernels on.
+    pub fn device(&self) -> &Context<'g> {
+        &self.device
     }
 
     /// A storage buffer that holds `values`.
@@ -64,6 +66,59 @@ impl<'g> Bench<'g> {
         let buffer = storage_buffer(self.device(), "output", 4 * u64::from(words))?;
         self.poison(&buffer);
         Ok(buffer)
+    }
+
+    /// A view of a texture that holds `texels`, row by row.
+    pub fn texture(&self, format: wgpu::TextureFormat, (width, height): Size, texels: &[u8]) -> wgpu::TextureView {
+        let texture = self.plain_texture(format, (width, height), wgpu::TextureUsages::TEXTURE_BINDING);
+        let bytes_per_row = Some(texels.len() as u32 / height);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+        self.gpu.queue.write_texture(texture.as_image_copy(), texels, layout, texture.size());
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// A texture of four bytes a texel for a kernel to write, full of ones.
+    pub fn output_texture(&self, format: wgpu::TextureFormat, (width, height): Size) -> wgpu::Texture {
+        let texture = self.plain_texture(format, (width, height), wgpu::TextureUsages::STORAGE_BINDING);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        let ones = vec![0xff; 4 * width as usize * height as usize];
+        self.gpu.queue.write_texture(texture.as_image_copy(), &ones, layout, texture.size());
+        texture
+    }
+
+    fn plain_texture(
+        &self,
+        format: wgpu::TextureFormat,
+        (width, height): Size,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("a picture"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
+    }
+
+    /// The texels of a texture of four bytes each, row by row, after everything that was submitted.
+    ///
+    /// # Errors
+    /// As [`Self::download`].
+    pub fn download_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>> {
+        let (width, height) = (texture.width(), texture.height());
+        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = storage_buffer(self.device(), "texels", u64::from(row) * u64::from(height))?;
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        self.run(|encoder| {
+            let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
+        });
+        let texels = self.download::<T>(&buffer)?;
+        Ok(texels.chunks(row as usize / 4).flat_map(|row| &row[..width as usize]).copied().collect())
     }
 
     /// Overwrites the first values of `buffer`, a whole number of words.

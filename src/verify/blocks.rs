@@ -10,6 +10,7 @@ use crate::{
     dense::{BlockMatch, Brightness, CELL, DenseConfig, Layout, Pad, PadParams, Ranges, Tile, View, Wanted},
     disparity::DisparityRange,
     error::Result,
+    gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
     reference::{CellPlane, block_match, check_consistency, padded, winners},
@@ -27,6 +28,8 @@ pub struct PadTrial {
     pub picture: Luma,
     /// How it is padded.
     pub params: PadParams,
+    /// How its brightness is changed.
+    pub brightness: Brightness,
 }
 
 impl PadTrial {
@@ -46,15 +49,14 @@ impl PadTrial {
             rows: above + height + below,
             stride: width.div_ceil(4) + dice.below(40) + 1,
             offset: dice.below(9),
-            brightness,
         };
-        Self { picture: dice.picture(size), params }
+        Self { picture: dice.picture(size), params, brightness }
     }
 }
 
 impl Trial for PadTrial {
     fn parameters(&self) -> String {
-        format!("{:?}", self.params)
+        format!("{:?}, {:?}", self.params, self.brightness)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -64,13 +66,14 @@ impl Trial for PadTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (device, params) = (bench.device(), self.params);
         let plane = bench.output(params.offset + params.rows * params.stride)?;
-        let pad = Pad::new(device).prepare(device, params, &bench.upload_luma(&self.picture)?, &plane);
+        let brightness = uniform_buffer(device, "brightness", &self.brightness);
+        let pad = Pad::new(device).prepare(device, params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
         bench.run(|encoder| pad.record(encoder));
         Ok(vec![Array::exact("padded plane", bench.download::<u32>(&plane)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let mut plane = padded(&self.picture, &self.params);
+        let mut plane = padded(&self.picture, &self.params, self.brightness);
         // The kernel leaves what stands in front of the plane alone.
         plane[..self.params.offset as usize].fill(u32::MAX);
         Ok(vec![Array::exact("padded plane", plane)])
@@ -99,8 +102,9 @@ impl BlockMatchTrial {
         let (device, (width, height)) = (bench.device(), self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, &[self.tile])?;
         // The twin's, so that this is about one kernel.
-        let [left, right] = layout.padding(Brightness::SAME);
-        let (mut planes, right_plane) = (padded(&self.left, &left), padded(&self.right, &right));
+        let [left, right] = layout.padding();
+        let plane = |view, params| padded(view, params, Brightness::SAME);
+        let (mut planes, right_plane) = (plane(&self.left, &left), plane(&self.right, &right));
         planes.extend(&right_plane[right.offset as usize..]);
         let texture = bench.upload_words(&planes)?;
         let ranges = match &self.ranges {

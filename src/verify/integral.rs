@@ -7,15 +7,18 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    error::Result,
+    error::{Error, Result},
     features::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
+    gpu::storage_buffer,
     image::{Luma, Plane},
-    luma::{RgbaToLuma, pack},
-    reference::{integral_columns::sum_columns, integral_rows::sum_rows, luma::from_rgba},
+    luma::{RgbaToLuma, pack, packed_bytes},
+    luma_texture::{LumaTexture, TexelFormat},
+    reference::{Texels, integral_columns::sum_columns, integral_rows::sum_rows, luma::from_rgba, luma_of_texels},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("luma", |size, dice| Box::new(LumaTrial::draw(size, dice))),
+    Subject::kernel("luma_texture", |size, dice| Box::new(LumaTextureTrial::draw(size, dice))),
     Subject::kernel("integral_rows", |size, dice| Box::new(RowsTrial::draw(size, dice))),
     Subject::kernel("integral_columns", |size, dice| Box::new(ColumnsTrial::draw(size, dice))),
 ];
@@ -52,6 +55,86 @@ impl Trial for LumaTrial {
         let (width, height) = self.0.size();
         let luma = from_rgba(width, height, self.0.data().as_flattened())?;
         Ok(vec![Array::exact("luma", pack(&luma))])
+    }
+}
+
+/// A picture in a texture, to become luma.
+#[derive(Clone, Debug)]
+pub struct LumaTextureTrial {
+    /// The format of the texture.
+    pub format: wgpu::TextureFormat,
+    /// Its texels.
+    pub texels: Texels,
+}
+
+impl LumaTextureTrial {
+    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+        // No device need have larger textures.
+        let size = (width.min(2048), height.min(2048));
+        let format = dice.pick(&TexelFormat::ALL);
+        let channels = [0; 4].map(|_| dice.picture(size));
+        let bytes = Plane::from_fn(size.0, size.1, |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
+        // Below 2, of either sign, and all of them numbers: most of them dark, or 1/8 to 1.
+        let mut half = |byte: u8| match dice.below(4) {
+            0 => dice.word() as u16 & 0xbfff,
+            _ => 0x3000 + u16::from(byte) * 12 + dice.below(13) as u16,
+        };
+        let texels = match format {
+            wgpu::TextureFormat::R8Unorm => Texels::Grey(channels[0].clone()),
+            wgpu::TextureFormat::R16Float => Texels::GreyHalf(channels[0].map(|&grey| half(grey))),
+            wgpu::TextureFormat::Rgba16Float => Texels::RgbaHalf(bytes.map(|bytes| bytes.map(&mut half))),
+            _ => Texels::Rgba(bytes),
+        };
+        Self { format, texels }
+    }
+
+    /// The texels as they lie in memory.
+    fn bytes(&self) -> Vec<u8> {
+        use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb};
+        match &self.texels {
+            Texels::Rgba(picture) if matches!(self.format, Bgra8Unorm | Bgra8UnormSrgb) => {
+                picture.data().iter().flat_map(|&[r, g, b, a]| [b, g, r, a]).collect()
+            }
+            Texels::Rgba(picture) => picture.data().as_flattened().to_vec(),
+            Texels::Grey(picture) => picture.data().to_vec(),
+            Texels::RgbaHalf(picture) => bytemuck::cast_slice(picture.data()).to_vec(),
+            Texels::GreyHalf(picture) => bytemuck::cast_slice(picture.data()).to_vec(),
+        }
+    }
+
+    fn size(&self) -> Size {
+        match &self.texels {
+            Texels::Rgba(picture) => picture.size(),
+            Texels::Grey(picture) => picture.size(),
+            Texels::RgbaHalf(picture) => picture.size(),
+            Texels::GreyHalf(picture) => picture.size(),
+        }
+    }
+}
+
+impl Trial for LumaTextureTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.format)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("texels", self.bytes())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.size());
+        let texel = TexelFormat::new(self.format)
+            .ok_or_else(|| Error::Unsupported(format!("no luma of textures of format {:?}", self.format)))?;
+        let picture = bench.texture(self.format, size, &self.bytes());
+        let luma = storage_buffer(device, "luma", packed_bytes(size.0, size.1))?;
+        bench.poison(&luma);
+        let dispatch = LumaTexture::new(device).prepare(device, size, texel, &picture, &luma);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("luma", bench.download::<u32>(&luma)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("luma", pack(&luma_of_texels(&self.texels)))])
     }
 }
 

@@ -8,18 +8,19 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    dense::{Consistency, Dense, Fill, Median, Others, Support, View, WeightedMedian},
+    dense::{Consistency, Dense, Fill, MapRows, MapTexel, MapTexture, Median, Others, Support, View, WeightedMedian},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane},
     luma::pack,
-    reference::{check_consistency, filled, supported, weighted_median},
+    reference::{check_consistency, filled, supported, texels_in_pixels, weighted_median},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("consistency", |size, dice| Box::new(ConsistencyTrial::draw(size, dice))),
     Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
     Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
+    Subject::kernel("map_texture", |size, dice| Box::new(MapTextureTrial::draw(size, dice))),
     Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
 ];
 
@@ -202,6 +203,63 @@ impl Trial for FillTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(vec![Array::exact("filled disparities", filled(&self.disparities, self.range).into_data())])
+    }
+}
+
+/// A map on its way to a texture.
+#[derive(Clone, Debug)]
+pub struct MapTextureTrial {
+    /// The map.
+    pub disparities: DisparityMap,
+    /// What its texels are.
+    pub texel: MapTexel,
+    /// In how many parts it comes.
+    pub parts: u32,
+}
+
+impl MapTextureTrial {
+    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+        // No device need have larger textures.
+        let size = (width.min(2048), height.min(2048));
+        let texel = dice.pick(&MapTexel::ALL);
+        Self { disparities: map(size, dice, -300 * SCALE, 2000 * SCALE), texel, parts: 1 + dice.below(3) }
+    }
+}
+
+impl Trial for MapTextureTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} in {} parts", self.texel, self.parts)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("disparities", self.disparities.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, (width, height)) = (bench.device(), self.disparities.size());
+        let from = bench.upload(self.disparities.data())?;
+        let texture = bench.output_texture(self.texel.format(), (width, height));
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let kernel = MapTexture::new(device, self.texel);
+        bench.run(|encoder| {
+            let rows = height.div_ceil(self.parts);
+            for first_row in (0..height).step_by(rows as usize) {
+                let rows = rows.min(height - first_row);
+                let rows = MapRows { width, rows, first_word: width * first_row, first_row };
+                kernel.prepare(device, rows, &from, &view).record(encoder);
+            }
+        });
+        Ok(vec![match self.texel {
+            MapTexel::FixedPoint => Array::exact("texels", bench.download_texture::<i32>(&texture)?),
+            MapTexel::Pixels => Array::exact("texels", bench.download_texture::<f32>(&texture)?),
+        }])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![match self.texel {
+            MapTexel::FixedPoint => Array::exact("texels", self.disparities.data().to_vec()),
+            MapTexel::Pixels => Array::exact("texels", texels_in_pixels(&self.disparities)),
+        }])
     }
 }
 

@@ -58,7 +58,7 @@ impl Trial for CensusTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.0.size();
-        let plane = padded(&self.0, &Census::padding(size, 0, size.1, Brightness::SAME));
+        let plane = padded(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
         let transformed = bench.output(size.0 * size.1)?;
         let kernel = Census::new(bench.device());
         let dispatch = kernel.prepare(bench.device(), size, &bench.upload(&plane)?, &transformed);

@@ -12,6 +12,7 @@ use crate::{
     disparity::DisparityRange,
     error::Result,
     image::Luma,
+    luma::pack,
     reference::compute_dense,
 };
 
@@ -83,9 +84,10 @@ impl Trial for DenseTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (left, right) = (bench.upload_luma(&self.left)?, bench.upload_luma(&self.right)?);
-        let (device, size) = (bench.device(), self.left.size());
-        let matcher = Matcher::with_band_rows(device, size, &self.config, &left, &right, self.band_rows)?;
+        let matcher = Matcher::with_band_rows(bench.device(), self.left.size(), &self.config, self.band_rows)?;
+        for (view, luma) in [&self.left, &self.right].into_iter().zip(matcher.luma()) {
+            bench.write(luma, &pack(view));
+        }
         Ok(Self::arrays(matcher.run(bench.gpu)?))
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use hsad::{
     dense::{BoxMean, VolumeBand},
     disparity::DisparityRange,
+    gpu::Context,
     reference::box_mean,
 };
 
@@ -12,7 +13,7 @@ use crate::common::*;
 
 /// The means of the rows `wanted`, from the costs of the rows `known`.
 fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Range<u32>, count: u32) -> Vec<u8> {
-    let device = &gpu().device;
+    let device = &Context::from(&gpu().device);
     let range = DisparityRange::new(0, count).unwrap();
     let band = VolumeBand { width, first_row: 0, rows: known.end - known.start, range };
     let row = 4 * band.row_words() as usize;

@@ -1,5 +1,6 @@
 use hsad::{
     features::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
+    gpu::Context,
     image::{Luma, Plane},
     reference::{integral::IntegralImage, integral_rows::sum_rows},
     verify::integral::ColumnsTrial,
@@ -22,7 +23,7 @@ fn equals_the_twin() {
 
 /// Both passes, one after the other.
 fn integral_image(picture: &Luma) -> Vec<u32> {
-    let (device, (width, height)) = (&gpu().device, picture.size());
+    let (device, (width, height)) = (&Context::from(&gpu().device), picture.size());
     let rows = IntegralRows::new(device, &bench().upload_luma(picture).unwrap(), width, height).unwrap();
     let columns = IntegralColumns::new(device, rows.sums(), width, height);
     bench().run(|encoder| {

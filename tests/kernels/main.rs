@@ -25,6 +25,8 @@ mod hybrid;
 mod integral_columns;
 mod integral_rows;
 mod luma;
+mod luma_texture;
+mod map_texture;
 mod matcher;
 mod mean_shift;
 mod nonmax;

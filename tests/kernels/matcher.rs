@@ -9,13 +9,14 @@ use std::{
 use hsad::{
     config::Preset,
     dense::{
-        self, Aggregation, Brightness, CELL, Cost, DenseConfig, Difference, Matcher, OtherView, Paths, Penalties,
-        Refinement, Search, SemiGlobal, View,
+        self, Aggregation, Brightness, CELL, Cost, DenseConfig, Destination, Difference, Matcher, OtherView, Paths,
+        Penalties, Refinement, Search, SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
     error::Error,
     gpu::Gpu,
     image::Luma,
+    luma::pack,
     reference::compute_dense,
     verify::pipelines::DenseTrial,
     wgpu,
@@ -78,6 +79,13 @@ fn the_twins_end_with_the_same_bytes() {
     }
 }
 
+/// The pair where the matcher reads it.
+fn write(matcher: &Matcher, left: &Luma, right: &Luma) {
+    for (view, luma) in [left, right].into_iter().zip(matcher.luma()) {
+        bench().write(luma, &pack(view));
+    }
+}
+
 #[test]
 fn bands_leave_no_trace() {
     let (left, right) = pair(130, 131);
@@ -96,9 +104,9 @@ fn bands_leave_no_trace() {
 fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
     let whole = dense::compute(gpu(), left, right, config).unwrap();
     assert!(coverage(&whole.disparity) > 0.3);
-    let [left, right] = [left, right].map(|view| bench().upload_luma(view).unwrap());
     for rows in [1, 7, 64, 130] {
-        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, &left, &right, rows).unwrap();
+        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, rows).unwrap();
+        write(&banded, left, right);
         // Whole cells, where each has a range of its own.
         let in_cells = *config == coarse_to_fine(View::Left);
         let rows_of_band = if in_cells { (rows / CELL * CELL).max(CELL) } else { rows };
@@ -113,15 +121,21 @@ fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
 fn twice_in_one_encoder_and_after_garbage() {
     let (left, right) = pair(97, 33);
     let expected = dense::compute(gpu(), &left, &right, &config(View::Left)).unwrap();
-    let [left, right] = [&left, &right].map(|view| bench().upload_luma(view).unwrap());
-    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left), &left, &right).unwrap();
-    let outputs = [0; 4].map(|_| upload(&vec![7_u32; 97 * 33]));
-    bench().run(|encoder| {
-        matcher.record(encoder, &outputs[0], &outputs[1]);
-        matcher.record(encoder, &outputs[2], &outputs[3]);
+    let device = &gpu().device;
+    let matcher = Matcher::new(device, (97, 33), &config(View::Left)).unwrap();
+    write(&matcher, &left, &right);
+    let maps = [0; 2].map(|_| [0; 2].map(|_| upload(&vec![7_u32; 97 * 33])));
+    let outputs = maps.each_ref().map(|[disparities, confidences]| {
+        matcher.outputs(device, Destination::Buffer(disparities), Some(confidences)).unwrap()
     });
-    for output in [&outputs[0], &outputs[2]] {
-        assert_same("disparities", &download::<i32>(output), expected.disparity.data());
+    bench().run(|encoder| {
+        matcher.record(encoder, &outputs[0]);
+        matcher.record(encoder, &outputs[1]);
+    });
+    for [disparities, confidences] in &maps {
+        assert_same("disparities", &download::<i32>(disparities), expected.disparity.data());
+        let (packed, rest) = (pack(&expected.confidence), vec![7; 97 * 33 - 25 * 33]);
+        assert_same("confidences", &download::<u32>(confidences), &[packed, rest].concat());
     }
 }
 
@@ -155,8 +169,8 @@ fn awaited_while_another_thread_polls_the_device() {
 fn several_threads_wait_for_one_device() {
     let (left, right) = pair(97, 33);
     let expected = compute_dense(&left, &right, &config(View::Left)).unwrap();
-    let [left, right] = [&left, &right].map(|view| bench().upload_luma(view).unwrap());
-    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left), &left, &right).unwrap();
+    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left)).unwrap();
+    write(&matcher, &left, &right);
     thread::scope(|scope| {
         let threads = [0; 4].map(|_| scope.spawn(|| [0; 5].map(|_| matcher.run(gpu()).unwrap())));
         for maps in threads.map(|thread| thread.join().unwrap()) {

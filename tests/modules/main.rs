@@ -7,8 +7,8 @@ use std::path::Path;
 
 use hsad::{
     features::keypoints::Keypoint,
-    gpu::{Binding, Member, ShaderType, Shape, Stage},
-    wgpu::Limits,
+    gpu::{Binding, Limit, Member, REQUIRED_LIMITS, ShaderType, Shape, Stage},
+    wgpu::{Limits, TextureFormat},
 };
 use naga::{
     AddressSpace, Module, ScalarKind, StorageAccess, TypeInner,
@@ -104,6 +104,23 @@ fn is_word_texture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
+/// Whether it is a texture of floats to be read, as far as a module tells.
+fn is_picture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
+    let class = naga::ImageClass::Sampled { kind: ScalarKind::Float, multi: false };
+    module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
+}
+
+/// Whether it is a texture of this format that is only written.
+fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) -> bool {
+    let format = match format {
+        TextureFormat::R32Sint => naga::StorageFormat::R32Sint,
+        TextureFormat::R32Float => naga::StorageFormat::R32Float,
+        _ => return false,
+    };
+    let class = naga::ImageClass::Storage { format, access: StorageAccess::STORE };
+    module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
+}
+
 /// What of `stage`'s shader is not as its Rust side says; empty where they agree.
 fn disagreements(stage: &Stage) -> Vec<String> {
     let (module, _) = match valid(stage) {
@@ -138,6 +155,8 @@ fn disagreements(stage: &Stage) -> Vec<String> {
             (AddressSpace::Storage { access }, Binding::Read) if !access.contains(StorageAccess::STORE) => None,
             (AddressSpace::Storage { access }, Binding::Write) if access.contains(StorageAccess::STORE) => None,
             (AddressSpace::Handle, Binding::Texture) if is_word_texture(&module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Picture) if is_picture(&module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Map(format)) if is_map(&module, variable.ty, *format) => None,
             (space, binding) => Some(format!("it is in {space:?}, in Rust it is {binding:?}")),
         };
         found.extend(difference.map(|difference| format!("binding {place}: {difference}")));
@@ -203,6 +222,47 @@ fn workgroups_fit_the_smallest_limits() {
             .sum();
         assert!(memory < limits.max_compute_workgroup_storage_size, "{}: {memory} bytes", stage.name);
     }
+}
+
+/// What is asked of a device is what the shaders need, no more and no less.
+#[test]
+fn required_limits_are_those_that_some_shader_needs() {
+    let mut needed = std::collections::BTreeMap::new();
+    let mut need = |name: &'static str, value: u64| {
+        let most = needed.entry(name).or_insert(0);
+        *most = value.max(*most);
+    };
+    // What stands in the host's code: one bind group, rows of words in textures, as many workgroups as there can be.
+    need("max_bind_groups", 1);
+    need("max_texture_dimension_2d", 2048);
+    need("max_compute_workgroups_per_dimension", 65_535);
+    for stage in hsad::stages() {
+        let module = naga::front::wgsl::parse_str(&stage.wgsl()).expect("checked by another test");
+        let [x, y, z] = module.entry_points[0].workgroup_size;
+        need("max_compute_workgroup_size_x", x.into());
+        need("max_compute_workgroup_size_y", y.into());
+        need("max_compute_workgroup_size_z", z.into());
+        need("max_compute_invocations_per_workgroup", (x * y * z).into());
+        let shared = module.global_variables.iter().filter(|(_, variable)| variable.space == AddressSpace::WorkGroup);
+        let shared = shared.map(|(_, variable)| u64::from(module.types[variable.ty].inner.size(module.to_ctx()))).sum();
+        need("max_compute_workgroup_storage_size", shared);
+        let count = |kind: fn(&Binding) -> bool| stage.bindings.iter().filter(|&binding| kind(binding)).count() as u64;
+        need("max_bindings_per_bind_group", stage.bindings.len() as u64);
+        need("max_uniform_buffers_per_shader_stage", count(|b| matches!(b, Binding::Uniform(_))));
+        need("max_storage_buffers_per_shader_stage", count(|b| matches!(b, Binding::Read | Binding::Write)));
+        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Texture | Binding::Picture)));
+        need("max_storage_textures_per_shader_stage", count(|b| matches!(b, Binding::Map(_))));
+        let uniforms = stage.bindings.iter().filter_map(|binding| match binding {
+            Binding::Uniform(shape) => Some(size_of_rust(shape)),
+            _ => None,
+        });
+        need("max_uniform_buffer_binding_size", uniforms.max().unwrap_or(0));
+    }
+    let required: std::collections::BTreeMap<_, _> =
+        REQUIRED_LIMITS.iter().map(|&Limit { name, least, .. }| (name, least)).collect();
+    assert_eq!(needed, required);
+    let (defaults, least) = (Limits::downlevel_defaults(), |limit: &Limit| limit.least);
+    assert!(REQUIRED_LIMITS.iter().all(|limit| (limit.of)(&defaults) >= least(limit)));
 }
 
 /// The comparison itself must be able to fail.

@@ -1,0 +1,161 @@
+//! Disparity of a sequence of frames: uploads, compute and read-back overlap over a ring of slots, and what the features of
+//! a frame tell of range and brightness serves the frames after it.
+//!
+//!     cargo run --example stream -- [FRAMES]
+//!
+//! The frames are windows that wander over the shipped pair; from the middle on, the right camera is darker.
+#![expect(clippy::print_stdout, reason = "it tells what it does")]
+
+mod slot;
+
+use std::{path::Path, time::Instant};
+
+use hsad::{
+    config::Preset,
+    dense::{Brightness, DenseConfig, Matcher},
+    disparity::{DisparityRange, NONE},
+    features::{Detector, FeatureConfig},
+    io::{Picture, load},
+    pipeline::equalising,
+    seeding::Seeding,
+    wgpu,
+};
+
+use slot::{Answer, Slot};
+
+type AnyError = Box<dyn std::error::Error>;
+
+/// Frames on their way at a time: one that is uploaded, one that is computed, one that is read.
+const SLOTS: usize = 3;
+/// Of so many frames, one is looked at for what it tells of the others.
+const SEEDED: usize = 8;
+/// Width and height of a frame.
+const SIZE: (u32, u32) = (256, 192);
+
+/// The cameras.
+struct Scene {
+    views: [Picture; 2],
+    frames: usize,
+}
+
+impl Scene {
+    /// What both see at a time.
+    fn frame(&self, index: usize) -> [Picture; 2] {
+        let (width, height) = self.views[0].size();
+        let (x0, y0) = ((3 * index as u32) % (width - SIZE.0), index as u32 % (height - SIZE.1));
+        let crop = |view: &Picture| Picture::from_fn(SIZE.0, SIZE.1, |x, y| view.get(x0 + x, y0 + y));
+        let [left, right] = [crop(&self.views[0]), crop(&self.views[1])];
+        let darker = |level: u8| (u16::from(level) * 2 / 3) as u8;
+        let is_dark = index >= self.frames / 2;
+        [left, if is_dark { right.map(|&[r, g, b, a]| [darker(r), darker(g), darker(b), a]) } else { right }]
+    }
+}
+
+/// The matcher with the slots that were made for it, and what it was made for.
+struct Stream<'d> {
+    device: &'d wgpu::Device,
+    queue: &'d wgpu::Queue,
+    config: DenseConfig,
+    matcher: Matcher,
+    /// For the left and the right view, in the matcher's luma.
+    detectors: [Detector; 2],
+    slots: Vec<Slot>,
+}
+
+impl<'d> Stream<'d> {
+    fn new(device: &'d wgpu::Device, queue: &'d wgpu::Queue, config: DenseConfig) -> hsad::Result<Self> {
+        let matcher = Matcher::new(device, SIZE, &config)?;
+        // Room for few features, so that little has to be read.
+        let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
+        let [left, right] = matcher.luma().map(|luma| Detector::new(device, luma, SIZE.0, SIZE.1, &features));
+        let detectors = [left?, right?];
+        let slots = (0..SLOTS).map(|_| Slot::new(device, &matcher, &detectors, SIZE)).collect::<hsad::Result<_>>()?;
+        Ok(Self { device, queue, config, matcher, detectors, slots })
+    }
+
+    /// Sends a frame off, in a slot that is free.
+    fn send(&mut self, index: usize, frame: [Picture; 2]) {
+        let slot = &mut self.slots[index % SLOTS];
+        let detectors = index.is_multiple_of(SEEDED).then_some(&self.detectors);
+        slot.send((self.device, self.queue), &self.matcher, index, frame, detectors);
+    }
+
+    /// Waits for the frame in the slot that frame `index` is to take, and draws conclusions from it.
+    fn collect(&mut self, index: usize) -> Result<Option<Answer>, AnyError> {
+        let answer = self.slots[index % SLOTS].collect(self.device)?;
+        if let Some(seeding) = answer.as_ref().and_then(|answer| answer.seeding.as_ref()) {
+            self.learn(seeding)?;
+        }
+        Ok(answer)
+    }
+
+    /// The seeds of a frame serve those that are sent after it. Another brightness costs nothing; for another range the
+    /// matcher is built anew, so there has to be a reason for it.
+    fn learn(&mut self, seeding: &Seeding) -> Result<(), AnyError> {
+        if let Some(found) = &seeding.brightness {
+            let brightness = equalising(found);
+            self.matcher.set_brightness(self.queue, brightness)?;
+            self.config.brightness = brightness;
+        }
+        let Ok(found) = seeding.range else { return Ok(()) };
+        let has = self.config.range;
+        let too_small = found.min < has.min || found.last() > has.last();
+        if too_small || 4 * found.count < has.count {
+            // Half as much on either side, so that it is not left again at once. What is on its way is let go.
+            let margin = (found.count / 2).cast_signed();
+            let range = DisparityRange::inclusive(found.min - margin, found.last() + margin)?;
+            println!("range {} to {} px instead of {} to {}", range.min, range.last(), has.min, has.last());
+            *self = Self::new(self.device, self.queue, DenseConfig { range, ..self.config.clone() })?;
+        }
+        Ok(())
+    }
+}
+
+/// Sends all frames, with `SLOTS` of them on their way at a time or, `in_turn`, one; frames a second.
+fn run(stream: &mut Stream<'_>, scene: &Scene, in_turn: bool, mut tell: impl FnMut(Answer)) -> Result<f64, AnyError> {
+    let start = Instant::now();
+    for index in 0..scene.frames + SLOTS {
+        stream.collect(index)?.map(&mut tell);
+        if index < scene.frames {
+            stream.send(index, scene.frame(index));
+        }
+        if in_turn {
+            stream.collect(index)?.map(&mut tell);
+        }
+    }
+    Ok(scene.frames as f64 / start.elapsed().as_secs_f64())
+}
+
+fn tell(Answer { index, disparities, seeding }: Answer) {
+    let known: Vec<i32> = disparities.into_iter().filter(|&disparity| disparity != NONE).collect();
+    let mean = known.iter().map(|&d| f64::from(d) / 256.0).sum::<f64>() / known.len().max(1) as f64;
+    let coverage = 100.0 * known.len() as f64 / f64::from(SIZE.0 * SIZE.1);
+    print!("frame {index:3}  coverage {coverage:5.1} %  mean disparity {mean:5.2} px");
+    match seeding.and_then(|seeding| Some((seeding.seeds.len(), seeding.brightness?))) {
+        Some((seeds, brightness)) => println!("  {seeds} seeds, right view {:.2} times as bright", brightness.gain),
+        None => println!(),
+    }
+}
+
+fn main() -> Result<(), AnyError> {
+    let frames = std::env::args().nth(1).map_or(Ok(48), |frames| frames.parse())?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
+    let scene =
+        Scene { views: [load::load(&folder.join("left.png"))?, load::load(&folder.join("right.png"))?], frames };
+
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        required_limits: wgpu::Limits::downlevel_defaults(),
+        ..Default::default()
+    }))?;
+
+    // A guess, until there are seeds.
+    let config = Preset::Fast.config().dense(DisparityRange::new(0, 32)?, Brightness::SAME);
+    let mut stream = Stream::new(&device, &queue, config)?;
+    run(&mut stream, &scene, false, tell)?;
+    let overlapped = run(&mut stream, &scene, false, drop)?;
+    let in_turn = run(&mut stream, &scene, true, drop)?;
+    println!("{overlapped:.1} frames a second; {in_turn:.1} with each one waited for");
+    Ok(())
+}

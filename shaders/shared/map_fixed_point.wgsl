@@ -1,0 +1,7 @@
+// A disparity as it is.
+
+alias Map = texture_storage_2d<r32sint, write>;
+
+fn texel(disparity: i32) -> vec4i {
+    return vec4i(disparity, 0, 0, 1);
+}

@@ -1,0 +1,57 @@
+//! What a device must offer, whatever the size of the pictures.
+
+use crate::error::{Error, Result};
+
+/// A limit of [`wgpu::Limits`] that the kernels need.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit {
+    /// Its name there.
+    pub name: &'static str,
+    /// The least that will do.
+    pub least: u64,
+    /// What there is of it.
+    pub of: fn(&wgpu::Limits) -> u64,
+}
+
+/// A [`Limit`] by its name.
+macro_rules! limit {
+    ($name:ident, $least:expr) => {
+        Limit { name: stringify!($name), least: $least, of: |limits| limits.$name.into() }
+    };
+}
+
+/// All that is needed; [`wgpu::Limits::downlevel_defaults`] has it. No [`wgpu::Features`] are. How large a picture may be
+/// also follows from `max_buffer_size`, `max_storage_buffer_binding_size` and `max_texture_dimension_2d`.
+pub const REQUIRED_LIMITS: &[Limit] = &[
+    limit!(max_bind_groups, 1),
+    limit!(max_bindings_per_bind_group, 5),
+    limit!(max_uniform_buffers_per_shader_stage, 2),
+    limit!(max_uniform_buffer_binding_size, 96),
+    limit!(max_storage_buffers_per_shader_stage, 4),
+    limit!(max_sampled_textures_per_shader_stage, 1),
+    limit!(max_storage_textures_per_shader_stage, 1),
+    limit!(max_texture_dimension_2d, 2048),
+    limit!(max_compute_workgroup_storage_size, 4096),
+    limit!(max_compute_invocations_per_workgroup, 256),
+    limit!(max_compute_workgroup_size_x, 64),
+    limit!(max_compute_workgroup_size_y, 8),
+    limit!(max_compute_workgroup_size_z, 1),
+    limit!(max_compute_workgroups_per_dimension, 65_535),
+];
+
+/// Refuses a device that lacks any of them, before anything is created on it.
+///
+/// # Errors
+/// [`Error::Unsupported`] with the limit's name.
+pub(crate) fn check_limits(device: &wgpu::Device) -> Result<()> {
+    let limits = device.limits();
+    match REQUIRED_LIMITS.iter().find(|limit| (limit.of)(&limits) < limit.least) {
+        None => Ok(()),
+        Some(limit) => Err(Error::Unsupported(format!(
+            "its limit {} is {}, and {} are needed: request it with wgpu::Limits::downlevel_defaults() or more",
+            limit.name,
+            (limit.of)(&limits),
+            limit.least
+        ))),
+    }
+}

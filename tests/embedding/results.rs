@@ -1,0 +1,267 @@
+//! Textures and buffers in, textures and buffers out: the same bytes as the CPU twins'.
+
+use hsad::{
+    config::Preset,
+    dense::{Brightness, Dense, DenseConfig, Destination, MapTexel, Matcher},
+    disparity::DisparityRange,
+    image::Luma,
+    input::Source,
+    luma::pack,
+    reference::{compute_dense, texels_in_pixels},
+    wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
+};
+
+use crate::application::{Application, config, pair};
+
+const SIZE: (u32, u32) = (131, 67);
+
+/// The texels of a grey picture.
+fn texels(luma: &Luma, format: TextureFormat) -> Vec<u8> {
+    let count = format.components() as usize;
+    luma.data().iter().flat_map(|&grey| std::iter::repeat_n(grey, count)).collect()
+}
+
+/// The configurations that go different ways to their answers: blocks, with refinement and not, and paths.
+fn configs() -> Vec<DenseConfig> {
+    let range = DisparityRange::new(0, 24).unwrap();
+    let preset = |preset: Preset| preset.config().dense(range, Brightness::SAME);
+    vec![config(), preset(Preset::Fast), preset(Preset::Balanced)]
+}
+
+fn assert_answers(what: &str, disparities: &[i32], confidences: &[u32], expected: &Dense) {
+    assert_eq!(disparities, expected.disparity.data(), "{what}");
+    assert_eq!(confidences, pack(&expected.confidence), "{what}");
+}
+
+#[test]
+fn textures_in_and_out_in_bands_and_not() {
+    let application = Application::new();
+    let (device, bench) = (application.device(), application.bench());
+    let views = pair(SIZE, 1);
+    for config in configs() {
+        let expected = compute_dense(&views[0], &views[1], &config).unwrap();
+        for band_rows in [u32::MAX, 20] {
+            let matcher = Matcher::with_band_rows(device, SIZE, &config, band_rows).unwrap();
+            // Two formats that are not read alike.
+            let [left, right] = [TextureFormat::Bgra8UnormSrgb, TextureFormat::R8Unorm];
+            let textures = [(&views[0], left), (&views[1], right)]
+                .map(|(view, format)| bench.texture(format, SIZE, &texels(view, format)));
+            let [left, right] = textures.each_ref().map(Source::Texture);
+            let inputs = matcher.inputs(device, left, right).unwrap();
+            for texel in MapTexel::ALL {
+                let map = bench.output_texture(texel.format(), SIZE);
+                let view = map.create_view(&wgpu::TextureViewDescriptor::default());
+                let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
+                let outputs = matcher.outputs(device, Destination::Texture(&view), Some(&confidences)).unwrap();
+                bench.run(|encoder| {
+                    inputs.record(encoder);
+                    matcher.record(encoder, &outputs);
+                });
+                let what = format!("{texel:?} in bands of {band_rows}, {:?}", config.aggregation);
+                match texel {
+                    MapTexel::FixedPoint => {
+                        let confidences = bench.download::<u32>(&confidences).unwrap();
+                        assert_answers(&what, &bench.download_texture(&map).unwrap(), &confidences, &expected);
+                    }
+                    MapTexel::Pixels => {
+                        let pixels = bench.download_texture::<f32>(&map).unwrap();
+                        assert_eq!(pixels, texels_in_pixels(&expected.disparity), "{what}");
+                    }
+                }
+            }
+        }
+    }
+    application.assert_quiet();
+}
+
+/// Two frames in flight: views and maps of their own, one matcher, one encoder.
+#[test]
+fn frames_take_turns_in_one_encoder() {
+    let application = Application::new();
+    let (device, bench) = (application.device(), application.bench());
+    let frames = [pair(SIZE, 2), pair(SIZE, 3)];
+    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let prepared = frames.each_ref().map(|[left, right]| {
+        let left = bench.upload_luma(left).unwrap();
+        let right = bench.texture(TextureFormat::Rgba8Unorm, SIZE, &texels(right, TextureFormat::Rgba8Unorm));
+        let inputs = matcher.inputs(device, Source::Luma(&left), Source::Texture(&right)).unwrap();
+        // One word more than is needed, which stays.
+        let map = bench.output(SIZE.0 * SIZE.1 + 1).unwrap();
+        let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
+        let outputs = matcher.outputs(device, Destination::Buffer(&map), Some(&confidences)).unwrap();
+        (inputs, outputs, map, confidences)
+    });
+    bench.run(|encoder| {
+        for (inputs, outputs, ..) in &prepared {
+            inputs.record(encoder);
+            matcher.record(encoder, outputs);
+        }
+    });
+    for ([left, right], (.., map, confidences)) in frames.iter().zip(&prepared) {
+        let expected = compute_dense(left, right, &config()).unwrap();
+        let disparities = bench.download::<i32>(map).unwrap();
+        let (disparities, rest) = disparities.split_at((SIZE.0 * SIZE.1) as usize);
+        assert_answers("a frame", disparities, &bench.download::<u32>(confidences).unwrap(), &expected);
+        assert_eq!(rest, [-1]);
+    }
+    application.assert_quiet();
+}
+
+/// A renderer often declares as sRGB only what it shows, and a view as it shows it.
+#[test]
+fn a_view_may_have_another_format_than_its_texture() {
+    let application = Application::new();
+    let (device, bench) = (application.device(), application.bench());
+    let views = pair(SIZE, 4);
+    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let srgb = TextureFormat::Rgba8UnormSrgb;
+    let textures = views.each_ref().map(|view| {
+        let plain = application.texture(TextureFormat::Rgba8Unorm, SIZE, usage, &[srgb]);
+        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * SIZE.0), ..Default::default() };
+        let texture = plain.texture();
+        application.gpu.queue.write_texture(texture.as_image_copy(), &texels(view, srgb), layout, texture.size());
+        texture.create_view(&wgpu::TextureViewDescriptor { format: Some(srgb), ..Default::default() })
+    });
+    let [left, right] = textures.each_ref().map(|view| Source::TextureAs(view, srgb));
+    let inputs = matcher.inputs(device, left, right).unwrap();
+    bench.run(|encoder| inputs.record(encoder));
+    for (luma, view) in matcher.luma().into_iter().zip(&views) {
+        assert_eq!(bench.download::<u32>(luma).unwrap(), pack(view));
+    }
+    application.assert_quiet();
+}
+
+#[test]
+fn recording_creates_nothing_and_submits_nothing() {
+    let application = Application::new();
+    let (device, bench) = (application.device(), application.bench());
+    let views = pair(SIZE, 5);
+    let format = TextureFormat::Rgba8UnormSrgb;
+    let textures = views.each_ref().map(|view| bench.texture(format, SIZE, &texels(view, format)));
+    let [left, right] = textures.each_ref().map(Source::Texture);
+    for config in configs() {
+        let matcher = Matcher::new(device, SIZE, &config).unwrap();
+        let inputs = matcher.inputs(device, left, right).unwrap();
+        let before = existing(device);
+        let map = bench.output_texture(TextureFormat::R32Float, SIZE);
+        let view = map.create_view(&wgpu::TextureViewDescriptor::default());
+        let outputs = matcher.outputs(device, Destination::Texture(&view), None).unwrap();
+        // What there is, is counted.
+        assert_ne!(existing(device), before);
+
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let before = existing(device);
+        for _ in 0..2 {
+            inputs.record(&mut encoder);
+            matcher.record(&mut encoder, &outputs);
+        }
+        let commands = encoder.finish();
+        assert_eq!(existing(device), before);
+        // Nothing was done: every texel is as it was left.
+        assert!(bench.download_texture::<u32>(&map).unwrap().iter().all(|&texel| texel == u32::MAX));
+        application.gpu.queue.submit([commands]);
+        let expected = compute_dense(&views[0], &views[1], &config).unwrap();
+        assert_eq!(bench.download_texture::<f32>(&map).unwrap(), texels_in_pixels(&expected.disparity));
+    }
+    application.assert_quiet();
+}
+
+/// How many there are of everything that can be created on a device, and the memory that it takes.
+fn existing(device: &wgpu::Device) -> [isize; 12] {
+    let counters = device.get_internal_counters().hal;
+    [
+        &counters.buffers,
+        &counters.textures,
+        &counters.texture_views,
+        &counters.bind_groups,
+        &counters.bind_group_layouts,
+        &counters.compute_pipelines,
+        &counters.pipeline_layouts,
+        &counters.samplers,
+        &counters.shader_modules,
+        &counters.query_sets,
+        &counters.buffer_memory,
+        &counters.texture_memory,
+    ]
+    .map(|counter| counter.read())
+}
+
+/// What a matcher says of its memory is what the device has less of.
+#[test]
+fn memory_is_what_the_device_gives() {
+    let application = Application::new();
+    let device = application.device();
+    let taken = || {
+        let counters = device.get_internal_counters().hal;
+        (counters.buffer_memory.read() + counters.texture_memory.read()) as f64
+    };
+    for config in configs() {
+        let before = taken();
+        let matcher = Matcher::new(device, (640, 480), &config).unwrap();
+        let (taken, told) = (taken() - before, matcher.memory() as f64);
+        // The device rounds up.
+        assert!(told <= taken && taken < 1.02 * told, "{told} bytes told, {taken} taken: {:?}", config.aggregation);
+    }
+}
+
+/// The table of the README, on a device with the limits that it names.
+#[test]
+fn matchers_take_the_memory_that_is_told() {
+    let readme = include_str!("../../README.md");
+    let device = &Application::new().gpu.device;
+    for (size, count) in [((640, 480), 128), ((768, 512), 64), ((1920, 1080), 256)] {
+        let start = format!("| {}x{}, {count} | ", size.0, size.1);
+        let row = readme.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
+        let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+        let range = DisparityRange::new(0, count).unwrap();
+        let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
+            let matcher = Matcher::new(device, size, &preset.config().dense(range, Brightness::SAME)).unwrap();
+            (matcher.memory() as f64 / 1e6).round()
+        });
+        assert_eq!(told, measured, "{start}");
+    }
+}
+
+#[test]
+fn brightness_changes_without_another_matcher() {
+    let application = Application::new();
+    let bench = application.bench();
+    let [left, right] = pair(SIZE, 6);
+    for config in configs() {
+        let matcher = Matcher::with_band_rows(application.device(), SIZE, &config, 40).unwrap();
+        for (view, luma) in [&left, &right].into_iter().zip(matcher.luma()) {
+            bench.write(luma, &pack(view));
+        }
+        for brightness in [Brightness { gain: 300, offset: -4000 }, Brightness { gain: 100, offset: 9 }] {
+            matcher.set_brightness(&application.gpu.queue, brightness).unwrap();
+            let expected = compute_dense(&left, &right, &DenseConfig { brightness, ..config.clone() }).unwrap();
+            assert_eq!(matcher.run(&application.gpu).unwrap(), expected);
+        }
+        let refused = matcher.set_brightness(&application.gpu.queue, Brightness { gain: 1 << 21, offset: 0 });
+        assert!(refused.unwrap_err().to_string().starts_with("the gain is 2097152"));
+    }
+    application.assert_quiet();
+}
+
+/// Results may go straight to a buffer that the host reads.
+#[test]
+fn a_map_goes_to_a_buffer_that_can_be_mapped() {
+    let application = Application::new();
+    let device = application.device();
+    let [left, right] = pair(SIZE, 7);
+    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    for (view, luma) in [&left, &right].into_iter().zip(matcher.luma()) {
+        application.bench().write(luma, &pack(view));
+    }
+    let bytes = 4 * u64::from(SIZE.0) * u64::from(SIZE.1);
+    let map = application.buffer(bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+    let outputs = matcher.outputs(device, Destination::Buffer(&map), None).unwrap();
+    application.bench().run(|encoder| matcher.record(encoder, &outputs));
+    map.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
+    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let expected = compute_dense(&left, &right, &config()).unwrap();
+    let read = map.get_mapped_range(..).unwrap();
+    assert_eq!(bytemuck::pod_collect_to_vec::<u8, i32>(&read), expected.disparity.data());
+    application.assert_quiet();
+}

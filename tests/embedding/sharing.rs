@@ -1,0 +1,105 @@
+//! A device that others use as well: threads, and a cache of compiled kernels.
+
+use std::thread;
+
+use hsad::{
+    config::Preset,
+    dense::{self, Brightness, Destination, Inputs, Matcher, Outputs},
+    disparity::DisparityRange,
+    features::{Detector, FeatureConfig},
+    gpu::Context,
+    image::Luma,
+    input::{Input, Source},
+    reference::compute_dense,
+    wgpu::{Features, Limits, PipelineCacheDescriptor, TextureFormat, TextureUsages},
+};
+
+use crate::application::{Application, config, pair};
+
+const SIZE: (u32, u32) = (131, 67);
+
+#[test]
+fn everything_goes_to_other_threads() {
+    fn assert_shared<T: Send + Sync>() {}
+    assert_shared::<Matcher>();
+    assert_shared::<Inputs>();
+    assert_shared::<Outputs>();
+    assert_shared::<Input>();
+    assert_shared::<Detector>();
+    assert_shared::<Context<'_>>();
+}
+
+/// Matchers of two threads, built, run and dropped at the same time on one device.
+#[test]
+fn threads_share_a_device() {
+    let application = Application::new();
+    let range = DisparityRange::new(0, 24).unwrap();
+    let configs = [config(), Preset::Balanced.config().dense(range, Brightness::SAME)];
+    let pairs = [pair(SIZE, 9), pair(SIZE, 10)];
+    thread::scope(|scope| {
+        for (config, views) in configs.iter().zip(&pairs) {
+            let application = &application;
+            scope.spawn(move || {
+                let [left, right] = views;
+                let expected = compute_dense(left, right, config).unwrap();
+                for _ in 0..5 {
+                    assert_eq!(dense::compute(&application.gpu, left, right, config).unwrap(), expected);
+                }
+            });
+        }
+    });
+    application.assert_quiet();
+}
+
+/// A mistake of one thread is that thread's.
+#[test]
+fn errors_stay_with_their_thread() {
+    let application = Application::new();
+    thread::scope(|scope| {
+        let device = application.device();
+        scope.spawn(move || {
+            for _ in 0..20 {
+                assert!(Matcher::new(device, (1 << 19, 1 << 19), &config()).is_err());
+            }
+        });
+        for _ in 0..3 {
+            Matcher::new(device, SIZE, &config()).unwrap();
+        }
+    });
+    application.assert_quiet();
+}
+
+/// Not every driver puts something into a cache that can be seen from here; but a cache of another device is refused by
+/// every kernel that is compiled with it.
+#[test]
+fn the_pipeline_cache_of_the_application_is_used() {
+    let applications = [0; 2].map(|_| Application::with(Features::PIPELINE_CACHE, Limits::downlevel_defaults()));
+    let caches = applications.each_ref().map(|application| {
+        let descriptor = PipelineCacheDescriptor { label: None, data: None, fallback: false };
+        // SAFETY: there is no data that would have to be from such a cache.
+        unsafe { application.device().create_pipeline_cache(&descriptor) }
+    });
+    let device = applications[0].device();
+    let [own, foreign] = caches.each_ref().map(|cache| Context { device, cache: Some(cache) });
+    let matcher = Matcher::new(own, SIZE, &config()).unwrap();
+    let black = Luma::filled(SIZE.0, SIZE.1, 0);
+    assert_eq!(matcher.run(&applications[0].gpu).unwrap(), compute_dense(&black, &black, &config()).unwrap());
+
+    let picture = applications[0].texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
+    let map = applications[0].texture(TextureFormat::R32Float, SIZE, TextureUsages::STORAGE_BINDING, &[]);
+    let picture = Source::Texture(&picture);
+    let refused = [
+        Matcher::new(foreign, SIZE, &config()).err(),
+        matcher.inputs(foreign, picture, picture).err(),
+        matcher.outputs(foreign, Destination::Texture(&map), None).err(),
+        Detector::new(foreign, matcher.luma()[0], SIZE.0, SIZE.1, &FeatureConfig::default()).err(),
+    ];
+    for error in refused {
+        let error = error.expect("an error").to_string();
+        assert!(error.contains("PipelineCache") && error.contains("device"), "{error}");
+    }
+    // Nothing of that is kept.
+    matcher.inputs(own, picture, picture).unwrap();
+    matcher.outputs(own, Destination::Texture(&map), None).unwrap();
+    applications.iter().for_each(Application::assert_quiet);
+}

@@ -1,0 +1,39 @@
+//! The sparse half without waiting: features in buffers that an application sees.
+
+use hsad::{
+    dense::Matcher,
+    features::{DESCRIPTOR_LENGTH, Detector, FeatureConfig, collect, detect, keypoints::Keypoint},
+    input::Source,
+    verify::smooth_noise,
+    wgpu::TextureFormat,
+};
+
+use crate::application::{Application, config};
+
+/// One conversion of a texture serves both halves; what is found is what anyone can read from the buffers.
+#[test]
+fn features_of_a_texture_are_read_from_their_buffers() {
+    let application = Application::new();
+    let (device, bench) = (application.device(), application.bench());
+    let size = (311, 239);
+    let luma = smooth_noise(size.0, size.1, 7);
+    let view = bench.texture(TextureFormat::R8Unorm, size, luma.data());
+    let matcher = Matcher::new(device, size, &config()).unwrap();
+    let inputs = matcher.inputs(device, Source::Texture(&view), Source::Texture(&view)).unwrap();
+    let features = FeatureConfig { upright: false, max_features: 5000, ..FeatureConfig::default() };
+    let detector = Detector::new(device, matcher.luma()[0], size.0, size.1, &features).unwrap();
+    bench.run(|encoder| {
+        inputs.record(encoder);
+        detector.record(encoder);
+    });
+    let expected = detect(&application.gpu, &luma, &features).unwrap();
+
+    let list = detector.keypoints();
+    let found = bench.download::<u32>(list.found()).unwrap()[0] as usize;
+    assert!(found > 100 && list.capacity() == 5000, "{found}");
+    let keypoints = bench.download::<Keypoint>(list.keypoints()).unwrap();
+    let descriptors = bench.download::<[f32; DESCRIPTOR_LENGTH]>(detector.descriptors()).unwrap();
+    assert_eq!(collect(&keypoints[..found], &descriptors[..found]), expected);
+    assert_eq!(detector.read(device, &application.gpu.queue).unwrap(), expected);
+    application.assert_quiet();
+}

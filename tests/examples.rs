@@ -1,0 +1,68 @@
+//! The examples that embed hsad, run as their users run them.
+#![cfg(feature = "cli")]
+
+use std::{path::Path, process::Command};
+
+use hsad::{
+    config::Preset,
+    dense::{self, Brightness},
+    disparity::DisparityRange,
+    gpu::{DeviceChoice, Gpu},
+    io::{color::turbo, load},
+};
+
+/// What an example prints.
+fn run(name: &str, arguments: &[&str]) -> String {
+    let cargo = std::env::var_os("CARGO").expect("cargo runs the tests");
+    let mut command = Command::new(cargo);
+    command.args(["run", "--quiet", "--example", name, "--"]).args(arguments);
+    let output = command.current_dir(env!("CARGO_MANIFEST_DIR")).output().expect("cargo runs");
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The frame is the left picture as it was, and beside it the colours of the disparities that the library finds.
+#[test]
+fn embed_draws_the_picture_and_its_disparities() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frame.png");
+    run("embed", &[path.to_str().unwrap()]);
+    let frame = load::load(&path).unwrap();
+
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&scene.join(name)).unwrap());
+    let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64).unwrap(), Brightness::SAME);
+    let map = dense::compute(&gpu, &left.luma(), &right.luma(), &config).unwrap().disparity;
+    let (width, height) = left.size();
+    assert_eq!(frame.size(), (2 * width, height));
+    let mut colors = 0;
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        // The first and the last colour stand for 12 and 60 px; the renderer's target rounds.
+        let share = ((map.get(x, y) as f32 / 256.0 - 12.0) / 48.0).clamp(0.0, 1.0);
+        for (at, expected) in [(x, left.rgb(x, y)), (width + x, turbo(0.05 + 0.95 * share))] {
+            let drawn = frame.rgb(at, y);
+            let near = drawn.iter().zip(expected).all(|(&drawn, expected)| drawn.abs_diff(expected) <= 2);
+            assert!(near, "({at}, {y}): {drawn:?}, not {expected:?}");
+        }
+        colors += u32::from(frame.rgb(width + x, y) != frame.rgb(width, 0));
+    }
+    assert!(2 * colors > width * height, "only {colors} pixels differ from the first");
+}
+
+/// What it learns from the features of some frames makes the later ones right: their coverage is that of the first ones.
+#[test]
+fn stream_follows_the_cameras() {
+    let text = run("stream", &["32"]);
+    let coverage = |index: usize| -> f64 {
+        let line = text.lines().find(|line| line.starts_with(&format!("frame {index:3} "))).expect("the frame's line");
+        line.split_whitespace().nth(3).expect("a share").parse().expect("a number")
+    };
+    assert!(text.contains(" px instead of 0 to 31\n"), "{text}");
+    assert!(coverage(15) > 60.0, "{text}");
+    // The right camera is darker from frame 16 on, and it is known when frame 24 has been seen.
+    assert!(coverage(16) < 20.0, "{text}");
+    assert!(coverage(31) > 60.0, "{text}");
+    let speeds: Vec<f64> = text.lines().last().unwrap().split(' ').filter_map(|word| word.parse().ok()).collect();
+    assert!(speeds.len() == 2 && speeds.iter().all(|&speed| speed > 0.0), "{text}");
+}
