@@ -6,6 +6,7 @@
 #
 # `hsad verify` runs on a second driver as well, SwiftShader, whose compiler and subgroups are others; Debian's package
 # chromium has it. HSAD_SWIFTSHADER names its ICD file elsewhere. Where it is not installed, root and apt install it.
+# The page in web/ is tested in that Chromium.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -67,4 +68,17 @@ if [ -f "$swiftshader" ]; then
     VK_DRIVER_FILES="$swiftshader" verify --quick --device swiftshader
 else
     echo "NOT RUN: there is no $swiftshader (Debian: apt-get install chromium), so one driver is all that was tested"
+fi
+
+say 'in the browser'
+chromium="${HSAD_CHROMIUM:-chromium}"
+if command -v "$chromium" >/dev/null; then
+    rustup target add wasm32-unknown-unknown
+    cargo clippy -p hsad-web --all-targets -- -D warnings
+    cargo clippy -p hsad-web -p hsad --lib --no-default-features --target wasm32-unknown-unknown -- -D warnings
+    cargo test -p hsad-web
+    cargo test --test browser -- --ignored --nocapture
+else
+    echo "NOT RUN: there is no $chromium (Debian: apt-get install chromium, or HSAD_CHROMIUM names another one)," \
+        "so the page was not tested"
 fi

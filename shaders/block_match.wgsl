@@ -205,7 +205,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let tags = tags_of(i32(x), step, range);
         // Row sums of each row, behind as many rows of zeros as the first windows 'lose'.
         var sums: array<Costs, ROWS + SIDE>;
-        var window: Costs;
+        // Without a value Chromium's compiler lets it keep the last step's.
+        var window = Costs();
         for (var y = 0; y < ROWS; y++) { // unroll
             let row = params.searched_start + (y0 + y) * params.stride + column;
             if DIRECTION < 0 {

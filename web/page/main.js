@@ -1,0 +1,351 @@
+// The page: pictures in, a worker that matches them, a map and a cloud out.
+
+import { Cloud } from "./cloud.js";
+import { decode } from "./decode.js";
+
+const SIDES = ["left", "right"];
+const STEPS = [["luma", "luma"], ["features", "interest points"], ["seeding", "range"], ["dense", "disparities"]];
+/** The horizontal angle of view that is assumed of an unknown camera, in radians. */
+const ANGLE = (55 * Math.PI) / 180;
+
+const at = (id) => document.getElementById(id);
+
+/** Each side's picture and what it is called. */
+const pair = { left: undefined, right: undefined };
+/** The camera of the pair, where it is known. */
+let camera;
+let worker;
+let cloud;
+/** The last result, and its disparities in pixels. */
+let shown;
+/** While the worker is busy; what has changed meanwhile is matched afterwards. */
+let busy = false;
+let stale = false;
+
+// What is told
+
+/** An element with text or elements in it. */
+function made(tag, className, ...content) {
+  const element = document.createElement(tag);
+  element.className = className;
+  element.append(...content);
+  return element;
+}
+
+function say(title, text = "", { bad = false, action } = {}) {
+  const card = made("div", bad ? "card bad" : "card", made("h2", "", title));
+  if (text) card.append(made("p", "", text));
+  if (action) {
+    const button = made("button", "", action.label);
+    button.onclick = action.run;
+    card.append(button);
+  }
+  at("message").replaceChildren(card);
+  document.body.dataset.state = bad ? "failed" : "idle";
+}
+
+/** The steps of the work, with the one that is going on. */
+function progress(now) {
+  const current = STEPS.findIndex(([name]) => name === now);
+  const items = STEPS.map(([, label], index) => made("li", index < current ? "done" : index === current ? "now" : "", label));
+  const card = made("div", "card", made("h2", "", "Matching"), made("ul", "steps", ...items));
+  at("message").replaceChildren(card);
+  document.body.dataset.state = "busy";
+}
+
+const HEADLINES = {
+  NoPicture: "This is not a picture",
+  SizesDiffer: "The pictures differ in size",
+  NotRectified: "This pair is not rectified",
+  NoAdapter: "No GPU for this page",
+  TooLarge: "Too large for this GPU",
+  DeviceLost: "The GPU was lost",
+};
+
+function fail({ name, message }) {
+  const again = { label: "Try again", run: () => match() };
+  const actions = {
+    NotRectified: { label: "Match it anyway (--force)", run: () => match({ force: true }) },
+    DeviceLost: again,
+  };
+  const text =
+    name === "NoAdapter"
+      ? "The browser has WebGPU, but offers no adapter: look at chrome://gpu, update the GPU's driver, or use another browser."
+      : name === "NoPicture"
+        ? message // It begins with the file's name.
+        : message[0].toUpperCase() + message.slice(1);
+  forget();
+  say(HEADLINES[name] ?? "This could not be matched", text, { bad: true, action: actions[name] });
+}
+
+// Pictures on their way in
+
+function put(side, picture) {
+  pair[side] = picture;
+  const view = at(side);
+  const canvas = view.querySelector("canvas");
+  Object.assign(canvas, { width: picture.width, height: picture.height });
+  canvas.getContext("2d").putImageData(picture, 0, 0);
+  view.classList.add("loaded");
+}
+
+/** Takes one picture for a side, or two for both in the order of their names. */
+async function take(files, side) {
+  files = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const sides = files.length > 1 ? SIDES : [side ?? (pair.left && !pair.right ? "right" : "left")];
+  try {
+    if (files.length > 2) throw new Error(`${files.length} files were dropped: it takes one picture for each side`);
+    const pictures = await Promise.all(files.map((file) => decode(file, file.name)));
+    pictures.forEach((picture, index) => put(sides[index], picture));
+    camera = undefined;
+    await match();
+  } catch (error) {
+    fail(error);
+  }
+}
+
+async function loadExample() {
+  const file = async (name) => {
+    const response = await fetch(`example/${name}`);
+    if (!response.ok) throw new Error(`example/${name} is missing on the server: ${response.status}`);
+    return response;
+  };
+  try {
+    const [left, right, meta] = await Promise.all([
+      ...SIDES.map(async (side) => decode(await (await file(`${side}.png`)).blob(), `${side}.png`)),
+      file("meta.json").then((response) => response.json()),
+    ]);
+    put("left", left);
+    put("right", right);
+    const [, cx, cy] = meta.calib_txt.match(/cam0=\[\S+ \S+ (\S+); \S+ \S+ (\S+);/);
+    camera = { focal: meta.focal_px, principal: [Number(cx), Number(cy)], doffs: meta.doffs_px };
+    await match();
+  } catch (error) {
+    fail(error);
+  }
+}
+
+// Matching
+
+async function match({ force = false } = {}) {
+  if (!pair.left || !pair.right) {
+    const missing = pair.left ? "right" : pair.right ? "left" : "first";
+    say(`Now the ${missing} picture`, "Both views of one scene, rectified: what lies in a row of one lies in the same row of the other.");
+    return;
+  }
+  if (busy) {
+    stale = true;
+    return;
+  }
+  busy = true;
+  progress();
+  const preset = document.querySelector("input[name=preset]:checked").value;
+  try {
+    const { result, error } = await matched({ ...pair, preset, force });
+    busy = false;
+    if (stale) {
+      stale = false;
+      await match();
+    } else if (error) {
+      fail(error);
+    } else {
+      show(result);
+    }
+  } finally {
+    busy = false;
+  }
+}
+
+/** What the worker makes of a pair. */
+function matched(request) {
+  worker ??= new Worker("worker.js", { type: "module" });
+  return new Promise((resolve) => {
+    worker.onmessage = ({ data }) => {
+      if (data.step) {
+        progress(data.step);
+      } else if (data.device !== undefined) {
+        at("device").value = data.device;
+        at("device").hidden = false;
+      } else {
+        if (data.error?.fatal) discard();
+        resolve(data);
+      }
+    };
+    worker.onerror = (event) => {
+      discard();
+      resolve({ error: { name: "Error", message: event.message || "the worker could not be started" } });
+    };
+    worker.postMessage(request);
+  });
+}
+
+function discard() {
+  worker?.terminate();
+  worker = undefined;
+}
+
+// Results
+
+function forget() {
+  shown = undefined;
+  cloud?.clear();
+  for (const id of ["scale", "probe", "tools", "help"]) at(id).hidden = true;
+  document.querySelector(".map").classList.remove("loaded");
+  const map = at("disparity");
+  map.getContext("2d").clearRect(0, 0, map.width, map.height);
+  at("facts").replaceChildren();
+}
+
+function show(result) {
+  const { width, height, disparities, none, scale } = result;
+  const colors = new ImageData(new Uint8ClampedArray(result.colors.buffer), width, height);
+  const map = at("disparity");
+  Object.assign(map, { width, height });
+  map.getContext("2d").putImageData(colors, 0, 0);
+  document.querySelector(".map").classList.add("loaded");
+
+  const pixels = Float32Array.from(disparities, (disparity) => (disparity === none ? NaN : disparity / scale));
+  shown = { ...result, pixels };
+  at("message").replaceChildren();
+  at("tools").hidden = at("help").hidden = false;
+  legend(result);
+  facts(result);
+  cloud.show(pair.left, colors, chosen(), camera ?? {
+    focal: width / (2 * Math.tan(ANGLE / 2)),
+    principal: [(width - 1) / 2, (height - 1) / 2],
+    doffs: 0,
+  });
+  // For whoever drives the page from outside.
+  window.result = result;
+  document.body.dataset.state = "done";
+}
+
+/** The disparities that the cloud shows. */
+function chosen() {
+  if (!at("measured").checked) return shown.pixels;
+  return shown.pixels.map((disparity, index) => (shown.confidences[index] ? disparity : NaN));
+}
+
+/** The colours from far to near, as the map has them. */
+function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
+  at("scale").hidden = false;
+  at("far").textContent = `far ${far.toFixed(1)} px`;
+  at("near").textContent = `${near.toFixed(1)} px near`;
+  const canvas = at("scale").querySelector("canvas");
+  const context = canvas.getContext("2d");
+  const bar = context.createImageData(canvas.width, 1);
+  // The map's own pixels show which colour belongs to which disparity.
+  const samples = new Array(canvas.width);
+  disparities.forEach((disparity, index) => {
+    if (disparity === none) return;
+    const share = (disparity / scale - far) / (near - far || 1);
+    if (share >= 0 && share <= 1) samples[Math.min(canvas.width - 1, Math.floor(share * canvas.width))] = index;
+  });
+  let last = samples.find((index) => index !== undefined) ?? 0;
+  for (let x = 0; x < canvas.width; ++x) {
+    last = samples[x] ?? last;
+    bar.data.set(colors.subarray(4 * last, 4 * last + 4), 4 * x);
+  }
+  context.putImageData(bar, 0, 0);
+}
+
+function facts(result) {
+  const percent = (share) => `${(100 * share).toFixed(1)} %`;
+  const seconds = (milliseconds) => `${(milliseconds / 1000).toFixed(2)}\u00a0s`;
+  const steps = STEPS.map(([, label], index) => `${label} ${seconds(result.times[index])}`).join(", ");
+  const filled = result.measured < result.coverage ? `${percent(result.measured)} measured, the rest filled` : "";
+  const [rows, ...agreeing] = result.rectification.split(/ (?=\()/);
+  const list = [
+    ["Time", seconds(result.milliseconds), steps, "large"],
+    ["Range", `${result.first} to ${result.last} px`, result.found ? `found from ${result.matches} matches` : "assumed: too few matches to find it"],
+    ["Rows", rows.replace("rows correspond to within", "agree within"), agreeing.join(" ").replace(/[()]/g, "")],
+    ["Coverage", percent(result.coverage), filled],
+    ["Trust", `${result.trust.toFixed(2)} of 1`],
+    ["Size", `${result.width} × ${result.height}`],
+  ];
+  at("facts").replaceChildren(
+    ...list.flatMap(([name, value, detail, className = ""]) => {
+      const fact = made("dd", className, value);
+      if (detail) fact.append(made("small", "", detail));
+      return [made("dt", "", name), fact];
+    }),
+  );
+}
+
+/** Tells the disparity under the mouse. */
+function probe({ offsetX, offsetY, currentTarget: map }) {
+  if (!shown) return;
+  const x = Math.min(shown.width - 1, Math.floor((offsetX / map.clientWidth) * shown.width));
+  const y = Math.min(shown.height - 1, Math.floor((offsetY / map.clientHeight) * shown.height));
+  const index = Math.max(0, y) * shown.width + Math.max(0, x);
+  const disparity = shown.pixels[index];
+  const kind = shown.confidences[index] ? "" : ", filled";
+  at("probe").value = Number.isNaN(disparity) ? "none" : `${disparity.toFixed(2)} px${kind}`;
+  at("probe").hidden = false;
+}
+
+// All together
+
+function listen() {
+  for (const side of SIDES) {
+    const input = at(side).querySelector("input");
+    input.multiple = true;
+    input.onchange = () => {
+      if (input.files.length) take(input.files, side);
+      input.value = "";
+    };
+  }
+  let inside = 0;
+  const over = (change) => {
+    inside = Math.max(0, inside + change);
+    document.body.classList.toggle("over", inside > 0);
+  };
+  addEventListener("dragenter", () => over(1));
+  addEventListener("dragleave", () => over(-1));
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    over(-inside);
+    const { files } = event.dataTransfer;
+    if (files.length) take(files, event.target.closest?.(".view")?.id);
+    else fail(new Error("what was dropped is not a file: drop pictures from a folder"));
+  });
+  at("example").onclick = loadExample;
+  at("exchange").onclick = () => {
+    const { left, right } = pair;
+    if (!left || !right) return;
+    put("left", right);
+    put("right", left);
+    camera = undefined;
+    match();
+  };
+  at("preset").onchange = () => pair.left && pair.right && match();
+  at("measured").onchange = () => shown && cloud.change(chosen());
+  at("painted").onchange = () => cloud.paint(at("painted").checked);
+  at("home").onclick = () => cloud.home();
+  at("disparity").onpointermove = probe;
+  at("disparity").onpointerleave = () => (at("probe").hidden = true);
+}
+
+function begin() {
+  if (!navigator.gpu) {
+    const text = isSecureContext
+      ? "Chrome and Edge have it since version 113, Safari since 26, Firefox since 141 on Windows and 145 on macOS. On Linux it may have to be turned on: chrome://flags/#enable-unsafe-webgpu."
+      : "Browsers offer WebGPU only to pages that come by https or from localhost, and this one does not.";
+    say("This browser has no WebGPU", text, { bad: true });
+    document.querySelectorAll("button, input").forEach((control) => (control.disabled = true));
+    return;
+  }
+  try {
+    cloud = new Cloud(at("cloud"));
+    window.cloud = cloud;
+    listen();
+    say("Two photographs, one depth map", "Drop a rectified stereo pair anywhere on this page: its files in the order of their names are the left and the right view.", {
+      action: { label: "Show me the example", run: loadExample },
+    });
+  } catch (error) {
+    fail(error);
+  }
+}
+
+begin();

@@ -1,0 +1,8 @@
+//! hsad in the browser: in WebAssembly the bindings that `page/` calls, natively what builds and serves that page.
+
+#[cfg(target_arch = "wasm32")]
+mod bindings;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod bundle;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod serve;
