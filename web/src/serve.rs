@@ -86,11 +86,12 @@ mod tests {
 
     #[test]
     fn a_request_is_answered() {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("main.js"), "let a = 1;").unwrap();
+        let folder = std::env::temp_dir().join(format!("hsad-web-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("main.js"), "let a = 1;").unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
-        let served = folder.path().to_path_buf();
+        let served = folder.clone();
         thread::spawn(move || serve(&listener, &served));
         let ask = |request: &str| {
             let mut stream = TcpStream::connect(address).unwrap();
@@ -103,5 +104,6 @@ mod tests {
         for missing in ["GET /other.js", "POST /main.js", "GET", ""] {
             assert!(ask(missing).starts_with("HTTP/1.1 404"), "{missing}");
         }
+        fs::remove_dir_all(folder).unwrap();
     }
 }
