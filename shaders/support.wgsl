@@ -23,12 +23,13 @@ fn row_at(x: i32, y: i32) -> Row {
     let width = i32(params.width);
     let height = i32(params.height);
     let start = clamp(y, 0, height - 1) * width;
-    let is_row = y >= 0 && y < height;
+    let is_row = (y >= 0) & (y < height);
     var row: Row;
     for (var i = 0; i < SPAN; i++) { // unroll
         let column = x + i - RADIUS;
-        let disparity = matches[start + clamp(column, 0, width - 1)];
-        row[i] = select(FAR, disparity, is_row && column >= 0 && column < width && disparity != NONE);
+        let nearest = clamp(column, 0, width - 1);
+        let disparity = matches[start + nearest];
+        row[i] = select(FAR, disparity, is_row & (column == nearest) & (disparity != NONE));
     }
     return row;
 }
@@ -73,7 +74,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < width {
                 let disparity = window[RADIUS][RADIUS + t];
-                let stays = disparity != FAR && count[t] >= LEAST;
+                let stays = (disparity != FAR) & (count[t] >= LEAST);
                 supported[y * width + x + t] = select(NONE, disparity, stays);
                 let margin = (5u * ((confidences >> (8u * t)) & 255u)) >> 8u;
                 confident |= select(0u, 5u * count[t] - 4u + margin, stays) << (8u * t);

@@ -50,7 +50,7 @@ fn row_at(x: i32, y: i32) -> Row {
         let column = x + i - RADIUS;
         let nearest = clamp(column, 0, width - 1);
         let disparity = disparities[nearest_row * width + nearest];
-        row.disparities[i] = select(NONE, disparity, y == nearest_row && column == nearest);
+        row.disparities[i] = select(NONE, disparity, (y == nearest_row) & (column == nearest));
     }
     let luma_stride = (width + 3) / 4;
     for (var i = 0; i < 3; i++) { // unroll
