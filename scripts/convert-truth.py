@@ -4,7 +4,8 @@
     convert-truth.py TRUTH SCENE_FOLDER KEY=VALUE...
 
 TRUTH is an .npz that holds one array of float32, or an 8-bit grey .png whose values are disparities and 0 is unknown.
-KEY=VALUE goes into meta.json (values are JSON, or text where they are not). Needs nothing but Python's own library.
+KEY=VALUE goes into meta.json (values are JSON, or text where they are not). scale_factor=N says that the values are N
+times the disparities, as those of Middlebury's pictures of a third (3) or half (2) of the size are. Needs nothing but Python's own library.
 """
 
 import array
@@ -103,8 +104,6 @@ def visible(row):
 def main():
     truth, folder = (pathlib.Path(argument) for argument in sys.argv[1:3])
     rows = read_npz(truth) if truth.suffix == ".npz" else read_grey_png(truth)
-    known = [v for row in rows for v in row if v != math.inf]
-    mask = [visible(row) for row in rows]
     meta = {"scene": folder.name}
     for pair in sys.argv[3:]:
         key, value = pair.split("=", 1)
@@ -112,6 +111,12 @@ def main():
             meta[key] = json.loads(value)
         except json.JSONDecodeError:
             meta[key] = value
+    factor = meta.get("scale_factor", 1)
+    if not isinstance(factor, (int, float)) or factor <= 0:
+        sys.exit(f"convert-truth: scale_factor is {factor}, but it must be a number above 0")
+    rows = [[value / factor for value in row] for row in rows]
+    known = [v for row in rows for v in row if v != math.inf]
+    mask = [visible(row) for row in rows]
     meta |= {
         "nonocc": "computed from the left truth alone",
         "width": len(rows[0]),

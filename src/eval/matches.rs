@@ -1,5 +1,7 @@
 //! How good matches of points are.
 
+use std::collections::BTreeSet;
+
 use glam::DVec2;
 
 use super::{
@@ -111,10 +113,10 @@ impl Judged {
 pub struct OfPoints {
     /// Which points correspond.
     pub repeatability: Repeatability,
-    /// What could have been found: the correspondences (see [`Repeatability`]), and any right match that is none of them.
+    /// What could have been found: the correspondences (see [`Repeatability`]), and any other point with a right match.
     /// A window can find to a pixel and a half what two detections are further off.
     pub findable: usize,
-    /// Right matches by `findable`, 0 to 1; NaN where there is nothing to be found.
+    /// Points with a right match by `findable`, 0 to 1, each counted once; NaN where there is nothing to be found.
     pub recall: f64,
     /// The harmonic mean of precision and recall, 0 to 1.
     pub f_measure: f64,
@@ -131,8 +133,10 @@ impl OfPoints {
     pub fn new(matches: &[PointMatch], judged: &Judged, [first, second]: [&[Point]; 2], truth: &Truth) -> Self {
         let repeatability = Repeatability::new(first, second, truth);
         let mut matched = vec![false; first.len()];
+        // Points with a right match, and places of right matches that name no points: once each.
         let mut found = vec![false; first.len()];
-        let (mut extra, mut overlapping) = (0, 0);
+        let mut elsewhere = BTreeSet::new();
+        let mut overlapping = 0;
         for (&index, &right) in judged.order.iter().zip(&judged.right) {
             let points = matches[index].points;
             if let Some([i, j]) = points {
@@ -144,16 +148,18 @@ impl OfPoints {
                 );
                 matched[i] = true;
             }
-            if right {
-                let known = points.map(|[i, _]| i).filter(|&i| repeatability.partner[i].is_some() && !found[i]);
-                match known {
-                    Some(i) => found[i] = true,
-                    None => extra += 1,
+            match points {
+                _ if !right => {}
+                Some([i, _]) => found[i] = true,
+                None => {
+                    elsewhere.insert(matches[index].first.to_array().map(f64::to_bits));
                 }
             }
         }
-        let findable = repeatability.correspondences() + extra;
-        let recall = judged.count_right() as f64 / findable as f64;
+        let others = (0..first.len()).filter(|&i| found[i] && repeatability.partner[i].is_none()).count();
+        let findable = repeatability.correspondences() + others + elsewhere.len();
+        let right = found.iter().filter(|&&found| found).count() + elsewhere.len();
+        let recall = right as f64 / findable as f64;
         let answered = (0..first.len()).filter(|&i| matched[i] && truth.shows(first[i].at)).count();
         Self {
             findable,
@@ -262,8 +268,17 @@ mod tests {
     fn a_point_is_found_once() {
         let twice = [found(0, 0.0, 0.9), found(0, 0.5, 0.8)];
         let judged = Judged::new(&twice, &truth(), 1.5).unwrap();
-        let of_points = OfPoints::new(&twice, &judged, [&points(40.0)[..1], &points(30.0)], &truth());
-        assert_eq!((of_points.findable, of_points.recall, of_points.matching_score), (2, 1.0, 1.0));
+        let of_points = |matches: &[PointMatch], count: usize| {
+            OfPoints::new(matches, &judged, [&points(40.0)[..count], &points(30.0)], &truth())
+        };
+        let one = of_points(&twice, 1);
+        assert_eq!((one.findable, one.recall, one.matching_score), (1, 1.0, 1.0));
+        let two = of_points(&twice, 2);
+        assert_eq!((two.findable, two.recall, two.matching_score), (2, 0.5, 0.5));
+        // Neither do matches of no point count again.
+        let nameless = twice.map(|found| PointMatch { points: None, ..found });
+        let two = of_points(&nameless, 2);
+        assert_eq!((two.findable, two.recall), (3, 1.0 / 3.0));
     }
 
     #[test]

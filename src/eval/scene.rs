@@ -127,10 +127,11 @@ impl SceneFiles {
                 non_occluded: mask.is_file().then_some(Mask::Picture(mask)),
             })
         };
-        Some(Self {
+        let (left, right) = (view("left"), view("right"));
+        (left.is_some() || right.is_some()).then(|| Self {
             name: name(folder),
-            left: view("left")?,
-            right: view("right").unwrap_or_else(|| folder.join("right.png")),
+            left: left.unwrap_or_else(|| folder.join("left.png")),
+            right: right.unwrap_or_else(|| folder.join("right.png")),
             truth: [truth("disp_left.pfm", "nonocc.png"), truth("disp_right.pfm", "nonocc_right.png")],
         })
     }
@@ -147,7 +148,7 @@ impl SceneFiles {
                 non_occluded: mask.map(Mask::Picture),
             })
         };
-        left.is_file().then(|| Self {
+        (left.is_file() || right.is_file()).then(|| Self {
             name: name(folder),
             left,
             right,

@@ -24,7 +24,7 @@ use serde_json::json;
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        complain,
+        check_writable, complain,
         kept::{self, Place},
         scenes,
     },
@@ -159,6 +159,9 @@ impl Features {
             return complain(&failures);
         }
         let root = self.output.as_deref().map(Output::open).transpose()?;
+        for file in [&self.csv, &self.json].into_iter().flatten() {
+            check_writable(file)?;
+        }
         let finder = match self.matches.take() {
             None => Finder::Hsad(self.run.open()?, config),
             Some(matches) if pairs.len() > 1 || self.folders.len() > 1 || changes.len() > 1 => {

@@ -8,19 +8,16 @@ mod table;
 use std::{
     fmt::{self, Display, Formatter},
     io::Write,
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 
 use clap::Args;
-use hsad::{
-    Error,
-    io::atomic::{temporary_in, write_whole},
-};
+use hsad::{Error, io::atomic::write_whole};
 use serde_json::{Value, json};
 
 use self::{given::Given, record::Record, run::Run};
 use crate::cli::{
-    eval::{complain, kept, scenes},
+    eval::{check_writable, complain, kept, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, write_json},
     report, terminal,
@@ -171,18 +168,4 @@ impl Results {
             "failed": failed.collect::<Vec<_>>(),
         })
     }
-}
-
-/// Finds out, before any work, whether a file can be written.
-fn check_writable(path: &Path) -> hsad::Result<()> {
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
-    let tried = if path.is_dir() {
-        Err(std::io::ErrorKind::IsADirectory.into())
-    } else if path.exists() {
-        Ok(())
-    } else {
-        temporary_in(folder).map(drop)
-    };
-    tried.map_err(|source| Error::Io { path: path.into(), source })
 }

@@ -64,7 +64,12 @@ fn table(title: &str, region: Region, figures: &[&Figure], records: &[Record], m
 }
 
 fn cell(figure: &Figure, value: f64) -> String {
-    if value.is_nan() { "-".into() } else { format!("{:.2}", figure.factor * value) }
+    match figure.factor * value {
+        value if value.is_nan() => "-".into(),
+        // What fits in its column.
+        value if value < 9999.995 => format!("{value:.2}"),
+        value => format!("{value:.1e}"),
+    }
 }
 
 #[cfg(test)]

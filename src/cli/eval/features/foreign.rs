@@ -40,16 +40,23 @@ pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
     points.collect()
 }
 
-/// Tells every match which points it joins: in each view the nearest one.
+/// Tells every match which points it joins: in each view the nearest one, and of several at one place, such as those of
+/// one point with several orientations, the first that no match before joins.
 pub fn join(matches: &mut [PointMatch], points: [&[Point]; 2]) {
-    let nearest = |points: &[Point], place: DVec2| {
-        let distances = points.iter().map(|point| point.at.distance_squared(place));
-        let (distance, index) = distances.zip(0..).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (distance <= SAME * SAME).then_some(index)
+    let mut joined = points.map(|points| vec![0_usize; points.len()]);
+    let nearest = |points: &[Point], joined: &[usize], place: DVec2| {
+        let distance = |i: usize| points[i].at.distance_squared(place);
+        let order = |a: usize, b: usize| distance(a).total_cmp(&distance(b)).then(joined[a].cmp(&joined[b]));
+        (0..points.len()).min_by(|&a, &b| order(a, b)).filter(|&i| distance(i) <= SAME * SAME)
     };
     for found in matches {
-        found.points = match (nearest(points[0], found.first), nearest(points[1], found.second)) {
-            (Some(first), Some(second)) => Some([first, second]),
+        let [first, second] = &mut joined;
+        found.points = match (nearest(points[0], first, found.first), nearest(points[1], second, found.second)) {
+            (Some(i), Some(j)) => {
+                first[i] += 1;
+                second[j] += 1;
+                Some([i, j])
+            }
             _ => None,
         };
     }
@@ -80,5 +87,10 @@ mod tests {
         let mut matches = [found(10.9, 25.3), found(10.0, 22.0), found(17.0, 20.0)];
         join(&mut matches, [&points(10.0), &points(20.0)]);
         assert_eq!(matches.map(|found| found.points), [Some([1, 2]), None, None]);
+        // Two points at one place take turns.
+        let twice = [10.0, 10.0].map(|x| Point { at: DVec2::new(x, 7.0), scale: 1.0 });
+        let mut matches = [found(10.0, 20.0); 3];
+        join(&mut matches, [&twice, &points(20.0)]);
+        assert_eq!(matches.map(|found| found.points), [Some([0, 0]), Some([1, 0]), Some([0, 0])]);
     }
 }
