@@ -228,6 +228,21 @@ fn what_fails_is_told_and_loses_nothing_else() {
     assert_eq!(json(&report)["failed"].as_array().unwrap().len(), 5);
 }
 
+/// Also one without its left view, among others.
+#[test]
+fn half_a_scene_is_named() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    scene(&path("all"), "good");
+    let half = scene(&path("all"), "half");
+    fs::remove_file(half.join("left.png")).unwrap();
+    let output = eval(&[&path("all")]).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told.contains("half/left.png"), "{told}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("\n  good "));
+}
+
 #[test]
 fn bad_input_is_one_line_and_a_code() {
     let temporary = folder();

@@ -232,6 +232,17 @@ fn bad_options_are_named() {
     hsad().arg("eval").assert().code(2);
 }
 
+/// Before any work is done, whose result would be lost.
+#[test]
+fn a_file_that_cannot_be_written_is_named_first() {
+    for option in ["--csv", "--json"] {
+        let mut command = evaluate(&[&scene("weak")]);
+        let output = command.args([option, "/nowhere/figures"]).output().unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0));
+        assert!(String::from_utf8(output.stderr).unwrap().contains("/nowhere/figures"));
+    }
+}
+
 #[test]
 fn bad_tables_are_named_with_their_line() {
     let temporary = folder();
