@@ -9,6 +9,9 @@ use super::OURS;
 /// Stands for a scene's name in FILE.
 const SCENE: &str = "{scene}";
 
+/// What stands in a scene's folder, beside the folders of other programs.
+const RESULTS: [&str; 4] = ["disparity.pfm", "error.png", "figure.png", "result.json"];
+
 /// Another program's maps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
@@ -29,8 +32,8 @@ impl Given {
         if name.is_empty() || !is_usable {
             return Err(format!("'{name}' is no name: it must not be empty, begin with '.' or have a '/' in it"));
         }
-        if name == OURS {
-            return Err(format!("'{OURS}' is this program: choose another name"));
+        if name == OURS || RESULTS.contains(&name) {
+            return Err(format!("'{name}' is what this program or one of its results is called: choose another name"));
         }
         if file.is_empty() {
             return Err("there is no file after the '='".into());
@@ -77,7 +80,7 @@ mod tests {
     fn names_and_files() {
         let given = Given::parse("sgbm=maps/{scene}/a=b.png").unwrap();
         assert_eq!((&*given.name, given.path("Art")), ("sgbm", PathBuf::from("maps/Art/a=b.png")));
-        for text in ["64", "=a", "a=", "a/b=c", "..=c", "hsad=c", "a\nb=c"] {
+        for text in ["64", "=a", "a=", "a/b=c", "..=c", "hsad=c", "result.json=c", "a\nb=c"] {
             assert!(Given::parse(text).is_err(), "{text}");
         }
         let alone = Given::parse("sgbm=map.pfm").unwrap();
