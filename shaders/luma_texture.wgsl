@@ -1,6 +1,4 @@
 // A texture's colours to luma, packed four pixels a word: (77 R + 150 G + 29 B + 128) >> 8 of bytes 0 to 255.
-//
-// One thread makes one word, so that no two threads write the same one.
 
 struct Params {
     width: u32,
@@ -25,9 +23,6 @@ fn encoded(levels: vec3f) -> vec3f {
 }
 
 fn luma_at(x: u32, y: u32) -> u32 {
-    if x >= params.width {
-        return 0u;
-    }
     var levels = clamp(textureLoad(picture, vec2u(x, y), 0).rgb, vec3f(0.0), vec3f(1.0));
     if params.linear != 0u {
         levels = encoded(levels);
@@ -36,18 +31,5 @@ fn luma_at(x: u32, y: u32) -> u32 {
     if params.grey != 0u {
         return bytes.r;
     }
-    return (77u * bytes.r + 150u * bytes.g + 29u * bytes.b + 128u) >> 8u;
-}
-
-@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let words = (params.width + 3u) / 4u;
-    if id.x >= words || id.y >= params.height {
-        return;
-    }
-    let x = 4u * id.x;
-    luma[id.y * words + id.x] = luma_at(x, id.y)
-        | (luma_at(x + 1u, id.y) << 8u)
-        | (luma_at(x + 2u, id.y) << 16u)
-        | (luma_at(x + 3u, id.y) << 24u);
+    return luma_of(bytes);
 }

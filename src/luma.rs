@@ -25,7 +25,7 @@ shader_struct! {
 pub fn stage() -> Stage {
     Stage {
         name: "luma",
-        source: include_str!("../shaders/luma.wgsl"),
+        source: concat!(include_str!("../shaders/shared/luma_words.wgsl"), include_str!("../shaders/luma.wgsl")),
         bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }

@@ -10,8 +10,8 @@ use crate::{
     disparity::{DisparityRange, SCALE},
     error::Result,
     gpu::{
-        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
-        uniform_buffer,
+        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, is_lavapipe,
+        shader_struct, uniform_buffer,
     },
 };
 
@@ -43,7 +43,7 @@ impl Tile {
 
     /// The tile for `device`.
     pub fn of(device: &wgpu::Device, wanted: Wanted) -> Self {
-        match (device.adapter_info().driver == "llvmpipe", wanted) {
+        match (is_lavapipe(device), wanted) {
             (true, Wanted::Matches) => Self::SOFTWARE,
             (true, Wanted::Winners) => Self::SOFTWARE_WINNERS,
             (false, _) => Self::HARDWARE,

@@ -1,12 +1,14 @@
 //! Threads that walk down: each has several rows of a few columns, and of the window of its next pixels it has all but
 //! one row.
 
-/// How many rows a thread has on lavapipe, where loads are the bottleneck.
+use crate::gpu::is_lavapipe;
+
+/// How many rows a thread has on lavapipe.
 pub const ROWS_SOFTWARE: u32 = 16;
 /// And elsewhere: GPUs would rather run many threads.
 pub const ROWS_HARDWARE: u32 = 1;
 
 /// How many rows a thread has on `device`.
 pub(super) fn rows_a_thread(device: &wgpu::Device) -> u32 {
-    if device.adapter_info().driver == "llvmpipe" { ROWS_SOFTWARE } else { ROWS_HARDWARE }
+    if is_lavapipe(device) { ROWS_SOFTWARE } else { ROWS_HARDWARE }
 }

@@ -137,3 +137,9 @@ fn find(infos: &[wgpu::AdapterInfo], wanted: &str) -> Option<usize> {
     }
     infos.iter().position(|info| info.name.to_lowercase().contains(&wanted))
 }
+
+/// Whether this is lavapipe, where loads are the bottleneck, registers spill into the first cache, and few threads that
+/// keep much are faster than many. Other drivers that compute on the CPU take minutes to compile such kernels.
+pub(crate) fn is_lavapipe(device: &wgpu::Device) -> bool {
+    device.adapter_info().driver == "llvmpipe"
+}

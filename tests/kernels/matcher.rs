@@ -280,3 +280,21 @@ fn no_preset_trusts_pairs_that_show_nothing() {
         }
     }
 }
+
+#[test]
+fn a_profile_has_a_time_for_each_kernel_and_the_same_map() {
+    let (left, right) = (picture(60, 50, 31), picture(60, 50, 32));
+    let config = coarse_to_fine(View::Left);
+    let matcher = Matcher::new(&gpu().device, (60, 50), &config).unwrap();
+    write(&matcher, &left, &right);
+    if !gpu().device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        assert!(matches!(matcher.profile(gpu()), Err(Error::Unsupported(_))));
+        return;
+    }
+    let (dense, times) = matcher.profile(gpu()).unwrap();
+    assert_eq!(dense, matcher.run(gpu()).unwrap());
+    let names: Vec<_> = times.iter().map(|(name, _)| *name).collect();
+    let first = ["halve", "halve", "pad", "pad", "block_match", "cell_ranges"];
+    assert_eq!((&names[..6], names.last()), (&first[..], Some(&"block_match")));
+    assert!(times.iter().all(|(_, time)| !time.is_zero()), "{times:?}");
+}
