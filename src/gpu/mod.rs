@@ -13,8 +13,8 @@ mod wait;
 mod words;
 
 pub use context::Context;
-#[cfg(not(target_arch = "wasm32"))]
 pub(crate) use device::is_lavapipe;
+#[cfg(not(target_arch = "wasm32"))]
 pub use device::list_adapters;
 pub use device::{DeviceChoice, Gpu, list_adapters_async};
 pub(crate) use kernel::{Bindable, Kernel, buffer_of, guarded, storage_buffer, store, uniform_buffer};
