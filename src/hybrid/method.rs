@@ -47,6 +47,14 @@ pub fn described(picture: &Picture, brightness: Brightness) -> Plane<u32> {
     })
 }
 
+/// The luma of what [`described`] makes.
+fn luma_of(view: &Plane<u32>) -> Plane<u8> {
+    view.map(|word| {
+        let [red, green, blue, _] = word.to_le_bytes();
+        luma([red, green, blue])
+    })
+}
+
 fn mirrored<T: Copy>(plane: &Plane<T>) -> Plane<T> {
     let last = plane.width() - 1;
     Plane::from_fn(plane.width(), plane.height(), |x, y| plane.get(last - x, y))
@@ -91,7 +99,8 @@ pub(crate) async fn solve(
         winners.extend_from_slice(&found[first..][..(decided.rows * width) as usize]);
     }
     let winners = Plane::new(width, height, winners)?;
-    let dense = conclude(&winners, &segments, range, &parameters.conclusion);
+    let views = [&problem.left, &problem.right].map(luma_of);
+    let dense = conclude(&winners, &segments, range, &parameters.conclusion, [&views[0], &views[1]]);
     Ok(match config.reference {
         View::Left => dense,
         View::Right => Dense { disparity: mirrored(&dense.disparity), confidence: mirrored(&dense.confidence) },

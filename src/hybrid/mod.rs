@@ -29,10 +29,12 @@
 //! - Pixels that the other view does not confirm take the smaller of the nearest confirmed disparities of their
 //!   row, or the segment's where that is far from it.
 //! - The source ranks nothing. A disparity's confidence is in equal parts the share of its segment's pixels that agree
-//!   with the segment's plane, and the margin of its belief: how alike the views look there has no say of its own.
+//!   with the segment's plane, the margin of its belief, and how alike the views look around it: their normalised
+//!   cross-correlation in a window of 9x9. Without that part the surest answers of a whole segment can be wrong.
 //! - Pictures whose messages do not fit in 128 MiB are solved in strips of rows that overlap by [`OVERLAP`] rows.
 //!   Strips show in the result, but depend on nothing but the size and the range.
 
+mod alikeness;
 mod belief;
 mod belief_cost;
 mod belief_reduce;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     Segments, Winner,
+    alikeness::alikeness,
     surface::{Sample, Surface},
 };
 use crate::{
@@ -33,15 +34,16 @@ struct Segment {
     agreement: u8,
 }
 
-/// The map of the left view, in which the winners' disparities were searched in `range`.
+/// The map of the left one of two `views`, in which the winners' disparities were searched in `range`.
 ///
-/// A confidence is 0 where the disparity is not the pixel's own. Else it is 1 and the agreement in its segment, 0 to
-/// 127, and how clearly the pixel's belief is the best, 0 to 127.
+/// A confidence is 0 where the disparity is not the pixel's own, or another one is believed in as much. Else it is
+/// [`confidence`].
 pub(super) fn conclude(
     winners: &Plane<Winner>,
     segments: &Segments,
     range: DisparityRange,
     conclusion: &Conclusion,
+    views: [&Plane<u8>; 2],
 ) -> Dense {
     let (width, height) = winners.size();
     let own = winners.map(|winner| range.min + winner.index() as i32);
@@ -77,14 +79,23 @@ pub(super) fn conclude(
                 }
                 None => {
                     dense.disparity.set(x, y, alone * SCALE);
-                    if row[x as usize].is_some() {
-                        dense.confidence.set(x, y, 1 + segment.agreement + confirmed.confidence.get(x, y));
+                    if row[x as usize].is_some() && winners.get(x, y).margin() > 0 {
+                        let (sure, alike) = (confirmed.confidence.get(x, y), alikeness(views, (x, y), alone));
+                        dense.confidence.set(x, y, confidence(segment.agreement, sure, alike));
                     }
                 }
             }
         }
     }
     dense
+}
+
+/// 1 to 255, from three that are each 0 to 127: the agreement in a pixel's segment, how clearly its belief is the best,
+/// and how alike both views look there. None of them is right alone: whole segments can be wrong, beliefs cross them,
+/// and what repeats looks alike.
+fn confidence(agreement: u8, sureness: u8, alikeness: u8) -> u8 {
+    let sum = u32::from(agreement) + u32::from(sureness) + u32::from(alikeness);
+    1 + (2 * sum / 3) as u8
 }
 
 /// How clearly a belief is the best, 0 to 127, where all others but its neighbours' are worse by so much.
@@ -152,18 +163,36 @@ mod tests {
         let winners = Plane::new(7, 1, row).unwrap();
         let segments = Segments::new(&Plane::filled(7, 1, 0), Segmentation { join: 0, least: 0 });
         let range = DisparityRange::new(0, 8).unwrap();
-        let conclude = |tolerance| {
-            conclude(&winners, &segments, range, &Conclusion { confirmation: 0, least_confirmed: 2, tolerance })
+        // Of all windows only those with the partner at no distance are alike.
+        let view = Plane::from_fn(7, 1, |x, _| (9 * x * x) as u8);
+        let flat = Plane::filled(7, 1, 0);
+        let conclude = |tolerance, other| {
+            let conclusion = Conclusion { confirmation: 0, least_confirmed: 2, tolerance };
+            conclude(&winners, &segments, range, &conclusion, [&view, other])
         };
         // Partners: 0, 1, 1, 3, 0, 5, 3; a tie goes to the smaller disparity. Confirmed are four zeros.
-        let dense = conclude(0);
-        assert_eq!(dense.disparity.data(), [0; 7]);
-        // Of seven pixels four agree; 50 of 50 + 64.
-        let sure = 1 + (127 * 4 / 7_u32) as u8 + (127 * 50 / 114_u32) as u8;
-        assert_eq!(dense.confidence.data(), [sure, sure, 0, sure, 0, sure, 0]);
+        for (other, alike) in [(&flat, 0), (&view, 127)] {
+            let dense = conclude(0, other);
+            assert_eq!(dense.disparity.data(), [0; 7]);
+            // Of seven pixels four agree; 50 of 50 + 64.
+            let sure = 1 + (2 * (127 * 4 / 7 + 127 * 50 / 114 + alike) / 3) as u8;
+            assert_eq!(dense.confidence.data(), [sure, sure, 0, sure, 0, sure, 0]);
+        }
         let loose = Conclusion { confirmation: 1, least_confirmed: 2, tolerance: 1 };
-        let dense = super::conclude(&winners, &segments, range, &loose);
+        let dense = super::conclude(&winners, &segments, range, &loose, [&view, &flat]);
         assert_eq!(dense.disparity.data(), [0, 0, 256, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn what_is_as_good_elsewhere_is_not_measured() {
+        // Three confirmed pixels; another disparity is as good for the second.
+        let winners = [Some(7), Some(5), None].map(|rival| Winner::new(0, 5, rival)).to_vec();
+        let segments = Segments::new(&Plane::filled(3, 1, 0), Segmentation { join: 0, least: 0 });
+        let conclusion = Conclusion { confirmation: 0, least_confirmed: 2, tolerance: 0 };
+        let (winners, flat) = (Plane::new(3, 1, winners).unwrap(), Plane::filled(3, 1, 0));
+        let dense = conclude(&winners, &segments, DisparityRange::new(0, 8).unwrap(), &conclusion, [&flat, &flat]);
+        assert_eq!(dense.disparity.data(), [0; 3]);
+        assert_eq!(dense.confidence.map(|&confidence| confidence > 0).data(), [true, false, true]);
     }
 
     #[test]
@@ -172,7 +201,8 @@ mod tests {
         let winners = Plane::filled(2, 1, Winner::new(3, 0, None));
         let segments = Segments::new(&Plane::filled(2, 1, 0), Segmentation { join: 0, least: 0 });
         let conclusion = Conclusion { confirmation: 1, least_confirmed: 1, tolerance: 0 };
-        let dense = conclude(&winners, &segments, DisparityRange::new(-1, 8).unwrap(), &conclusion);
+        let (range, flat) = (DisparityRange::new(-1, 8).unwrap(), Plane::filled(2, 1, 0));
+        let dense = conclude(&winners, &segments, range, &conclusion, [&flat, &flat]);
         // A disparity of -1 + 3.
         assert_eq!((dense.disparity.data(), dense.confidence.data()), (&[512, 512][..], &[0, 0][..]));
     }
