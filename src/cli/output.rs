@@ -102,7 +102,7 @@ impl Output {
     /// [`Error::Io`] with `folder`.
     pub fn open(folder: &Path) -> Result<Self> {
         let failed = |what: &str, error: io::Error| {
-            let reason = format!("{what} ({error}): name another folder with -o");
+            let reason = format!("{what} ({error}): name another folder");
             Error::Io { path: folder.into(), source: io::Error::new(error.kind(), reason) }
         };
         if folder.exists() && !folder.is_dir() {
@@ -212,7 +212,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "mine").unwrap();
-        assert!(Output::open(&file).err().unwrap().to_string().contains("name another folder with -o"));
+        assert!(Output::open(&file).err().unwrap().to_string().contains("name another folder"));
         assert!(Output::open(&file.join("below")).is_err());
         assert_eq!(fs::read(&file).unwrap(), b"mine");
     }

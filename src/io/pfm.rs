@@ -2,8 +2,8 @@
 //!
 //! `Pf`, width and height, and a scale, in text; then 32-bit floats, the **bottom row first**. The
 //! sign of the scale is the byte order (negative: little endian), its magnitude is ignored as
-//! Middlebury's tools do. +inf stands for 'unknown'. P. Debevec, 'PFM Portable FloatMap Image
-//! Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
+//! Middlebury's tools do. +inf stands for 'unknown'; NaN and -inf, which some programs write for it, are read
+//! alike. P. Debevec, 'PFM Portable FloatMap Image Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
 
 use std::{
     io::{self, Write},
@@ -23,7 +23,7 @@ const MAX_WORD: usize = 32;
 /// Room for a header with comments.
 const MAX_HEADER: u64 = 1 << 16;
 
-/// Reads a single-channel PFM. Values are numbers or +inf.
+/// Reads a single-channel PFM. Values are numbers or, where the file has none, +inf.
 ///
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, otherwise as [`decode`].
@@ -42,12 +42,12 @@ pub fn read_disparities(path: &Path) -> Result<DisparityMap> {
 
 /// The values of a single-channel PFM; `path` is named in errors.
 ///
-/// Comments (`#` to the end of the line) and CRLF in the header are understood, though the format
-/// knows neither.
+/// NaN and -inf become +inf. Comments (`#` to the end of the line) and CRLF in the header are understood, though the
+/// format knows neither.
 ///
 /// # Errors
 /// [`crate::Error::Format`] where `bytes` are no such PFM: another magic word, sizes or a scale that are
-/// none, fewer or more values than the size says, a NaN or -inf.
+/// none, fewer or more values than the size says.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let mut header = Header { bytes, path };
     match &*header.word("magic word")? {
@@ -63,10 +63,9 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let values = header.values(4 * width as usize * height as usize, (width, height))?;
     let decode = if scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
     let rows = values.chunks_exact(4 * width as usize).rev();
-    let data = rows.flat_map(|row| row.as_chunks().0).map(|&value| decode(value)).collect();
-    let plane = Plane::new(width, height, data)?;
-    refuse(&plane, path, |value| value.is_nan() || value == f32::NEG_INFINITY, "unknown is +inf in a PFM")?;
-    Ok(plane)
+    let data = rows.flat_map(|row| row.as_chunks().0).map(|&value| decode(value));
+    let known = |value: f32| if value.is_finite() { value } else { f32::INFINITY };
+    Plane::new(width, height, data.map(known).collect())
 }
 
 /// Writes `plane` as a little-endian PFM.
@@ -93,19 +92,16 @@ pub fn write_disparities(out: &mut impl Write, map: &DisparityMap) -> io::Result
 
 fn fixed_point(pixels: &Plane<f32>, path: &Path) -> Result<DisparityMap> {
     let limit = DisparityRange::LIMIT;
-    let too_large = |value: f32| value.is_finite() && value.abs() > limit as f32;
-    refuse(pixels, path, too_large, &format!("a disparity lies within -{limit} and {limit} px"))?;
-    Ok(pixels.map(|&d| disparity::fixed_point(d)))
-}
-
-fn refuse(plane: &Plane<f32>, path: &Path, is_bad: impl Fn(f32) -> bool, rule: &str) -> Result<()> {
-    match plane.data().iter().position(|&value| is_bad(value)) {
-        None => Ok(()),
-        Some(index) => {
-            let (x, y) = (index % plane.width() as usize, index / plane.width() as usize);
-            Err(malformed(path, format!("the value at column {x}, row {y} is {}: {rule}", plane.data()[index])))
-        }
+    let too_large = |value: &f32| value.is_finite() && value.abs() > limit as f32;
+    if let Some(index) = pixels.data().iter().position(too_large) {
+        let (x, y) = (index % pixels.width() as usize, index / pixels.width() as usize);
+        let value = pixels.data()[index];
+        return Err(malformed(
+            path,
+            format!("the value at column {x}, row {y} is {value}: a disparity lies within -{limit} and {limit} px"),
+        ));
     }
+    Ok(pixels.map(|&d| disparity::fixed_point(d)))
 }
 
 /// What is left of a file while its header is read.
@@ -241,6 +237,14 @@ mod tests {
     }
 
     #[test]
+    fn what_is_no_number_is_unknown() {
+        for value in [b"\0\0\x80\x7f", b"\0\0\x80\xff", b"\0\0\xc0\x7f"] {
+            let map = decode(&[&b"Pf\n1 1\n-1\n"[..], value].concat(), path()).unwrap();
+            assert_eq!(map.data(), [f32::INFINITY]);
+        }
+    }
+
+    #[test]
     fn refusals_name_value_and_way_out() {
         for (bytes, expected) in [
             (&b"P5\n2 2\n255\n"[..], "does not begin with 'Pf'"),
@@ -257,8 +261,6 @@ mod tests {
             (b"Pf\n1 1\n-1", "only 0 are there"),
             (&LITTLE[..LITTLE.len() - 1], "16 bytes and only 15 are there: the file is cut off"),
             (&[LITTLE, b"\n"].concat(), "the size in the header is wrong"),
-            (b"Pf\n1 1\n-1\n\0\0\xc0\x7f", "column 0, row 0 is NaN: unknown is +inf"),
-            (b"Pf\n1 1\n-1\n\0\0\x80\xff", "is -inf"),
         ] {
             let reason = reason(bytes);
             assert!(reason.contains(expected), "'{reason}' should contain '{expected}'");

@@ -249,7 +249,6 @@ fn bad_input_is_one_line_and_a_code() {
     let path = |name: &str| temporary.path().join(name);
     let good = scene(&path(""), "good");
     fs::create_dir(path("empty")).unwrap();
-    fs::write(path("nan.pfm"), [&b"Pf\n1 1\n-1\n"[..], &f32::NAN.to_le_bytes()].concat()).unwrap();
     write_pfm(&path("small.pfm"), &Plane::filled(3, 2, 0));
     fs::write(path("text.pfm"), "this is text").unwrap();
 
@@ -258,9 +257,8 @@ fn bad_input_is_one_line_and_a_code() {
         command.args(args).arg("--given-only").current_dir(temporary.path());
         fails(command, code, expected);
     };
-    bad(&[&path("empty")], &["--disparity", "x=nan.pfm"], 1, "empty: a folder without a scene");
-    bad(&[&path("nan.pfm")], &["--disparity", "x=nan.pfm"], 1, "a file: a scene is a folder with left.png");
-    bad(&[&good], &["--disparity", "x=nan.pfm"], 1, "good, x: nan.pfm: the value at column 0, row 0 is NaN");
+    bad(&[&path("empty")], &["--disparity", "x=small.pfm"], 1, "empty: a folder without a scene");
+    bad(&[&path("small.pfm")], &["--disparity", "x=small.pfm"], 1, "a file: a scene is a folder with left.png");
     bad(&[&good], &["--disparity", "x=small.pfm"], 1, "64x48");
     bad(&[&good], &["--disparity", "x=text.pfm"], 1, "text.pfm: neither a PNG nor a PFM");
     bad(&[&good], &["--disparity", "x={scene}.pfm"], 1, "good.pfm");
@@ -268,9 +266,9 @@ fn bad_input_is_one_line_and_a_code() {
     bad(&[&good, &scene(&path("other"), "next")], &["--disparity", "x=a"], 2, "by {scene}, as in x=maps/{scene}.pfm");
     bad(&[&good, &scene(&path("other"), "good")], &["--disparity", "x=a"], 2, "the name of two scenes, 'good'");
     bad(&[&good], &["--disparity", "x=a", "--csv", "no/such/folder.csv"], 1, "there is no folder 'no/such'");
-    bad(&[&good], &["--disparity", "x=a", "-o", "nan.pfm"], 1, "the results need a folder");
+    bad(&[&good], &["--disparity", "x=a", "-o", "small.pfm"], 1, "the results need a folder");
     bad(&[&good], &["--disparity", "x=a", "--window", "8"], 2, "window is 8");
-    assert_eq!(names(temporary.path()), ["empty", "good", "nan.pfm", "other", "small.pfm", "text.pfm"]);
+    assert_eq!(names(temporary.path()), ["empty", "good", "other", "small.pfm", "text.pfm"]);
 
     for args in [
         &[][..],
@@ -319,6 +317,20 @@ fn finished_scenes_are_kept_until_something_changes() {
     fs::write(out.join("bb/result.json"), "{}").unwrap();
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
     assert!(out.join("a/error.png").is_file());
+}
+
+#[test]
+fn what_cannot_be_kept_is_told() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let scene = scene(&path(""), "a");
+    // Where the folder of the results has to be there is a file.
+    fs::create_dir(path("out")).unwrap();
+    fs::write(path("out/a"), "mine").unwrap();
+    let output = eval(&[&scene]).arg("-o").arg(path("out")).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8(output.stdout).unwrap().contains("\n  a "));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("out/a: the results need a folder"));
 }
 
 #[cfg(unix)]

@@ -214,7 +214,7 @@ fn what_fails_does_not_lose_the_rest() {
 #[test]
 fn bad_options_are_named() {
     for (args, expected) in [
-        (&["--condition", "fog"][..], "condition is fog, but there are only: gain, gamma, ramp"),
+        (&["--condition", "fog"][..], "condition is 'fog', but there are only: gain, gamma, ramp"),
         (&["--condition", "rotation=30+scale=9"], "scale is 9, but its strength must be 0.5 to 2"),
         (&["--condition", "noise=-1"], "noise is -1, but its strength must be 0 to 100"),
         (&["--condition", "blur="], "its strength must be a number"),
@@ -230,6 +230,23 @@ fn bad_options_are_named() {
     }
     hsad().args(["eval", "features"]).assert().code(2);
     hsad().arg("eval").assert().code(2);
+}
+
+#[test]
+fn what_cannot_be_kept_is_told() {
+    let temporary = folder();
+    // Where the folder of the results has to be there is a file.
+    fs::create_dir(temporary.path().join("out")).unwrap();
+    fs::write(temporary.path().join("out/weak"), "mine").unwrap();
+    let mut command = evaluate(&[&scene("weak")]);
+    let output = command.args(["--first", "50,10,50", "-o"]).arg(temporary.path().join("out")).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        told.contains("weak") && told.matches("of 10").count() == 1 && told.matches("of 50").count() == 1,
+        "{told}"
+    );
+    assert!(String::from_utf8(output.stderr).unwrap().contains("out/weak/none: "));
 }
 
 /// Before any work is done, whose result would be lost.

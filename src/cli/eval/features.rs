@@ -5,12 +5,10 @@ mod table;
 mod views;
 
 use std::{
-    fs,
     io::Write,
     path::{Path, PathBuf},
 };
 
-use anyhow::Context;
 use clap::Args;
 use hsad::{
     Error, Result,
@@ -146,6 +144,8 @@ enum Finder {
 impl Features {
     /// Measures, and tells in the end what could not be measured.
     pub fn run(mut self) -> anyhow::Result<()> {
+        self.first.sort_unstable();
+        self.first.dedup();
         let mut config = SparseConfig { adapt: !self.plain, ..SparseConfig::default() };
         config.features = self.features.over(config.features);
         config.matching.ratio = self.ratio.unwrap_or(config.matching.ratio);
@@ -192,11 +192,14 @@ impl Features {
             for (pair, place) in pairs.iter().zip(&places) {
                 done += 1;
                 progress.piece(&format!("{}, {}", pair.name, change.name), done, total);
-                match self.row(pair, change, &finder, place, &mut kept) {
-                    Ok(row) => table.rows.push(row),
-                    Err(failure) if failures.contains(&failure) => {}
-                    Err(failure) => failures.push(failure),
-                }
+                let failure = match self.row(pair, change, &finder, place, &mut kept) {
+                    Ok((row, unkept)) => {
+                        table.rows.push(row);
+                        unkept
+                    }
+                    Err(failure) => Some(failure),
+                };
+                failures.extend(failure.filter(|failure| !failures.contains(failure)));
             }
             if table.rows.len() > before && !self.run.quiet {
                 let gap = if before == 0 { "" } else { "\n" };
@@ -231,7 +234,8 @@ impl Features {
         changes: &[Change],
         failures: &mut Vec<String>,
     ) -> anyhow::Result<()> {
-        fs::create_dir_all(folder).with_context(|| format!("{}: the folder cannot be created", folder.display()))?;
+        // Of a folder that is made for nothing, nothing is left.
+        let _made = Output::open(folder)?;
         for pair in pairs {
             let views = match pair.views() {
                 Ok(views) => views,
@@ -262,7 +266,8 @@ impl Features {
         }
     }
 
-    /// The figures of a pair under a condition, or what is wrong with the pair, or with it under this condition.
+    /// The figures of a pair under a condition, and why they could not be kept; or what is wrong with the pair, or with
+    /// it under this condition.
     fn row(
         &self,
         pair: &Pair,
@@ -270,20 +275,19 @@ impl Features {
         finder: &Finder,
         place: &Result<Place>,
         kept: &mut usize,
-    ) -> std::result::Result<Row, String> {
+    ) -> std::result::Result<(Row, Option<String>), String> {
         let of_pair = |error: &Error| format!("{}: {error}", pair.name);
         let place = place.as_ref().map_err(of_pair)?.clone().below(&change.name).with(&change.name);
         if let Some(row) = place.find() {
             *kept += 1;
-            return Ok(row);
+            return Ok((row, None));
         }
         let views = pair.views().map_err(|error| of_pair(&error))?;
-        let row = self.figures(views, change, finder).and_then(|figures| {
-            let row = Row { scene: pair.name.clone(), condition: change.name.clone(), figures };
-            place.keep(&row, |_| Ok(()))?;
-            Ok(row)
-        });
-        row.map_err(|error| format!("{}, {}: {error}", pair.name, change.name))
+        let told = |error: Error| format!("{}, {}: {error}", pair.name, change.name);
+        let figures = self.figures(views, change, finder).map_err(told)?;
+        let row = Row { scene: pair.name.clone(), condition: change.name.clone(), figures };
+        let unkept = place.keep(&row, |_| Ok(())).err().map(told);
+        Ok((row, unkept))
     }
 
     fn columns(&self) -> Vec<Column> {

@@ -8,7 +8,7 @@ use std::{
 };
 
 use hsad::{Error, Result};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::cli::output::Output;
 
@@ -83,12 +83,13 @@ impl Place {
         Ok(self)
     }
 
-    /// The result of an earlier run, if its files are there and nothing that it depends on has changed.
+    /// The result of an earlier run, if neither its files nor anything that it depends on has changed.
     pub fn find<R: Record>(&self) -> Option<R> {
         let kept = self.0.as_ref().filter(|kept| !kept.fresh)?;
         let result: Value = serde_json::from_str(&fs::read_to_string(kept.folder.join(NAME)).ok()?).ok()?;
-        let is_there = |file: &Value| file.as_str().is_some_and(|name| kept.folder.join(name).is_file());
-        let holds = result["fingerprint"] == kept.text() && result["files"].as_array()?.iter().all(is_there);
+        let is_whole = |(name, hash): (&String, &Value)| kept.hash(name).is_ok_and(|found| *hash == found);
+        let holds =
+            result["fingerprint"] == text(&kept.fingerprint) && result["files"].as_object()?.iter().all(is_whole);
         if holds { R::from_json(&result) } else { None }
     }
 
@@ -100,18 +101,29 @@ impl Place {
         let Some(kept) = &self.0 else { return Ok(()) };
         let mut output = Output::open(&kept.folder)?;
         add(&mut output)?;
+        // Until the last file appears, an earlier result does not fit these, and will not be found.
+        output.finish()?;
         let mut result = result.to_json();
-        result["fingerprint"] = kept.text().into();
-        result["files"] = json!(output.names());
+        result["fingerprint"] = text(&kept.fingerprint).into();
+        let files = output.names().iter().map(|&name| Ok((name.to_string(), kept.hash(name)?.into())));
+        result["files"] = Value::Object(files.collect::<Result<_>>()?);
         output.add_json(NAME, &result)?;
         output.finish()
     }
 }
 
 impl Kept {
-    fn text(&self) -> String {
-        format!("{:016x}", self.fingerprint.finish())
+    /// What tells whether a file in the folder is still the same.
+    fn hash(&self, name: &str) -> Result<String> {
+        let path = self.folder.join(name);
+        let mut hasher = DefaultHasher::new();
+        fs::read(&path).map_err(|source| Error::Io { path, source })?.hash(&mut hasher);
+        Ok(text(&hasher))
     }
+}
+
+fn text(hasher: &DefaultHasher) -> String {
+    format!("{:016x}", hasher.finish())
 }
 
 /// The end of a sentence on where results are: how many of them an earlier run made.
@@ -125,6 +137,8 @@ pub fn told(kept: usize, all: usize) -> String {
 #[cfg(test)]
 mod tests {
     use std::io::Write;
+
+    use serde_json::json;
 
     use super::*;
 
@@ -160,7 +174,12 @@ mod tests {
         assert_eq!(place().find::<Number>(), None);
         fs::write(&input, "picture").unwrap();
         assert_eq!(place().find(), Some(Number(7)));
-        fs::remove_file(folder.path().join("a/map")).unwrap();
+        let map = folder.path().join("a/map");
+        fs::write(&map, "2").unwrap();
+        assert_eq!(place().find::<Number>(), None, "half of it is another");
+        fs::write(&map, "1").unwrap();
+        assert_eq!(place().find(), Some(Number(7)));
+        fs::remove_file(map).unwrap();
         assert_eq!(place().find::<Number>(), None, "half of it is gone");
     }
 

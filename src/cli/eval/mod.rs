@@ -5,7 +5,7 @@ mod kept;
 mod paper;
 mod scenes;
 
-use std::{fmt::Display, path::Path};
+use std::{fmt::Display, io, path::Path};
 
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
@@ -50,11 +50,14 @@ fn check_writable(path: &Path) -> hsad::Result<()> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
     let tried = if path.is_dir() {
-        Err(std::io::ErrorKind::IsADirectory.into())
+        Err(io::ErrorKind::IsADirectory.into())
     } else if path.exists() {
         Ok(())
     } else {
         temporary_in(folder).map(drop)
     };
-    tried.map_err(|source| Error::Io { path: path.into(), source })
+    tried.map_err(|error| {
+        let reason = format!("the file cannot be written ({error}): name another one");
+        Error::Io { path: path.into(), source: io::Error::new(error.kind(), reason) }
+    })
 }

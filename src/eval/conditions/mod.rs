@@ -169,7 +169,7 @@ impl FromStr for Condition {
         let bad = |name, value: &str, expected: String| Error::Parameter { name, value: value.into(), expected };
         let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) else {
             let names = Kind::ALL.map(Kind::name).join(", ");
-            return Err(bad("condition", name, format!("there are only: {names}")));
+            return Err(bad("condition", &format!("'{name}'"), format!("there are only: {names}")));
         };
         let strength = match strength {
             None => kind.usual(),
@@ -357,7 +357,7 @@ mod tests {
         assert_eq!("noise".parse::<Condition>().unwrap().to_string(), "noise=10");
         assert_eq!("scale=0.75".parse::<Condition>().unwrap(), Condition::new(Kind::Scale, 0.75).unwrap());
         for (text, expected) in [
-            ("fog", "condition is fog, but there are only: gain, gamma"),
+            ("fog", "condition is 'fog', but there are only: gain, gamma"),
             ("scale=3", "scale is 3, but its strength must be 0.5 to 2"),
             ("noise=NaN", "noise is NaN"),
             ("blur=much", "blur is much, but its strength must be a number, as in blur=1.5"),

@@ -73,7 +73,7 @@ impl<'a> Run<'a> {
                             Some(scene) => scene,
                             unread => unread.insert(self.read(files)?),
                         };
-                        self.make(&files.name, scene, method, &place)
+                        self.make(&files.name, scene, method, &place, &mut results.failures)
                     }
                 },
                 Err(error) => Err(error),
@@ -81,11 +81,7 @@ impl<'a> Run<'a> {
             match made {
                 Ok(record) => results.records.push(record),
                 Err(error) => {
-                    let what = match method {
-                        Method::Ours(_) => files.name.clone(),
-                        Method::Given(given) => format!("{}, {}", files.name, given.name),
-                    };
-                    results.failures.push(Failure { what: Some(what), error });
+                    results.failures.push(Failure { what: Some(name_of(&files.name, method)), error });
                 }
             }
         }
@@ -107,15 +103,24 @@ impl<'a> Run<'a> {
         files.read(self.config.reference)
     }
 
-    fn make(&self, name: &str, scene: &Scene, method: Method, place: &Place) -> Result<Record> {
+    /// Where a result cannot be kept, that is a failure beside it.
+    fn make(
+        &self,
+        name: &str,
+        scene: &Scene,
+        method: Method,
+        place: &Place,
+        failures: &mut Vec<Failure>,
+    ) -> Result<Record> {
         let (map, record) = match method {
             Method::Ours(backend) => self.ours(backend, name, scene)?,
             Method::Given(given) => self.given(given, name, scene)?,
         };
-        place.keep(&record, |output| {
+        let kept = place.keep(&record, |output| {
             self.progress.begin("writing");
             add_files(output, scene, &map)
-        })?;
+        });
+        failures.extend(kept.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
         Ok(record)
     }
 
@@ -147,6 +152,14 @@ impl<'a> Run<'a> {
             warnings: Vec::new(),
         };
         Ok((map, record))
+    }
+}
+
+/// What a method does with the scene called `name`, for failures.
+fn name_of(name: &str, method: Method) -> String {
+    match method {
+        Method::Ours(_) => name.into(),
+        Method::Given(given) => format!("{name}, {}", given.name),
     }
 }
 

@@ -120,6 +120,7 @@ impl Paper {
         let root = self.output.as_deref().map(Output::open).transpose()?;
         let backend = self.run.open()?;
         let run = Run::new(&self, &changes, &backend);
+        let mut told = false;
         for files in &scenes {
             match run.scene(files) {
                 Ok(found) => {
@@ -127,8 +128,9 @@ impl Paper {
                     if let Err(error) = self.write(&files.name, &groups, &found, &backend) {
                         failures.push(error.to_string());
                     }
-                    if !self.run.quiet {
+                    if !self.run.quiet && !groups.is_empty() {
                         run.progress.suspend(|| self.tell(&files.name, &groups, &found))?;
+                        told = true;
                     }
                     failures.extend(found.failures);
                 }
@@ -136,7 +138,7 @@ impl Paper {
             }
         }
         drop((run, root));
-        if !self.run.quiet && !scenes.is_empty() {
+        if told {
             terminal::print(table::LEGEND)?;
         }
         complain(&failures)
@@ -183,9 +185,6 @@ impl Paper {
     }
 
     fn tell(&self, scene: &str, groups: &[Group], found: &Found) -> io::Result<()> {
-        if groups.is_empty() {
-            return Ok(());
-        }
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
             text += &format!("\ncurves and plots are in {}", folder.join(scene).display());

@@ -99,7 +99,7 @@ impl<'a> Run<'a> {
                 self.progress.begin(method.name());
                 let place = of_scene.clone().below(&change.name).below(method.name());
                 let place = place.with(&change.name).with(&method.described());
-                match self.record(&mut views, change, method, &points, &place, &mut found.kept) {
+                match self.record(&mut views, change, method, &points, &place, &mut found) {
                     Ok(record) => {
                         if !method.needs_rows() {
                             points.clone_from(&record.points);
@@ -126,10 +126,10 @@ impl<'a> Run<'a> {
         method: Method,
         points: &[DVec2],
         place: &Place,
-        kept: &mut usize,
+        found: &mut Found,
     ) -> Result<Record> {
         if let Some(record) = place.find() {
-            *kept += 1;
+            found.kept += 1;
             return Ok(record);
         }
         let (scene, second, truth) = views.get(change, self.options.seed)?;
@@ -138,7 +138,9 @@ impl<'a> Run<'a> {
         let seconds = start.elapsed().as_secs_f64();
         let judged = (truth, &scene.truth);
         let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;
-        place.keep(&record, |_| Ok(()))?;
+        // What cannot be kept is shown all the same.
+        let told = |error| format!("{}, {}, {}: {error}", views.files.name, change.name, method.name());
+        found.failures.extend(place.keep(&record, |_| Ok(())).err().map(told));
         Ok(record)
     }
 }
