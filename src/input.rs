@@ -14,12 +14,15 @@ use crate::{
 /// Where a picture is.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<'a> {
-    /// Packed luma (see [`crate::luma`]) in a buffer with `COPY_SRC`.
+    /// Packed luma (see [`crate::luma`]) in a buffer with `COPY_SRC`. Like every buffer of a submission, it must be neither
+    /// mapped nor destroyed then.
     Luma(&'a wgpu::Buffer),
     /// A view of a texture with `TEXTURE_BINDING`, in the texture's own format: one of [`TexelFormat::ALL`], which says
-    /// how they become luma.
+    /// how they become luma. It shows a mip level that has the pair's size, its first one; wgpu does not tell which that is,
+    /// so that only a texture without such a level is refused.
     Texture(&'a wgpu::TextureView),
-    /// A view of a texture in another of the formats that it may be seen in, which the view itself does not tell.
+    /// The same in another of the formats that the texture may be seen in, with or without sRGB, which the view itself does
+    /// not tell.
     TextureAs(&'a wgpu::TextureView, wgpu::TextureFormat),
 }
 
@@ -81,7 +84,15 @@ impl Input {
                 return Self(Way::Copy { from, to, bytes }).tried(device, name).await;
             }
             Source::Texture(view) => (view, view.texture().format()),
-            Source::TextureAs(view, format) => (view, format),
+            Source::TextureAs(view, format) => {
+                let own = view.texture().format();
+                if format.remove_srgb_suffix() != own.remove_srgb_suffix() {
+                    let value = format!("a view in the format {format:?}");
+                    let expected = format!("the texture has {own:?}, and its views that with or without sRGB");
+                    return Err(Error::Parameter { name, value, expected });
+                }
+                (view, format)
+            }
         };
         let Some(texel) = TexelFormat::new(format) else {
             return Err(Error::Parameter {

@@ -6,7 +6,7 @@ use crate::{
     dense::{self, Dense, DenseConfig},
     error::{Error, Result},
     features::{self, Detector, Feature, FeatureConfig},
-    gpu::{DeviceChoice, Gpu, Readback, guarded, storage_buffer},
+    gpu::{DeviceChoice, Gpu, Readback, check_limits, guarded, storage_buffer},
     hybrid::{self, HybridConfig},
     image::{Luma, reduced},
     input::Source,
@@ -138,7 +138,8 @@ impl<'b> Pair<'b> {
     /// Brings two pictures to the backend and turns them into luma there.
     ///
     /// # Errors
-    /// [`Error::SizesDiffer`]; [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    /// [`Error::SizesDiffer`]; [`Error::Unsupported`] for a limit that the device lacks; [`Error::TooLarge`],
+    /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
         backend.wait(Self::new_async(backend, left, right))
@@ -163,6 +164,7 @@ impl<'b> Pair<'b> {
         match backend {
             Backend::Cpu => Ok(Self { backend, left: left.luma(), right: right.luma(), device: None }),
             Backend::Gpu(gpu) => {
+                check_limits(&gpu.device)?;
                 let (left_buffer, left) = luma_on(gpu, left).await?;
                 let (right_buffer, right) = luma_on(gpu, right).await?;
                 let device = Some(OnDevice { gpu, left: left_buffer, right: right_buffer });

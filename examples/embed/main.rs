@@ -4,8 +4,12 @@
 //!     cargo run --example embed -- frame.png [LEFT RIGHT]
 //!
 //! leaves the left picture and its disparities side by side. A window would present what is read back here.
+#![expect(clippy::print_stderr, reason = "it tells what is wrong")]
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use hsad::{
     config::Preset,
@@ -30,8 +34,11 @@ impl Renderer {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("renderer"),
-            // All that hsad needs, and no features. Larger pictures go with larger limits.
-            required_limits: wgpu::Limits::downlevel_defaults(),
+            // All that hsad needs, and no features. Larger pictures go with larger limits, here for the frame's width.
+            required_limits: wgpu::Limits {
+                max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
+                ..wgpu::Limits::downlevel_defaults()
+            },
             ..Default::default()
         };
         let (device, queue) = adapter.request_device(&descriptor).await?;
@@ -139,7 +146,17 @@ impl Renderer {
     }
 }
 
-fn main() -> Result<(), AnyError> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), AnyError> {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
     let (out, paths) = match &arguments[..] {
@@ -154,6 +171,10 @@ fn main() -> Result<(), AnyError> {
     // What a renderer has anyway: two pictures in textures, and a target.
     let pictures = [load::load(&paths[0])?, load::load(&paths[1])?];
     let size = pictures[0].size();
+    let widest = device.limits().max_texture_dimension_2d / 2;
+    if size.0.max(size.1) > widest {
+        return Err(format!("the pictures have {}x{} pixels, and a side can have {widest}", size.0, size.1).into());
+    }
     let [left, right] = pictures.each_ref().map(|picture| view(&renderer.upload(picture)));
     let target = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
     let frame = renderer.texture((2 * size.0, size.1), TextureFormat::Rgba8UnormSrgb, target);

@@ -4,11 +4,11 @@
 //!     cargo run --example stream -- [FRAMES]
 //!
 //! The frames are windows that wander over the shipped pair; from the middle on, the right camera is darker.
-#![expect(clippy::print_stdout, reason = "it tells what it does")]
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "it tells what it does, and what is wrong")]
 
 mod slot;
 
-use std::{path::Path, time::Instant};
+use std::{path::Path, process::ExitCode, time::Instant};
 
 use hsad::{
     config::Preset,
@@ -137,8 +137,23 @@ fn tell(Answer { index, disparities, seeding }: Answer) {
     }
 }
 
-fn main() -> Result<(), AnyError> {
-    let frames = std::env::args().nth(1).map_or(Ok(48), |frames| frames.parse())?;
+fn main() -> ExitCode {
+    match stream() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn stream() -> Result<(), AnyError> {
+    let frames = match std::env::args().nth(1) {
+        None => 48,
+        Some(frames) => {
+            frames.parse().map_err(|_| format!("'{frames}' is no number of frames: usage: stream [FRAMES]"))?
+        }
+    };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
     let scene =
         Scene { views: [load::load(&folder.join("left.png"))?, load::load(&folder.join("right.png"))?], frames };

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Context, in_rows, most_words},
+    gpu::{BUFFER_LIMITS, Context, in_rows, most_words},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -122,7 +122,9 @@ fn band_rows_within(
                 what: format!("{unit} rows of a picture {width} px wide with {} disparities", config.range.count),
                 needed,
                 limit,
-                way_out: "search fewer disparities or scale the pictures down".into(),
+                way_out: format!(
+                    "search fewer disparities, scale the pictures down, or use a device with more of {BUFFER_LIMITS}"
+                ),
             });
         }
         rows = whole_units(rows.div_ceil(2));

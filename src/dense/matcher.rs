@@ -214,6 +214,15 @@ impl Matcher {
             }
             Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view).await?),
         };
+        let mut buffers = self.luma.to_vec();
+        for (name, buffer) in [("the disparities", disparities.buffer()), ("the confidences", confidences)] {
+            let Some(buffer) = buffer else { continue };
+            if buffers.contains(buffer) {
+                let value = "a buffer that has another use here".into();
+                return Err(Error::Parameter { name, value, expected: "it needs one of its own".into() });
+            }
+            buffers.push(buffer.clone());
+        }
         let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
         try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
         Ok(outputs)
@@ -250,7 +259,8 @@ impl Matcher {
     }
 
     /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what
-    /// `queue` is given after this.
+    /// `queue`, that of the matcher's device, is given after this. That of another device, or of one that is lost, changes
+    /// nothing; wgpu tells the former to its handler of uncaptured errors.
     ///
     /// # Errors
     /// [`Error::Parameter`] for what 32 bits do not hold.

@@ -8,7 +8,7 @@ use crate::gpu::Dispatch;
 pub enum Destination<'a> {
     /// In a buffer with `COPY_DST`: an `i32` a pixel, row by row, in 1/256 px or [`crate::disparity::NONE`].
     Buffer(&'a wgpu::Buffer),
-    /// In a texture with `STORAGE_BINDING`. `R32Sint` holds what a buffer does, `R32Float` pixels or
+    /// In a texture with `STORAGE_BINDING`, in the mip level that the view shows, which has the pair's size. `R32Sint` holds what a buffer does, `R32Float` pixels or
     /// [`crate::disparity::NONE_IN_PIXELS`].
     Texture(&'a wgpu::TextureView),
 }
@@ -25,6 +25,16 @@ pub(super) enum Disparities {
     Buffer(wgpu::Buffer),
     /// For each of the plan's answers what brings it to the texture.
     Texture(Vec<Dispatch>),
+}
+
+impl Disparities {
+    /// Where they go, if not to a texture.
+    pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
+        match self {
+            Self::Buffer(buffer) => Some(buffer),
+            Self::Texture(_) => None,
+        }
+    }
 }
 
 impl Outputs {

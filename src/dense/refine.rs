@@ -12,7 +12,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{Context, in_rows, most_words},
+    gpu::{BUFFER_LIMITS, Context, in_rows, most_words},
 };
 
 /// What is done with a map after its checks.
@@ -73,7 +73,7 @@ pub(super) fn plan_refinement(
             what: format!("the refinement of rows {width} px wide"),
             needed: 4 * match_words(width, 2 * around + 1).0,
             limit,
-            way_out: "refine less or scale the pictures down".into(),
+            way_out: format!("refine less, scale the pictures down, or use a device with more of {BUFFER_LIMITS}"),
         });
     }
     let window_rows = (rows + 2 * around).min(height);

@@ -26,7 +26,7 @@ use super::{
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::Context,
+    gpu::{BUFFER_LIMITS, Context},
 };
 
 /// The largest side of a window over which costs are averaged.
@@ -488,7 +488,9 @@ fn band_rows_within(
             what: format!("one row of a picture {width} px wide with {} disparities", range.count),
             needed,
             limit,
-            way_out: "search fewer disparities or scale the pictures down".into(),
+            way_out: format!(
+                "search fewer disparities, scale the pictures down, or use a device with more of {BUFFER_LIMITS}"
+            ),
         });
     }
     Ok(u32::try_from(rows).unwrap_or(u32::MAX).min(wanted).min(height).max(1))

@@ -91,6 +91,14 @@ impl Detector {
         .await
     }
 
+    /// Bytes of device memory that this detector holds, besides the picture: mostly those for
+    /// [`FeatureConfig::max_features`] descriptors.
+    pub fn memory(&self) -> u64 {
+        let list = self.nonmax.list();
+        let buffers = [self.rows.sums(), list.found(), list.keypoints(), self.workgroups.groups(), self.descriptors()];
+        buffers.map(wgpu::Buffer::size).iter().sum::<u64>() + self.hessian.memory()
+    }
+
     /// How many keypoints were found, and what they are.
     pub fn keypoints(&self) -> &KeypointList {
         self.nonmax.list()

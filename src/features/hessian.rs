@@ -163,6 +163,11 @@ impl Hessian {
     pub fn responses(&self, octave: u32) -> &wgpu::Buffer {
         &self.octaves[octave as usize].responses
     }
+
+    /// Bytes of all responses.
+    pub(super) fn memory(&self) -> u64 {
+        self.octaves.iter().map(|octave| octave.responses.size()).sum()
+    }
 }
 
 /// Threads along one side where each takes `each` points, a lobe apart: one for every point of the

@@ -33,7 +33,7 @@ impl FromStr for DeviceChoice {
 pub struct Gpu {
     /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Its queue. With another device's nothing works, and wgpu tells that to its handler of uncaptured errors.
     pub queue: wgpu::Queue,
     /// What the adapter says of itself.
     pub info: wgpu::AdapterInfo,

@@ -1,6 +1,6 @@
 //! A kernel: WGSL text with its constants written in front, its bindings and its pipeline.
 
-use super::{context::Context, shader_struct::Shape, unroll::unrolled};
+use super::{context::Context, limits::BUFFER_LIMITS, shader_struct::Shape, unroll::unrolled};
 use crate::error::{Error, Result};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
@@ -204,7 +204,7 @@ impl Dispatch {
 pub(crate) fn storage_buffer(device: &wgpu::Device, label: &'static str, bytes: u64) -> Result<wgpu::Buffer> {
     let limits = device.limits();
     let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    buffer_within(device, label, bytes, limit, wgpu::BufferUsages::STORAGE)
+    buffer_within(device, label, bytes, (limit, BUFFER_LIMITS), wgpu::BufferUsages::STORAGE)
 }
 
 /// A buffer that no kernel sees, for what may be more than one can bind.
@@ -212,14 +212,15 @@ pub(crate) fn storage_buffer(device: &wgpu::Device, label: &'static str, bytes: 
 /// # Errors
 /// [`Error::TooLarge`].
 pub(crate) fn store(device: &wgpu::Device, label: &'static str, bytes: u64) -> Result<wgpu::Buffer> {
-    buffer_within(device, label, bytes, device.limits().max_buffer_size, wgpu::BufferUsages::empty())
+    let limit = (device.limits().max_buffer_size, "max_buffer_size");
+    buffer_within(device, label, bytes, limit, wgpu::BufferUsages::empty())
 }
 
 fn buffer_within(
     device: &wgpu::Device,
     label: &'static str,
     bytes: u64,
-    limit: u64,
+    (limit, of): (u64, &str),
     usage: wgpu::BufferUsages,
 ) -> Result<wgpu::Buffer> {
     if bytes > limit {
@@ -227,7 +228,7 @@ fn buffer_within(
             what: label.into(),
             needed: bytes,
             limit,
-            way_out: "use a smaller picture, or a device with larger buffers".into(),
+            way_out: format!("use a smaller picture, or a device with more of {of}"),
         });
     }
     Ok(device.create_buffer(&wgpu::BufferDescriptor {

@@ -39,6 +39,9 @@ pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_compute_workgroups_per_dimension, 65_535),
 ];
 
+/// The limits that the size of a storage buffer follows from.
+pub(crate) const BUFFER_LIMITS: &str = "max_storage_buffer_binding_size and max_buffer_size";
+
 /// Refuses a device that lacks any of them, before anything is created on it.
 ///
 /// # Errors

@@ -19,7 +19,7 @@ pub use device::list_adapters;
 pub use device::{DeviceChoice, Gpu, list_adapters_async};
 pub(crate) use kernel::{Bindable, Kernel, buffer_of, guarded, storage_buffer, store, uniform_buffer};
 pub use kernel::{Binding, Dispatch, Stage};
-pub(crate) use limits::check_limits;
+pub(crate) use limits::{BUFFER_LIMITS, check_limits};
 pub use limits::{Limit, REQUIRED_LIMITS};
 pub(crate) use readback::Readback;
 pub(crate) use shader_struct::shader_struct;

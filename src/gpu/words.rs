@@ -36,7 +36,7 @@ impl WordTexture {
                 what: label.into(),
                 needed: 4 * words,
                 limit: 4 * limit,
-                way_out: "use a smaller picture, or a device with larger textures".into(),
+                way_out: "use a smaller picture, or a device with more of max_texture_dimension_2d".into(),
             });
         }
         let texture = device.create_texture(&wgpu::TextureDescriptor {

@@ -2,7 +2,9 @@
 
 use hsad::{
     Error,
-    dense::{Destination, Matcher},
+    config::Preset,
+    dense::{Brightness, Destination, Matcher},
+    disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{Gpu, REQUIRED_LIMITS},
     input::{Input, Source},
@@ -46,7 +48,7 @@ fn resources_that_will_not_do() {
     input(Source::Luma(&elsewhere.buffer(BYTES, BufferUsages::COPY_SRC)), &["device"]);
     input(Source::Texture(&texture(TextureFormat::Rg8Unorm, SIZE, readable)), &["format Rg8Unorm", "R16Float"]);
     input(Source::Texture(&texture(TextureFormat::R32Float, SIZE, readable)), &["format R32Float", "Bgra8UnormSrgb"]);
-    input(Source::TextureAs(&good, TextureFormat::Depth32Float), &["format Depth32Float"]);
+    input(Source::TextureAs(&good, TextureFormat::R16Float), &["format R16Float", "the texture has Rgba8Unorm"]);
     input(Source::Texture(&texture(rgba, (30, 40), readable)), &["30x40 pixels", "the pair has 40x30"]);
     let written = TextureUsages::STORAGE_BINDING;
     input(Source::Texture(&texture(rgba, SIZE, written)), &["STORAGE_BINDING", "needs TextureUsages(TEXTURE_BINDING)"]);
@@ -68,6 +70,8 @@ fn resources_that_will_not_do() {
     output(Destination::Buffer(&good), Some(&small), &["the confidences", "1200 bytes are needed"]);
     output(Destination::Buffer(&good), Some(&usage), &["the confidences", "needs BufferUsages(COPY_DST)"]);
     output(Destination::Buffer(&good), Some(&elsewhere.buffer(BYTES, copied)), &["device"]);
+    output(Destination::Buffer(&good), Some(&good), &["the confidences", "another use here"]);
+    output(Destination::Buffer(&good), Some(matcher.luma()[1]), &["the confidences", "another use here"]);
     let map = TextureFormat::R32Float;
     let unsigned = texture(TextureFormat::R32Uint, SIZE, written);
     output(Destination::Texture(&unsigned), None, &["format R32Uint", "R32Sint", "R32Float"]);
@@ -99,6 +103,24 @@ fn luma_that_no_kernel_can_read() {
     }
     application.assert_quiet();
     elsewhere.assert_quiet();
+}
+
+/// How large a picture may be follows from limits that are named as well.
+#[test]
+fn a_buffer_that_is_too_large_names_its_limits() {
+    let mut limits = Limits::downlevel_defaults();
+    limits.max_storage_buffer_binding_size = 16 << 10;
+    let application = Application::with(Features::empty(), limits);
+    let device = application.device();
+    for (size, preset) in [((400, 30), Preset::Fast), ((400, 30), Preset::Balanced), ((200, 200), Preset::Balanced)] {
+        let config = preset.config().dense(DisparityRange::new(0, 128).unwrap(), Brightness::SAME);
+        let error = Matcher::new(device, size, &config).err().expect("an error").to_string();
+        assert!(error.contains("at most 16384: ") && error.contains("max_storage_buffer_binding_size"), "{error}");
+    }
+    let luma = application.buffer(200 * 200, BufferUsages::STORAGE);
+    let error = Detector::new(device, &luma, 200, 200, &FeatureConfig::default()).err().expect("an error").to_string();
+    assert!(error.contains("max_storage_buffer_binding_size"), "{error}");
+    application.assert_quiet();
 }
 
 /// A device with a limit below what is needed gets told which, before anything is made of it.

@@ -4,6 +4,7 @@ use hsad::{
     config::Preset,
     dense::{Brightness, Dense, DenseConfig, Destination, MapTexel, Matcher},
     disparity::DisparityRange,
+    features::{Detector, FeatureConfig},
     image::Luma,
     input::Source,
     luma::pack,
@@ -187,7 +188,7 @@ fn existing(device: &wgpu::Device) -> [isize; 12] {
     .map(|counter| counter.read())
 }
 
-/// What a matcher says of its memory is what the device has less of.
+/// What a matcher or a detector says of its memory is what the device has less of.
 #[test]
 fn memory_is_what_the_device_gives() {
     let application = Application::new();
@@ -196,12 +197,23 @@ fn memory_is_what_the_device_gives() {
         let counters = device.get_internal_counters().hal;
         (counters.buffer_memory.read() + counters.texture_memory.read()) as f64
     };
+    let check = |what: &str, before: f64, told: u64| {
+        let (taken, told) = (taken() - before, told as f64);
+        // The device rounds up.
+        assert!(told <= taken && taken < 1.02 * told, "{told} bytes told, {taken} taken: {what}");
+    };
+    let size = (640, 480);
     for config in configs() {
         let before = taken();
-        let matcher = Matcher::new(device, (640, 480), &config).unwrap();
-        let (taken, told) = (taken() - before, matcher.memory() as f64);
-        // The device rounds up.
-        assert!(told <= taken && taken < 1.02 * told, "{told} bytes told, {taken} taken: {:?}", config.aggregation);
+        let matcher = Matcher::new(device, size, &config).unwrap();
+        check(&format!("{:?}", config.aggregation), before, matcher.memory());
+    }
+    let luma = application.buffer(u64::from(size.0 * size.1), BufferUsages::STORAGE);
+    for max_features in [500, 65_536] {
+        let before = taken();
+        let config = FeatureConfig { max_features, ..FeatureConfig::default() };
+        let detector = Detector::new(device, &luma, size.0, size.1, &config).unwrap();
+        check(&format!("{max_features} features"), before, detector.memory());
     }
 }
 
