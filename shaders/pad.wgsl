@@ -15,22 +15,15 @@ struct Params {
     offset: u32,
 }
 
-// What pixels are multiplied with, and what is added to them, in 1/256.
-struct Brightness {
-    gain: i32,
-    offset: i32,
-}
-
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> brightness: Brightness;
 @group(0) @binding(2) var<storage, read> luma: array<u32>;
 @group(0) @binding(3) var<storage, read_write> padded: array<u32>;
 
-// Four pixels after the change of brightness.
-fn brightened(word: u32) -> u32 {
+// A word of four pixels after the change of brightness.
+fn brightened_word(word: u32) -> u32 {
     let pixels = vec4<i32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u));
-    let changed = (brightness.gain * pixels + brightness.offset + 128) >> vec4<u32>(8u);
-    let bytes = vec4<u32>(clamp(changed, vec4<i32>(0), vec4<i32>(255)));
+    let bytes = vec4<u32>(brightened(pixels, brightness));
     return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }
 
@@ -55,5 +48,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let first_pixel = (nearest & 255u) * 0x01010101u;
     let last_pixel = ((nearest >> (8u * u32((width - 1) & 3))) & 255u) * 0x01010101u;
     let pixels = (first_pixel & left) | (last_pixel & right & ~left) | (nearest & ~left & ~right);
-    padded[params.offset + id.y * params.stride + id.x] = brightened(pixels);
+    padded[params.offset + id.y * params.stride + id.x] = brightened_word(pixels);
 }

@@ -12,6 +12,7 @@ use super::{
     pad::Pad,
     plan::{Plan, match_words},
     refine::plan_refinement,
+    residual::Views,
 };
 use crate::{
     error::{Error, Result},
@@ -82,9 +83,9 @@ pub(super) fn plan(
         plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
     }
     if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
-        let luma = if view == View::Left { left } else { right };
+        let views = Views { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
-        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole, (limit, most_rows))?;
+        plan_refinement(device, &mut plan, size, refinement, range, views, &whole, (limit, most_rows))?;
     }
     Ok(plan)
 }

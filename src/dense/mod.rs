@@ -4,7 +4,7 @@
 //! half the size is matched before, to tell for each cell of the picture which disparities are worth searching.
 //! Semi-globally: padding -> census -> cost -> mean over a window, if wanted -> paths -> selection of one view or
 //! both; without paths it is block matching by those costs. Then, for either:
-//! left-right consistency -> support -> medians and filling. All of it is integer arithmetic and equals
+//! left-right consistency -> residuals and support -> medians and filling. All of it is integer arithmetic and equals
 //! the CPU twins bit for bit.
 
 mod band;
@@ -30,6 +30,7 @@ mod partner_ranges;
 mod path;
 mod plan;
 mod refine;
+mod residual;
 mod select;
 mod semi_global;
 mod support;
@@ -60,6 +61,7 @@ pub use pad::{Brightness, Pad, PadParams};
 pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
+pub use residual::{MAX_RESIDUAL, Residual, Views};
 pub use select::{Places, Select, Selection};
 pub use semi_global::{OtherView, Paths, SemiGlobal};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
@@ -92,7 +94,7 @@ pub fn stages() -> Vec<Stage> {
         let selection = Selection { stored: 3, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
         Select::stage(&penalties, 2, selection)
     }));
-    stages.push(Fill::stage());
+    stages.extend([Residual::stage(), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {

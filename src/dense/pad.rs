@@ -78,7 +78,10 @@ impl Pad {
     pub fn stage() -> Stage {
         Stage {
             name: "pad",
-            source: include_str!("../../shaders/pad.wgsl"),
+            source: concat!(
+                include_str!("../../shaders/shared/brightness.wgsl"),
+                include_str!("../../shaders/pad.wgsl")
+            ),
             bindings: &[
                 Binding::Uniform(Params::SHAPE),
                 Binding::Uniform(Brightness::SHAPE),

@@ -1,11 +1,13 @@
 //! Refinement: what makes a whole map of one with holes and speckles.
 //!
-//! support -> weighted medians of what is left -> filling -> a weighted median of what was filled ->
+//! residuals and support -> weighted medians of what is left -> filling -> a weighted median of what was filled ->
 //! weighted medians of all -> a plain median.
 
 use super::{
+    config::View,
     fill::Fill,
     plan::{Copy, Plan, Target, Whole, match_words},
+    residual::{Residual, Views},
     support::{SUPPORT_RADIUS, Support},
     weighted_median::{Median, WeightedMedian},
 };
@@ -47,7 +49,7 @@ impl Refinement {
     }
 }
 
-/// Refines the `whole` map of a view, whose packed `luma` is given, and hands the result out.
+/// Refines the `whole` map of a view, and hands the result out.
 ///
 /// Where the map does not fit in buffers of `limit` bytes, or has more than `most_rows` rows, that is done in
 /// windows of rows, each with so many more around it that what is handed out is the same.
@@ -58,7 +60,7 @@ pub(super) fn plan_refinement(
     (width, height): (u32, u32),
     refinement: &Refinement,
     range: DisparityRange,
-    luma: &wgpu::Buffer,
+    views: Views<'_>,
     whole: &Whole,
     (limit, most_rows): (u64, u32),
 ) -> Result<()> {
@@ -87,7 +89,11 @@ pub(super) fn plan_refinement(
         false => None,
     };
     let filtered = plan.buffer(device, "filtered disparities", pixels)?;
-    let (support, fill) = (Support::new(device, refinement.support), Fill::new(device));
+    let residuals = plan.buffer(device, "residuals", u64::from(width.div_ceil(4)) * u64::from(window_rows))?;
+    let (residual, support, fill) =
+        (Residual::new(device), Support::new(device, refinement.support), Fill::new(device));
+    let [left, right] = views.luma;
+    let luma = if views.reference == View::Left { left } else { right };
     // Most filters are alike: each kernel is compiled once, and a filter is its place here.
     let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
     let mut place = |median: Median| {
@@ -112,7 +118,8 @@ pub(super) fn plan_refinement(
             let to = Target::Buffer(given.clone());
             plan.copy(Copy { from: from.clone(), from_word, to, to_word: to_word.into(), words });
         }
-        plan.run(support.prepare(device, size, confidence_offset, &given, &supported));
+        plan.run(residual.prepare(device, size, top, views, &given, &residuals));
+        plan.run(support.prepare(device, size, confidence_offset, [&given, &residuals], &supported));
 
         // The map that a filter reads, and two others. The confidences stand behind the supported disparities and
         // stay there.

@@ -21,6 +21,7 @@ use super::{
     path::{Direction, Path, Penalties},
     plan::{Copy, Plan, Target, match_words},
     refine::plan_refinement,
+    residual::Views,
     select::{Places, Select, Selection},
 };
 use crate::{
@@ -291,8 +292,8 @@ pub(super) fn plan(
         plan.hand_out(matches, confidence_offset, width, (index as u32 * band_rows, band.rows));
     }
     if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
-        let luma = if config.reference == View::Left { views[0] } else { views[1] };
-        plan_refinement(device, &mut plan, size, refinement, range, luma, &whole, (limit, most_rows))?;
+        let views = Views { luma: views, brightness: &plan.brightness(View::Right), reference: config.reference };
+        plan_refinement(device, &mut plan, size, refinement, range, views, &whole, (limit, most_rows))?;
     }
     Ok(plan)
 }

@@ -38,7 +38,7 @@ impl Support {
         Stage {
             name: "support",
             source: include_str!("../../shaders/support.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
@@ -62,17 +62,18 @@ impl Support {
     }
 
     /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
-    /// each row in words of its own) to `supported` without what too few neighbours share.
+    /// each row in words of its own) to `supported` without what too few neighbours share. The `residuals` are those of
+    /// [`super::Residual`].
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         (width, height): (u32, u32),
         confidence_offset: u32,
-        matches: &wgpu::Buffer,
+        [matches, residuals]: [&wgpu::Buffer; 2],
         supported: &wgpu::Buffer,
     ) -> Dispatch {
         let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, matches, supported], groups)
+        self.kernel.dispatch(device, &[&params, matches, residuals, supported], groups)
     }
 }

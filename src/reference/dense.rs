@@ -2,7 +2,7 @@
 
 use super::{
     CellPlane, block_match, box_mean, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled,
-    halved, partner_ranges, path, path_winners, select, supported, weighted_median, winners,
+    halved, partner_ranges, path, path_winners, residuals, select, supported, weighted_median, winners,
 };
 use crate::{
     dense::{
@@ -10,7 +10,7 @@ use crate::{
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
-    image::Luma,
+    image::{Luma, Plane},
 };
 
 /// What [`crate::dense::compute`] computes, on the CPU.
@@ -58,8 +58,9 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
     match &config.refinement {
         Some(refinement) => {
-            let luma = unchanged[usize::from(config.reference == View::Right)];
-            Ok(refined(&dense, luma, refinement, config.range))
+            let residuals = residuals([left, right], view, &dense.disparity);
+            let luma = unchanged[usize::from(view == View::Right)];
+            Ok(refined(&dense, &residuals, luma, refinement, config.range))
         }
         None => Ok(dense),
     }
@@ -75,8 +76,8 @@ fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlan
 }
 
 /// A map after all that `refinement` asks for.
-fn refined(dense: &Dense, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
-    let Dense { disparity: mut map, confidence } = supported(dense, refinement.support);
+fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
+    let Dense { disparity: mut map, confidence } = supported(dense, residuals, refinement.support);
     for median in refinement.before() {
         map = weighted_median(luma, &map, &map, median);
     }

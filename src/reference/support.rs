@@ -3,11 +3,13 @@
 use crate::{
     dense::{Dense, SUPPORT_RADIUS, SUPPORT_TOLERANCE},
     disparity::NONE,
+    image::Plane,
 };
 
 /// The disparities that at least `least` pixels of the window around them share, themselves included. Their number becomes
-/// the better part of the confidence: 1 + 5 (number - 1), and up to 4 more for what it was.
-pub fn supported(dense: &Dense, least: u32) -> Dense {
+/// the better part of the confidence: 1 + 5 (number - 1), up to 4 more for what it was, and less by an eighth of the
+/// photometric `residuals` of the 5x5 around it; at least 1.
+pub fn supported(dense: &Dense, residuals: &Plane<u8>, least: u32) -> Dense {
     let (width, height) = dense.disparity.size();
     let radius = SUPPORT_RADIUS as i64;
     let mut out = dense.clone();
@@ -28,7 +30,11 @@ pub fn supported(dense: &Dense, least: u32) -> Dense {
             out.confidence.set(x, y, 0);
         } else {
             let margin = (5 * usize::from(dense.confidence.get(x, y))) >> 8;
-            out.confidence.set(x, y, (5 * count - 4 + margin) as u8);
+            let around = |y: u32| (-2..=2).map(move |i| (i64::from(x) + i, y));
+            let rows = y.saturating_sub(2)..=(y + 2).min(height - 1);
+            let inside = rows.flat_map(around).filter(|(column, _)| (0..i64::from(width)).contains(column));
+            let unlike: usize = inside.map(|(column, row)| usize::from(residuals.get(column as u32, row))).sum();
+            out.confidence.set(x, y, (5 * count - 4 + margin).saturating_sub(unlike / 8).max(1) as u8);
         }
     }
     out

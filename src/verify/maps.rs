@@ -1,4 +1,4 @@
-//! What becomes of a map of disparities: consistency, support, filling, medians.
+//! What becomes of a map of disparities: consistency, residuals, support, filling, medians.
 
 use super::{
     array::Array,
@@ -8,16 +8,21 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    dense::{Consistency, Dense, Fill, MapRows, MapTexel, MapTexture, Median, Others, Support, View, WeightedMedian},
+    dense::{
+        Brightness, Consistency, Dense, Fill, MAX_RESIDUAL, MapRows, MapTexel, MapTexture, Median, Others, Residual,
+        Support, View, Views, WeightedMedian,
+    },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
+    gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
-    reference::{check_consistency, filled, supported, texels_in_pixels, weighted_median},
+    reference::{brightened, check_consistency, filled, residuals, supported, texels_in_pixels, weighted_median},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("consistency", |size, dice| Box::new(ConsistencyTrial::draw(size, dice))),
+    Subject::kernel("residual", |size, dice| Box::new(ResidualTrial::draw(size, dice))),
     Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
     Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
     Subject::kernel("map_texture", |size, dice| Box::new(MapTextureTrial::draw(size, dice))),
@@ -119,18 +124,87 @@ impl Trial for ConsistencyTrial {
     }
 }
 
+/// Two views that are compared at the disparities of one.
+#[derive(Clone, Debug)]
+pub struct ResidualTrial {
+    /// Left and right; the map is that of as many of their rows.
+    pub views: [Luma; 2],
+    /// Of the right view.
+    pub brightness: Brightness,
+    /// Which view's the map is.
+    pub reference: View,
+    /// The map, of the rows from this one on.
+    pub first_row: u32,
+    /// The map.
+    pub disparities: DisparityMap,
+}
+
+impl ResidualTrial {
+    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+        let brightness = Brightness { gain: dice.pick(&[256, 100, 700]), offset: dice.pick(&[0, 9000, -9000]) };
+        let views = [dice.picture((width, height)), dice.picture((width, height))];
+        let first_row = dice.below(height);
+        let disparities = map((width, height - first_row), dice, -30 * SCALE, 60 * SCALE);
+        Self { views, brightness, reference: dice.view(), first_row, disparities }
+    }
+}
+
+impl Trial for ResidualTrial {
+    fn parameters(&self) -> String {
+        let Self { brightness: Brightness { gain, offset }, reference, first_row, .. } = self;
+        format!("{reference:?}, gain {gain}, offset {offset}, from row {first_row} on")
+    }
+
+    fn input(&self) -> Vec<Array> {
+        let [left, right] = &self.views;
+        vec![
+            Array::exact("left", left.data().to_vec()),
+            Array::exact("right", right.data().to_vec()),
+            Array::exact("disparities", self.disparities.data().to_vec()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (device, size) = (bench.device(), self.disparities.size());
+        let [left, right] = [bench.upload_luma(&self.views[0])?, bench.upload_luma(&self.views[1])?];
+        let views = Views {
+            luma: [&left, &right],
+            brightness: &uniform_buffer(device, "brightness", &self.brightness),
+            reference: self.reference,
+        };
+        let disparities = bench.upload(self.disparities.data())?;
+        let residuals = bench.output(size.0.div_ceil(4) * size.1)?;
+        let dispatch = Residual::new(device).prepare(device, size, self.first_row, views, &disparities, &residuals);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("residuals", bench.download::<u32>(&residuals)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let (width, rows) = self.disparities.size();
+        let rows_of = |view: &Luma| Plane::from_fn(width, rows, |x, y| view.get(x, self.first_row + y));
+        let [left, right] = self.views.each_ref().map(rows_of);
+        let right = right.map(|&luma| brightened(luma, self.brightness));
+        let found = residuals([&left, &right], self.reference, &self.disparities);
+        Ok(vec![Array::exact("residuals", pack(&found))])
+    }
+}
+
 /// A map whose speckles are taken away.
 #[derive(Clone, Debug)]
 pub struct SupportTrial {
     /// The map.
     pub dense: Dense,
+    /// How unlike the views look there.
+    pub residuals: Plane<u8>,
     /// How many neighbours must agree.
     pub least: u32,
 }
 
 impl SupportTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self { least: dice.pick(&[0, 1, 9, 25, 49]), dense: dense(size, dice) }
+        let most = dice.pick(&[1, 8, u32::from(MAX_RESIDUAL) + 1]);
+        let residuals = Plane::from_fn(size.0, size.1, |_, _| dice.below(most) as u8);
+        Self { least: dice.pick(&[0, 1, 9, 25, 49]), dense: dense(size, dice), residuals }
     }
 }
 
@@ -140,7 +214,7 @@ impl Trial for SupportTrial {
     }
 
     fn input(&self) -> Vec<Array> {
-        vec![Array::exact("matches", matches(&self.dense))]
+        vec![Array::exact("matches", matches(&self.dense)), Array::exact("residuals", self.residuals.data().to_vec())]
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
@@ -148,13 +222,14 @@ impl Trial for SupportTrial {
         let pixels = size.0 * size.1;
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
-        let dispatch = Support::new(device, self.least).prepare(device, size, pixels, &from, &to);
+        let residuals = bench.upload_luma(&self.residuals)?;
+        let dispatch = Support::new(device, self.least).prepare(device, size, pixels, [&from, &residuals], &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(arrays(&bench.download(&to)?, pixels as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let dense = supported(&self.dense, self.least);
+        let dense = supported(&self.dense, &self.residuals, self.least);
         Ok(arrays(&matches(&dense), dense.disparity.data().len()))
     }
 }

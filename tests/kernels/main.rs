@@ -35,6 +35,7 @@ mod pad;
 mod partner_ranges;
 mod path;
 mod random;
+mod residual;
 mod select;
 mod support;
 mod verify;

@@ -24,7 +24,8 @@ fn the_twin_keeps_the_same() {
         for least in [0, 1, 9, 49] {
             let disparity = map(width, height, 81);
             let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE) * (d % 200) as u8), disparity };
-            assert_twin(&format!("{width}x{height}, {least}"), &SupportTrial { dense, least });
+            let residuals = picture(width, height, 82).map(|&value| value % 32);
+            assert_twin(&format!("{width}x{height}, {least}"), &SupportTrial { dense, residuals, least });
         }
     }
 }
@@ -34,7 +35,11 @@ fn by_hand() {
     // Three that differ by a pixel each from the next: only the middle one has two that share it.
     let disparity = Plane::new(4, 1, vec![0, 256, 512, NONE]).unwrap();
     let dense = Dense { confidence: Plane::new(4, 1, vec![5, 200, 7, 0]).unwrap(), disparity };
-    let confidences = pack(&Plane::new(4, 1, vec![0, 1 + 5 * 2 + 3, 0, 0]).unwrap());
-    let kept = leaves(&SupportTrial { dense, least: 3 });
-    assert_eq!(kept, [vec![NONE, 256, NONE, NONE].into(), confidences.into()]);
+    // An eighth of what the views differ by in all of the row, but not all confidence.
+    for (residual, lowered) in [(0, 0), (7, 3), (31, 13)] {
+        let confidences = pack(&Plane::new(4, 1, vec![0, 1 + 5 * 2 + 3 - lowered, 0, 0]).unwrap());
+        let residuals = Plane::new(4, 1, vec![residual, residual, residual, residual + 3]).unwrap();
+        let kept = leaves(&SupportTrial { dense: dense.clone(), residuals, least: 3 });
+        assert_eq!(kept, [vec![NONE, 256, NONE, NONE].into(), confidences.into()]);
+    }
 }
