@@ -31,7 +31,7 @@ pub struct Dense {
     pub disparity: DisparityMap,
     /// How far a disparity can be trusted, 1 to 255; 0 where there is none, or only what was filled in. Without
     /// refinement it is the margin by which the winner's cost is below its best rival's, as a share of the
-    /// rival's; with it, 1 to 245, mostly how many of the pixels around share it.
+    /// rival's; with it, 1 to 245, mostly how many of the pixels around share it, and less where the views look unlike.
     pub confidence: Plane<u8>,
 }
 
