@@ -60,9 +60,9 @@ pub enum Error {
     },
 
     /// The pair's rows do not correspond, so a search along rows would find nothing but noise.
-    #[error("the pair is not rectified: {diagnosis}")]
+    #[error("the pair is not rectified: {diagnosis}; rectify it first, or search along rows all the same")]
     NotRectified {
-        /// The figures, and what to do.
+        /// The figures.
         diagnosis: String,
     },
 

@@ -204,7 +204,7 @@ fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
         width,
         height,
         what: format!("a window of {0}x{0}", config.window()),
-        way_out: "use a larger picture or a smaller --window".into(),
+        way_out: "use a larger picture or a smaller window".into(),
     })
 }
 

@@ -12,7 +12,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// One line that says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    complain("error", &error.to_string());
+    // The library's errors know no options, since the page in a browser shows them as well.
+    let option = match error.downcast_ref() {
+        Some(hsad::Error::NotRectified { .. }) => " with --force",
+        _ => "",
+    };
+    complain("error", &format!("{error}{option}"));
 }
 
 /// One line about something that the result does not show by itself.

@@ -250,6 +250,7 @@ pub(crate) fn uniform_buffer<P: bytemuck::NoUninit>(
 }
 
 /// A buffer that holds `contents`, whole words, from the start.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn buffer_of(
     device: &wgpu::Device,
     label: &'static str,
@@ -267,11 +268,38 @@ pub(crate) fn buffer_of(
     buffer
 }
 
+/// The same. What is mapped from the start cannot be had on a lost device: `createBuffer` throws then, and wgpu panics.
+/// What the queue writes comes before all that is submitted later.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn buffer_of(
+    device: &wgpu::Device,
+    label: &'static str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let usage = usage | wgpu::BufferUsages::COPY_DST;
+    let size = contents.len() as u64;
+    let buffer =
+        device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
+    if let (Some(device), Some(to)) = (device.as_webgpu(), buffer.as_webgpu()) {
+        // It throws only where the buffer is too small; everything else is told as `guarded` expects it.
+        let _ = device.queue().write_buffer_with_u32_and_u8_slice(to, 0, contents);
+    }
+    buffer
+}
+
 /// Whether the device creates nothing any more, which it does not say by itself.
+#[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let usage = wgpu::BufferUsages::COPY_SRC;
     let probe = wgpu::BufferDescriptor { label: Some("probe"), size: 4, usage, mapped_at_creation: true };
     device.create_buffer(&probe).get_mapped_range_mut(..).is_err()
+}
+
+/// The same. A browser creates as if nothing had happened, and says it only where results are to be read.
+#[cfg(target_arch = "wasm32")]
+fn is_lost(_: &wgpu::Device) -> bool {
+    false
 }
 
 /// Runs `build`, which creates things on `device`, and turns what the device has to say about it

@@ -4,8 +4,8 @@
 //! and its path, which is there to be named in errors. No header is believed: memory is reserved
 //! only for bytes that are really there, or up to [`MAX_PIXELS`] where a codec expands them.
 //!
-//! Picture codecs and whole-file writing come with the feature `cli`; PFM, calibrations, PLY and
-//! colour maps are always there.
+//! Reading pictures comes with the feature `pictures`, writing them and whole files with `cli`; PFM,
+//! calibrations, PLY and colour maps are always there.
 
 #[cfg(feature = "cli")]
 pub mod atomic;
@@ -18,9 +18,9 @@ pub mod disparities;
 pub mod disparity_png;
 #[cfg(feature = "cli")]
 pub mod figure;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 mod jpeg;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 pub mod load;
 pub mod pfm;
 pub mod picture;

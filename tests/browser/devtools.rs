@@ -2,6 +2,7 @@
 
 use std::{
     io::{BufRead, BufReader, Write},
+    path::PathBuf,
     process::{Child, ChildStdin, Command, Stdio},
     sync::mpsc::{self, Receiver},
     thread,
@@ -118,6 +119,22 @@ impl Browser {
     pub fn open(&mut self, url: &str, state: &str) {
         self.call("Page.navigate", json!({ "url": url }));
         self.wait_for(state);
+    }
+
+    /// Chooses files for a side, as someone does in a dialog.
+    pub fn choose(&mut self, side: &str, files: &[PathBuf]) {
+        let document = self.call("DOM.getDocument", json!({}))["root"]["nodeId"].clone();
+        let selector = json!({ "nodeId": document, "selector": format!("#{side} input") });
+        let input = self.call("DOM.querySelector", selector)["nodeId"].clone();
+        self.call("DOM.setFileInputFiles", json!({ "files": files, "nodeId": input }));
+    }
+
+    /// Ends the process that all GPU work of the browser goes through, as a driver's crash does. It is started again.
+    pub fn crash_gpu(&mut self) {
+        // This is asked of the browser and not of the page.
+        let session = self.session.take();
+        self.call("Browser.crashGpuProcess", json!({}));
+        self.session = session;
     }
 
     /// Waits until the page is in `state`, and panics where it gets into another end instead.

@@ -5,12 +5,15 @@
 #![cfg(feature = "cli")]
 
 mod devtools;
+mod files;
 
 use std::{
     fs,
     io::{BufRead, BufReader},
     path::Path,
     process::{Child, Command, Stdio},
+    thread,
+    time::Duration,
 };
 
 use devtools::Browser;
@@ -23,8 +26,8 @@ use hsad::{
 };
 use serde_json::json;
 
-/// Puts what `files` yields into the input of a side, as if someone had chosen it there.
-const CHOOSE: &str = r#"
+/// What tests do in the page; `choose` puts what `files` yields into the input of a side, as if someone had chosen it there.
+const HELPERS: &str = r#"
 async function choose(side, files) {
   delete document.body.dataset.state;
   const transfer = new DataTransfer();
@@ -39,6 +42,13 @@ async function view(side, rows = 0, share = 1) {
   const canvas = new OffscreenCanvas(Math.round(share * bitmap.width), bitmap.height);
   canvas.getContext("2d").drawImage(bitmap, 0, rows);
   return new File([await canvas.convertToBlob()], `${side}.png`);
+}
+/** What the cloud's canvas holds. */
+function pixels() {
+  const { gl } = cloud;
+  const bytes = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return bytes;
 }
 "#;
 
@@ -86,8 +96,9 @@ fn the_page_in_chromium() {
     let server = Server::start();
     let mut browser = Browser::start(1440, 900);
     browser.open(&server.url, "idle");
-    decodes_the_bytes_of_the_file(&mut browser);
+    decodes_what_is_decoded_here(&mut browser);
     computes_what_is_computed_here(&mut browser);
+    takes_files_as_the_command_line_does(&mut browser);
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
     if let Some(path) = std::env::var_os("HSAD_SCREENSHOT") {
         // From a little beside, where depth shows.
@@ -95,58 +106,88 @@ fn the_page_in_chromium() {
         fs::write(path, browser.screenshot()).unwrap();
     }
     says_what_is_wrong(&mut browser);
+    keeps_an_error_that_came_meanwhile(&mut browser);
+    survives_the_loss_of_the_gpu(&mut browser);
+    draws_pictures_wider_than_a_texture(&mut browser);
+    survives_a_panic(&mut browser, &server.url);
     says_that_there_is_no_webgpu(&mut browser, &server.url);
 }
 
-fn decodes_the_bytes_of_the_file(browser: &mut Browser) {
-    for (name, picture) in ["left.png", "right.png"].iter().zip(example()) {
+fn decodes_what_is_decoded_here(browser: &mut Browser) {
+    for (name, bytes) in files::all() {
         let decoded: Vec<u8> = browser.numbers(&format!(
-            "import('./decode.js').then(async ({{ decode }}) => {{
-                const file = await fetch('example/{name}');
-                return (await decode(await file.blob(), '{name}')).data;
-            }})"
+            "import('./library.js').then(async ({{ decode }}) =>
+                (await decode(new Blob([new Uint8Array({bytes:?})]), '{name}')).data)"
         ));
-        assert!(decoded == picture.rgba(), "{name} is not decoded to the bytes of the file");
+        let expected = load::decode(&bytes, Path::new(name)).unwrap();
+        assert!(decoded == expected.rgba(), "{name} is not decoded to the same bytes");
     }
 }
 
 fn computes_what_is_computed_here(browser: &mut Browser) {
-    let backend = Backend::open(&DeviceChoice::Best).unwrap_or(Backend::Cpu);
     let [left, right] = example();
     browser.evaluate("document.getElementById('example').click()");
     for (name, preset) in [("balanced", Preset::Balanced), ("fast", Preset::Fast), ("quality", Preset::Quality)] {
         if name != "balanced" {
-            browser.evaluate(&format!(
-                "delete document.body.dataset.state; document.querySelector('input[value={name}]').click()"
-            ));
+            choose_preset(browser, name);
         }
         browser.wait_for("done");
         assert_eq!(browser.evaluate("result.preset"), name);
-        let expected = pipeline::run(&backend, (&left, &right), &preset.config(), |_| ()).unwrap();
-        assert_eq!(browser.evaluate("result.first"), expected.range.min, "{name}");
-        assert_eq!(browser.evaluate("result.last"), expected.range.last(), "{name}");
-        let disparities: Vec<i32> = browser.numbers("result.disparities");
-        let confidences: Vec<u8> = browser.numbers("result.confidences");
-        let differ = |count: usize| format!("{name}: {count} pixels differ from {}", backend.name());
-        let other = disparities.iter().zip(expected.dense.disparity.data()).filter(|(a, b)| a != b).count();
-        assert!(disparities.len() == expected.dense.disparity.data().len() && other == 0, "{}", differ(other));
-        let other = confidences.iter().zip(expected.dense.confidence.data()).filter(|(a, b)| a != b).count();
-        assert!(confidences.len() == expected.dense.confidence.data().len() && other == 0, "{}", differ(other));
-        eprintln!(
-            "{name}: the same {} disparities as on {}, in {} ms",
-            disparities.len(),
-            backend.name(),
-            browser.evaluate("Math.round(result.milliseconds)")
-        );
+        is_computed_here(browser, name, (&left, &right), preset);
     }
 }
 
+/// Transparent pixels keep their colours, and a JPEG has those that the same decoder finds.
+fn takes_files_as_the_command_line_does(browser: &mut Browser) {
+    let folder = tempfile::tempdir().unwrap();
+    let [left, right] = example();
+    let paths = ["left.png", "right.jpg"].map(|name| folder.path().join(name));
+    fs::write(&paths[0], files::transparent_png(&left)).unwrap();
+    fs::write(&paths[1], files::jpeg(&right)).unwrap();
+    let [left, right] = paths.each_ref().map(|path| load::load(path).unwrap());
+
+    choose_preset(browser, "fast");
+    browser.wait_for("done");
+    browser.evaluate("delete document.body.dataset.state");
+    browser.choose("left", &paths);
+    browser.wait_for("done");
+    is_computed_here(browser, "transparent PNG and JPEG", (&left, &right), Preset::Fast);
+}
+
+fn choose_preset(browser: &mut Browser, name: &str) {
+    browser.evaluate(&format!(
+        "delete document.body.dataset.state; document.querySelector('input[value={name}]').click()"
+    ));
+}
+
+/// Holds the result that the page shows against the one of the library here.
+fn is_computed_here(browser: &mut Browser, name: &str, views: (&Picture, &Picture), preset: Preset) {
+    let backend = Backend::open(&DeviceChoice::Best).unwrap_or(Backend::Cpu);
+    let expected = pipeline::run(&backend, views, &preset.config(), |_| ()).unwrap();
+    assert_eq!(browser.evaluate("result.first"), expected.range.min, "{name}");
+    assert_eq!(browser.evaluate("result.last"), expected.range.last(), "{name}");
+    let disparities: Vec<i32> = browser.numbers("result.disparities");
+    let confidences: Vec<u8> = browser.numbers("result.confidences");
+    let differ = |count: usize| format!("{name}: {count} pixels differ from {}", backend.name());
+    let other = disparities.iter().zip(expected.dense.disparity.data()).filter(|(a, b)| a != b).count();
+    assert!(disparities.len() == expected.dense.disparity.data().len() && other == 0, "{}", differ(other));
+    let other = confidences.iter().zip(expected.dense.confidence.data()).filter(|(a, b)| a != b).count();
+    assert!(confidences.len() == expected.dense.confidence.data().len() && other == 0, "{}", differ(other));
+    eprintln!(
+        "{name}: the same {} disparities as on {}, in {} ms",
+        disparities.len(),
+        backend.name(),
+        browser.evaluate("Math.round(result.milliseconds)")
+    );
+}
+
 fn says_what_is_wrong(browser: &mut Browser) {
-    browser.evaluate(&format!("(0, eval)(`{}`)", CHOOSE.replace('`', "\\`").replace("${", "\\${")));
+    browser.evaluate(&format!("(0, eval)(`{}`)", HELPERS.replace('`', "\\`").replace("${", "\\${")));
     let bad = [
-        ("choose('left', [new File(['not at all'], 'notes.txt')])", "not a picture", "notes.txt"),
+        ("choose('left', [new File(['not at all'], 'notes.txt')])", "cannot be used", "notes.txt: not a picture"),
         ("choose('left', [view('left'), view('right', 0, 0.9)])", "differ in size", "306x255"),
         ("choose('left', [view('left'), view('right', 9)])", "not rectified", "9.0 px"),
+        ("choose('left', [view('left', 0, 0.01), view('right', 0, 0.01)])", "could not be matched", "window of 9x9"),
         ("choose('left', [view('left'), view('right'), view('left')])", "could not be matched", "3 files"),
     ];
     for (act, headline, detail) in bad {
@@ -154,10 +195,93 @@ fn says_what_is_wrong(browser: &mut Browser) {
         browser.wait_for("failed");
         let message = browser.message();
         assert!(message.contains(headline) && message.contains(detail), "{act}: {message}");
+        assert!(!message.contains("--"), "an option of the command line: {message}");
     }
     // And after all that it still works.
     browser.evaluate("choose('right', [view('left'), view('right')])");
     browser.wait_for("done");
+}
+
+/// A match that is still going on must not replace what went wrong since.
+fn keeps_an_error_that_came_meanwhile(browser: &mut Browser) {
+    choose_preset(browser, "quality");
+    browser.evaluate("choose('left', [new File(['not at all'], 'notes.txt')])");
+    browser.wait_for("failed");
+    assert_eq!(browser.evaluate("document.body.ariaBusy"), "true", "nothing went on meanwhile");
+    while browser.evaluate("document.body.ariaBusy") == "true" {
+        thread::sleep(Duration::from_millis(100));
+    }
+    browser.wait_for("failed");
+    assert!(browser.message().contains("notes.txt"), "{}", browser.message());
+    choose_preset(browser, "fast");
+    browser.wait_for("done");
+    assert_eq!(browser.evaluate("result.preset"), "fast");
+}
+
+fn survives_the_loss_of_the_gpu(browser: &mut Browser) {
+    // How many pixels of the cloud's canvas are drawn; read before the browser takes them away.
+    let drawn = "cloud.look(0.24, 0.13, 1.16); cloud.drawNow(0); pixels().filter((_, i) => i % 4 === 3).reduce((a, b) => a + b)";
+    let before = browser.evaluate(drawn);
+    assert_ne!(before, 0);
+    browser.evaluate(
+        "window.restored = new Promise((restored) => cloud.canvas.addEventListener('webglcontextrestored', restored)); true",
+    );
+    browser.crash_gpu();
+    browser.evaluate("restored.then(() => true)");
+    assert_eq!(browser.evaluate(drawn), before, "the cloud is not drawn again");
+
+    choose_preset(browser, "balanced");
+    browser.wait_for("failed");
+    assert!(browser.message().contains("The GPU was lost"), "{} {:?}", browser.message(), browser.complaints);
+    try_again(browser);
+    browser.wait_for("done");
+    assert_eq!(browser.evaluate("result.preset"), "balanced");
+}
+
+fn draws_pictures_wider_than_a_texture(browser: &mut Browser) {
+    let colors = |painted: bool| {
+        format!(
+            "{{
+                const width = cloud.gl.getParameter(cloud.gl.MAX_TEXTURE_SIZE) + 1;
+                const flat = (color) => new ImageData(new Uint8ClampedArray(8 * width).map((_, i) => color[i % 4]), width);
+                cloud.paint({painted});
+                cloud.show(flat([255, 0, 0, 255]), flat([0, 0, 255, 255]), new Float32Array(2 * width).fill(9),
+                    {{ focal: width, principal: [width / 2, 1], doffs: 0 }});
+                cloud.look(0, 0, 1);
+                cloud.drawNow(0);
+                const shown = pixels();
+                const all = new Set();
+                for (let i = 0; i < shown.length; i += 4) if (shown[i + 3]) all.add(shown.slice(i, i + 3).join());
+                [...all].join(' and ')
+            }}"
+        )
+    };
+    assert_eq!(browser.evaluate(&colors(false)), "255,0,0");
+    assert_eq!(browser.evaluate(&colors(true)), "0,0,255");
+}
+
+/// A panic ends the worker; the next one does the work.
+fn survives_a_panic(browser: &mut Browser, url: &str) {
+    browser.open(url, "idle");
+    browser.evaluate(
+        "window.Worker = class extends Worker {
+            postMessage(message, transfer) {
+                if (message.act !== 'match' || window.mended) super.postMessage(message, transfer);
+                else this.dispatchEvent(new ErrorEvent('error', { message: 'unreachable' }));
+            }
+        };
+        document.getElementById('example').click()",
+    );
+    browser.wait_for("failed");
+    let message = browser.message();
+    assert!(message.contains("broke off") && message.contains("unreachable"), "{message}");
+    browser.evaluate("mended = true");
+    try_again(browser);
+    browser.wait_for("done");
+}
+
+fn try_again(browser: &mut Browser) {
+    browser.evaluate("delete document.body.dataset.state; document.querySelector('#message button').click()");
 }
 
 fn says_that_there_is_no_webgpu(browser: &mut Browser, url: &str) {

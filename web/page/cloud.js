@@ -1,9 +1,7 @@
 // A point cloud on a canvas, by WebGL 2: a point for each pixel, where its disparity says that it lies.
 
 const VERTEX = `#version 300 es
-uniform sampler2D picture;
-uniform sampler2D colors;
-uniform ivec2 size;
+uniform int width;        // of the picture, in pixels
 uniform float focal;      // of the camera, in pixels
 uniform vec2 principal;   // its principal point
 uniform float doffs;      // added to a disparity before depth is computed
@@ -13,11 +11,13 @@ uniform vec2 lens;        // the viewer's focal length over half the canvas's si
 uniform float footprint;  // the viewer's focal length in pixels of the canvas
 uniform bool painted;     // by depth, and not by the picture
 in float disparity;
+in vec3 picture;          // the point's colour there
+in vec3 colors;           // and by depth
 out vec3 color;
 
 void main() {
-  ivec2 pixel = ivec2(gl_VertexID % size.x, gl_VertexID / size.x);
-  color = painted ? texelFetch(colors, pixel, 0).rgb : texelFetch(picture, pixel, 0).rgb;
+  ivec2 pixel = ivec2(gl_VertexID % width, gl_VertexID / width);
+  color = painted ? colors : picture;
   float shifted = disparity + doffs;
   float depth = unit / shifted;
   vec2 across = (vec2(pixel) - principal) / focal * depth;
@@ -47,19 +47,25 @@ export class Cloud {
     this.canvas = canvas;
     const gl = (this.gl = canvas.getContext("webgl2", { alpha: true, antialias: false }));
     if (!gl) throw new Error("this browser has no WebGL 2, which draws the point cloud");
+    this.prepare();
+    this.painted = false;
+    this.home();
+    this.listen();
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  /** Makes all that lives on the GPU; it is gone when the GPU is. */
+  prepare() {
+    const { gl } = this;
     this.program = build(gl);
     this.places = {};
     for (let i = 0; i < gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS); ++i) {
       const { name } = gl.getActiveUniform(this.program, i);
       this.places[name] = gl.getUniformLocation(this.program, name);
     }
-    this.buffer = gl.createBuffer();
-    this.textures = [gl.createTexture(), gl.createTexture()];
-    this.count = 0;
-    this.painted = false;
-    this.home();
-    this.listen();
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    // Attributes and not textures, whose sides are limited.
+    this.attributes = { disparity: [1, gl.FLOAT], picture: [4, gl.UNSIGNED_BYTE], colors: [4, gl.UNSIGNED_BYTE] };
+    this.buffers = Object.fromEntries(Object.keys(this.attributes).map((name) => [name, gl.createBuffer()]));
   }
 
   /**
@@ -70,41 +76,46 @@ export class Cloud {
    * @param {Float32Array} disparities in pixels, NaN where there is none
    * @param {{focal: number, principal: [number, number], doffs: number}} camera
    */
-  show(picture, colors, disparities, { focal, principal, doffs }) {
+  show(picture, colors, disparities, camera) {
+    this.shown = { picture, colors, disparities, camera };
+    this.load();
+  }
+
+  /** Brings what is shown to the GPU. */
+  load() {
     const { gl, program, places } = this;
+    const { picture, colors, disparities, camera: { focal, principal, doffs } } = this.shown;
     const known = disparities.filter((disparity) => disparity + doffs > 0).sort();
     // Turned about what most of the picture shows.
     const unit = known.length ? known[known.length >> 1] + doffs : 1;
     gl.useProgram(program);
-    gl.uniform2i(places.size, picture.width, picture.height);
+    gl.uniform1i(places.width, picture.width);
     gl.uniform1f(places.focal, focal);
     gl.uniform2f(places.principal, ...principal);
     gl.uniform1f(places.doffs, doffs);
     gl.uniform1f(places.unit, unit);
-    gl.uniform1i(places.picture, 0);
-    gl.uniform1i(places.colors, 1);
-    [picture, colors].forEach((image, index) => {
-      gl.activeTexture(gl.TEXTURE0 + index);
-      gl.bindTexture(gl.TEXTURE_2D, this.textures[index]);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image);
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    });
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, disparities, gl.STATIC_DRAW);
-    const place = gl.getAttribLocation(program, "disparity");
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribPointer(place, 1, gl.FLOAT, false, 0, 0);
-    this.count = disparities.length;
-    this.extent = [picture.width / focal, picture.height / focal];
+    this.fill("disparity", disparities);
+    this.fill("picture", picture.data);
+    this.fill("colors", colors.data);
     this.draw();
+  }
+
+  /** Gives each point its value of an attribute. */
+  fill(name, values) {
+    const { gl } = this;
+    const place = gl.getAttribLocation(this.program, name);
+    const [components, type] = this.attributes[name];
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[name]);
+    gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(place);
+    // Bytes are 0 to 1.
+    gl.vertexAttribPointer(place, components, type, true, 0, 0);
   }
 
   /** Other disparities for the cloud that is shown. */
   change(disparities) {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, disparities, gl.STATIC_DRAW);
+    this.shown.disparities = disparities;
+    this.fill("disparity", disparities);
     this.draw();
   }
 
@@ -114,7 +125,7 @@ export class Cloud {
   }
 
   clear() {
-    this.count = 0;
+    this.shown = undefined;
     this.draw();
   }
 
@@ -149,7 +160,7 @@ export class Cloud {
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    if (!this.count) return;
+    if (!this.shown) return;
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(this.program);
     let { yaw, pitch } = this;
@@ -160,17 +171,24 @@ export class Cloud {
       pitch += 0.25 * SWAY * Math.sin(0.7 * phase);
     }
     // The picture fills the canvas when seen from the camera's place.
-    const focal = Math.min(width / this.extent[0], height / this.extent[1]);
+    const { picture, disparities, camera } = this.shown;
+    const focal = camera.focal * Math.min(width / picture.width, height / picture.height);
     gl.uniform2f(places.lens, (2 * focal) / width, (2 * focal) / height);
     gl.uniform1f(places.footprint, focal);
     gl.uniform1i(places.painted, this.painted);
     gl.uniformMatrix4fv(places.view, false, view(yaw, pitch, this.distance, this.shift));
-    gl.drawArrays(gl.POINTS, 0, this.count);
+    gl.drawArrays(gl.POINTS, 0, disparities.length);
     if (this.swaying) this.draw();
   }
 
   listen() {
     const { canvas } = this;
+    // Only what is prevented is followed by the other.
+    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.prepare();
+      if (this.shown) this.load();
+    });
     /** Where each finger or the mouse is. */
     const held = new Map();
     const spread = () => {

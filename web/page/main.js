@@ -1,7 +1,7 @@
 // The page: pictures in, a worker that matches them, a map and a cloud out.
 
 import { Cloud } from "./cloud.js";
-import { decode } from "./decode.js";
+import * as library from "./library.js";
 
 const SIDES = ["left", "right"];
 const STEPS = [["luma", "luma"], ["features", "interest points"], ["seeding", "range"], ["dense", "disparities"]];
@@ -14,13 +14,14 @@ const at = (id) => document.getElementById(id);
 const pair = { left: undefined, right: undefined };
 /** The camera of the pair, where it is known. */
 let camera;
-let worker;
 let cloud;
 /** The last result, and its disparities in pixels. */
 let shown;
-/** While the worker is busy; what has changed meanwhile is matched afterwards. */
+/** Whether a pair is being matched; what is asked for meanwhile is matched afterwards. */
 let busy = false;
-let stale = false;
+let next;
+/** The pair being matched, as long as nothing else was told since. */
+let awaited;
 
 // What is told
 
@@ -54,26 +55,33 @@ function progress(now) {
 }
 
 const HEADLINES = {
-  NoPicture: "This is not a picture",
+  BadPicture: "This picture cannot be used",
   SizesDiffer: "The pictures differ in size",
   NotRectified: "This pair is not rectified",
   NoAdapter: "No GPU for this page",
   TooLarge: "Too large for this GPU",
   DeviceLost: "The GPU was lost",
+  Broken: "The computation broke off",
 };
 
 function fail({ name, message }) {
+  // What is going on must not replace this by a result.
+  awaited = next = undefined;
   const again = { label: "Try again", run: () => match() };
   const actions = {
-    NotRectified: { label: "Match it anyway (--force)", run: () => match({ force: true }) },
+    NotRectified: { label: "Match it anyway", run: () => match({ force: true }) },
+    NoAdapter: again,
     DeviceLost: again,
+    Broken: again,
   };
   const text =
     name === "NoAdapter"
       ? "The browser has WebGPU, but offers no adapter: look at chrome://gpu, update the GPU's driver, or use another browser."
-      : name === "NoPicture"
-        ? message // It begins with the file's name.
-        : message[0].toUpperCase() + message.slice(1);
+      : name === "Broken"
+        ? `Memory ran out, or the library has a fault, which the browser's console tells more of (${message}).`
+        : name === "BadPicture"
+          ? message // It begins with the file's name.
+          : message[0].toUpperCase() + message.slice(1);
   forget();
   say(HEADLINES[name] ?? "This could not be matched", text, { bad: true, action: actions[name] });
 }
@@ -95,10 +103,10 @@ async function take(files, side) {
   const sides = files.length > 1 ? SIDES : [side ?? (pair.left && !pair.right ? "right" : "left")];
   try {
     if (files.length > 2) throw new Error(`${files.length} files were dropped: it takes one picture for each side`);
-    const pictures = await Promise.all(files.map((file) => decode(file, file.name)));
+    const pictures = await Promise.all(files.map((file) => library.decode(file, file.name)));
     pictures.forEach((picture, index) => put(sides[index], picture));
     camera = undefined;
-    await match();
+    match();
   } catch (error) {
     fail(error);
   }
@@ -107,19 +115,19 @@ async function take(files, side) {
 async function loadExample() {
   const file = async (name) => {
     const response = await fetch(`example/${name}`);
-    if (!response.ok) throw new Error(`example/${name} is missing on the server: ${response.status}`);
+    if (!response.ok) throw new Error(`the server has no example/${name}: ${response.status}`);
     return response;
   };
   try {
     const [left, right, meta] = await Promise.all([
-      ...SIDES.map(async (side) => decode(await (await file(`${side}.png`)).blob(), `${side}.png`)),
+      ...SIDES.map(async (side) => library.decode(await (await file(`${side}.png`)).blob(), `${side}.png`)),
       file("meta.json").then((response) => response.json()),
     ]);
     put("left", left);
     put("right", right);
     const [, cx, cy] = meta.calib_txt.match(/cam0=\[\S+ \S+ (\S+); \S+ \S+ (\S+);/);
     camera = { focal: meta.focal_px, principal: [Number(cx), Number(cy)], doffs: meta.doffs_px };
-    await match();
+    match();
   } catch (error) {
     fail(error);
   }
@@ -133,55 +141,39 @@ async function match({ force = false } = {}) {
     say(`Now the ${missing} picture`, "Both views of one scene, rectified: what lies in a row of one lies in the same row of the other.");
     return;
   }
+  next = { force };
   if (busy) {
-    stale = true;
+    if (!awaited) progress();
     return;
   }
-  busy = true;
-  progress();
-  const preset = document.querySelector("input[name=preset]:checked").value;
-  try {
-    const { result, error } = await matched({ ...pair, preset, force });
-    busy = false;
-    if (stale) {
-      stale = false;
-      await match();
-    } else if (error) {
-      fail(error);
-    } else {
-      show(result);
+  occupied(true);
+  while (next) {
+    const { force } = next;
+    next = undefined;
+    const preset = document.querySelector("input[name=preset]:checked").value;
+    const work = (awaited = { ...pair, preset, force });
+    progress();
+    try {
+      const result = await library.match(work, ({ device, step }) => {
+        if (device) named(device);
+        else if (awaited === work) progress(step);
+      });
+      if (awaited === work && !next) show(result);
+    } catch (error) {
+      if (awaited === work && !next) fail(error);
     }
-  } finally {
-    busy = false;
   }
+  occupied(false);
 }
 
-/** What the worker makes of a pair. */
-function matched(request) {
-  worker ??= new Worker("worker.js", { type: "module" });
-  return new Promise((resolve) => {
-    worker.onmessage = ({ data }) => {
-      if (data.step) {
-        progress(data.step);
-      } else if (data.device !== undefined) {
-        at("device").value = data.device;
-        at("device").hidden = false;
-      } else {
-        if (data.error?.fatal) discard();
-        resolve(data);
-      }
-    };
-    worker.onerror = (event) => {
-      discard();
-      resolve({ error: { name: "Error", message: event.message || "the worker could not be started" } });
-    };
-    worker.postMessage(request);
-  });
+function occupied(now) {
+  busy = now;
+  document.body.ariaBusy = now;
 }
 
-function discard() {
-  worker?.terminate();
-  worker = undefined;
+function named(device) {
+  at("device").value = device;
+  at("device").hidden = false;
 }
 
 // Results

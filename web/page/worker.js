@@ -1,24 +1,24 @@
-// Matches pairs beside the page, which stays usable meanwhile.
+// Reads pictures and matches pairs beside the page, which stays usable meanwhile.
 
 import init, { Session, View } from "./hsad_web.js";
 
 const ready = init();
 let session;
 
-/** What the browser tells of its GPU, which may be little. */
-async function adapterName() {
-  const info = (await navigator.gpu.requestAdapter())?.info;
-  const name = info?.description || [info?.vendor, info?.architecture].filter(Boolean).join(" ") || "WebGPU";
-  return info?.isFallbackAdapter ? `${name} (software)` : name;
-}
+/** What can be asked for: from a request to the answer, and what of it is handed over instead of copied. */
+const acts = {
+  decode({ bytes, name }) {
+    const view = View.decode(bytes, name);
+    const picture = { width: view.width, height: view.height, data: view.rgba() };
+    view.free();
+    return [picture, [picture.data.buffer]];
+  },
 
-onmessage = async ({ data: { left, right, preset, force } }) => {
-  try {
-    await ready;
+  async match({ left, right, preset, force }, tell) {
     session ??= await Session.open();
-    postMessage({ device: await adapterName() });
+    tell({ device: await adapterName() });
     const view = ({ width, height, data }) => new View(width, height, new Uint8Array(data.buffer));
-    const matched = await session.matchPair(view(left), view(right), preset, force, (step) => postMessage({ step }));
+    const matched = await session.matchPair(view(left), view(right), preset, force, (step) => tell({ step }));
     const { first, last, found, matches, rectification, trust, coverage, measured, milliseconds, scale, none } = matched;
     const result = {
       first, last, found, matches, rectification, trust, coverage, measured, milliseconds, scale, none, preset,
@@ -32,11 +32,26 @@ onmessage = async ({ data: { left, right, preset, force } }) => {
     };
     matched.free();
     const { disparities, confidences, colors } = result;
-    postMessage({ result }, [disparities.buffer, confidences.buffer, colors.buffer]);
+    return [result, [disparities.buffer, confidences.buffer, colors.buffer]];
+  },
+};
+
+/** What the browser tells of its GPU, which may be little. */
+async function adapterName() {
+  const info = (await navigator.gpu.requestAdapter())?.info;
+  const name = info?.description || [info?.vendor, info?.architecture].filter(Boolean).join(" ") || "WebGPU";
+  return info?.isFallbackAdapter ? `${name} (software)` : name;
+}
+
+onmessage = async ({ data: { id, act, request } }) => {
+  try {
+    await ready;
+    const [answer, transfer] = await acts[act](request, (news) => postMessage({ id, news }));
+    postMessage({ id, answer }, transfer);
   } catch (error) {
-    // A lost device, or a panic of the library, leaves nothing that could be used again.
     if (error.name === "DeviceLost") session = undefined;
+    // A panic, after which nothing of the library can be used again.
     const fatal = error instanceof WebAssembly.RuntimeError;
-    postMessage({ error: { name: error.name ?? "Error", message: error.message ?? String(error), fatal } });
+    postMessage({ id, error: { name: error.name ?? "Error", message: error.message ?? String(error), fatal } });
   }
 };

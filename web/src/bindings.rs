@@ -1,15 +1,17 @@
 //! What the page calls: two pictures and a preset in, a map and what is known of it out.
 
+use std::path::Path;
+
 use hsad::{
     Error,
     config::{Config, Preset},
     disparity::{NONE, SCALE, coverage},
     gpu::DeviceChoice,
-    io::{Picture, color},
+    io::{Picture, color, load},
     pair::Backend,
     pipeline::{self, Outcome, RangeSource},
 };
-use wasm_bindgen::prelude::*;
+use wasm_bindgen::{Clamped, prelude::*};
 use web_time::Instant;
 
 /// Panics are told on the console, not only that there was one.
@@ -18,7 +20,7 @@ fn start() {
     console_error_panic_hook::set_once();
 }
 
-/// A picture as a canvas gives it.
+/// A picture.
 #[wasm_bindgen]
 pub struct View(Picture);
 
@@ -29,6 +31,29 @@ impl View {
     pub fn new(width: u32, height: u32, rgba: &[u8]) -> Result<Self, JsValue> {
         let (pixels, _) = rgba.as_chunks();
         Picture::new(width, height, pixels.to_vec()).map(Self).map_err(thrown)
+    }
+
+    /// The picture in a file's bytes, as the command line reads it; the browser's own decoder would give other colours
+    /// where there is transparency. `name` is named in errors.
+    pub fn decode(bytes: &[u8], name: &str) -> Result<Self, JsValue> {
+        load::decode(bytes, Path::new(name)).map(Self).map_err(thrown)
+    }
+
+    /// Pixels in a row.
+    #[wasm_bindgen(getter)]
+    pub fn width(&self) -> u32 {
+        self.0.width()
+    }
+
+    /// Rows.
+    #[wasm_bindgen(getter)]
+    pub fn height(&self) -> u32 {
+        self.0.height()
+    }
+
+    /// Its bytes, as [`View::new`] takes them and a canvas does.
+    pub fn rgba(&self) -> Clamped<Vec<u8>> {
+        Clamped(self.0.rgba().to_vec())
     }
 }
 
@@ -89,6 +114,7 @@ fn named(preset: &str) -> hsad::Result<Preset> {
 fn thrown(error: Error) -> JsValue {
     let thrown = js_sys::Error::new(&error.to_string());
     thrown.set_name(match error {
+        Error::Format { .. } => "BadPicture",
         Error::SizesDiffer { .. } => "SizesDiffer",
         Error::NotRectified { .. } => "NotRectified",
         Error::NoAdapter => "NoAdapter",
