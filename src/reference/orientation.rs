@@ -21,7 +21,7 @@ pub fn orientation(integral: &IntegralImage, at: Place) -> f32 {
 }
 
 /// Whether it is the same for whoever computes the gradients' angles and the windows' sums a little differently: to
-/// 1e-5 and to one in a thousand. Such an orientation differs by 0.0005 at most.
+/// 0.0002 and to one in a thousand. Such an orientation differs by 0.0005 at most.
 pub fn is_decided(integral: &IntegralImage, at: Place) -> bool {
     /// What counts as hardly any gradient, in grey levels: less is lost where sums are rounded.
     const LEAST_LENGTH: f32 = 0.25;
@@ -29,7 +29,7 @@ pub fn is_decided(integral: &IntegralImage, at: Place) -> bool {
     if gradients.iter().all(|&(_, dx, dy)| (dx, dy) == (0.0, 0.0)) {
         return true;
     }
-    let sums: Vec<_> = [-1e-5, 0.0, 1e-5].into_iter().flat_map(|shift| windows(&gradients, shift)).collect();
+    let sums: Vec<_> = [-2e-4, 0.0, 2e-4].into_iter().flat_map(|shift| windows(&gradients, shift)).collect();
     let longest = sums.iter().copied().fold((0.0, 0.0), longer);
     let as_long = sums.iter().filter(|&&sum| length2(sum) >= 0.998 * length2(longest));
     let apart = |&sum: &(f32, f32)| {
