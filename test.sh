@@ -6,7 +6,8 @@
 #
 # `hsad verify` runs on a second driver as well, SwiftShader, whose compiler and subgroups are others; Debian's package
 # chromium has it. HSAD_SWIFTSHADER names its ICD file elsewhere. Where it is not installed, root and apt install it.
-# The page in web/ is tested in that Chromium.
+# The page in web/ is tested in that Chromium. `spirv-val` and `glslangValidator` check what the shaders are translated to,
+# and are installed in the same way. What is missing all the same is told as NOT RUN.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -14,6 +15,13 @@ cd "$(dirname "$0")"
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
 say() { printf '\n== %s\n' "$*"; }
+
+# What a check can do without: where it cannot be installed, whoever asked for it says what was not run.
+install() {
+    if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
+        apt-get update -qq && apt-get install -y -qq --no-install-recommends "$@" || true
+    fi
+}
 
 command -v cargo >/dev/null || { echo 'test.sh: no cargo: install Rust from https://rustup.rs' >&2; exit 1; }
 for component in fmt clippy; do
@@ -52,20 +60,24 @@ say 'documentation'
 RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 
 say 'tests'
-[ -d ../shared/data ] || echo 'without the real pairs of ../shared/data: what needs them is skipped'
+[ -d ../shared/data ] || echo 'NOT RUN: what needs the real pairs of ../shared/data, which is not there'
+check_translations() { command -v spirv-val && command -v glslangValidator; } >/dev/null
+if ! check_translations; then
+    install spirv-tools glslang-tools
+fi
+check_translations || echo "NOT RUN: the checks of translated shaders by spirv-val and glslangValidator, not both of which" \
+    "are installed (Debian: apt-get install spirv-tools glslang-tools): they are translated and not checked"
 cargo test
 
 say 'regression suite'
 verify() { "$hsad" verify -o "$(mktemp -d)/hsad-verify" "$@"; }
 verify
 
-say 'regression suite, quick, on SwiftShader'
+say 'regression suite, on SwiftShader'
 swiftshader="${HSAD_SWIFTSHADER:-/usr/lib/chromium/vk_swiftshader_icd.json}"
-if [ ! -f "$swiftshader" ] && [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
-    apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium || true
-fi
+[ -f "$swiftshader" ] || install chromium
 if [ -f "$swiftshader" ]; then
-    VK_DRIVER_FILES="$swiftshader" verify --quick --device swiftshader
+    VK_DRIVER_FILES="$swiftshader" verify --device swiftshader
 else
     echo "NOT RUN: there is no $swiftshader (Debian: apt-get install chromium), so one driver is all that was tested"
 fi

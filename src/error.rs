@@ -76,7 +76,7 @@ pub enum Error {
     /// No adapter at all.
     #[error(
         "no GPU adapter was found: install a Vulkan driver (Debian and Ubuntu: apt-get install mesa-vulkan-drivers, \
-         a driver that needs no GPU), or use the CPU with --device cpu"
+         a driver that needs no GPU)"
     )]
     NoAdapter,
 

@@ -12,7 +12,7 @@ use hsad::{
     Error,
     disparity::{DisparityMap, NONE},
     image::Plane,
-    io::{Calibration, MAX_PIXELS, disparity_png, load, pfm, ply, png},
+    io::{Calibration, MAX_PIXELS, csv, disparity_png, homography, load, pfm, ply, png},
 };
 use image::{DynamicImage, ImageFormat};
 use pictures::cmyk_tiff;
@@ -21,13 +21,11 @@ use proptest::prelude::*;
 const FORMATS: [ImageFormat; 6] =
     [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
 
-/// How many cases each property is tried with: `PROPTEST_CASES=100000 cargo test --test io` for a long search.
+/// How many cases each property is tried with: `PROPTEST_CASES=100000 cargo test --test io` for a long search; alone,
+/// `... --test io homography` tries those with it in their names.
 fn cases_or(usual: u32) -> u32 {
     std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("a number of cases"))
 }
-
-/// A decoded picture's largest layout, with room for what a codec keeps beside it.
-const MAX_PICTURE_BYTES: usize = 9 * MAX_PIXELS as usize;
 
 fn path() -> &'static Path {
     Path::new("given.bytes")
@@ -99,7 +97,36 @@ fn mutated(bytes: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
     })
 }
 
+/// A table with the columns of [`POINTS`] in some order, others between them, and blank lines; and its rows.
+fn table() -> impl Strategy<Value = (String, Vec<Vec<f64>>)> {
+    let number = proptest::num::f64::NORMAL | proptest::num::f64::ZERO | proptest::num::f64::SUBNORMAL;
+    let rows = proptest::collection::vec(proptest::collection::vec(number, 3), 0..20);
+    let columns = Just(["x", "y", "scale", "note", "x2"]).prop_shuffle();
+    let end = proptest::sample::select(vec!["\n", "\r\n", "\n\n", "\n  \n"]);
+    (rows, columns, end, any::<bool>()).prop_map(|(rows, columns, end, marked)| {
+        let line = |cell: &dyn Fn(&str) -> String| columns.map(cell).join(", ") + end;
+        let mut text = if marked { "\u{feff}" } else { "" }.to_owned() + &line(&|column| column.into());
+        for row in &rows {
+            text += &line(&|column| {
+                let place = POINTS.iter().position(|&wanted| wanted == column);
+                place.map_or("no number".into(), |place| row[place].to_string())
+            });
+        }
+        (text, rows)
+    })
+}
+
+/// The columns of points, and those of matches.
+const POINTS: [&str; 3] = ["x", "y", "scale"];
+const MATCHES: [&str; 4] = ["x1", "y1", "x2", "y2"];
+
+/// What may stand in a table, and in a homography.
+const WORDS: &str = "(x1?|y2|scale|confidence|nan|-inf|1e999|[-+.0-9eE]{1,30}|,|,|\n|\n|\r| |\\PC){0,80}";
+
 proptest! {
+    // Each takes microseconds.
+    #![proptest_config(ProptestConfig::with_cases(cases_or(2000)))]
+
     #[test]
     fn pfm_comes_back(plane in plane(number_or_infinity())) {
         let mut little = Vec::new();
@@ -151,6 +178,90 @@ proptest! {
     fn calibration_of_mutated_bytes(bytes in mutated(CALIBRATION.into())) {
         check_calibration(&String::from_utf8_lossy(&bytes))?;
     }
+
+    #[test]
+    fn csv_comes_back((text, rows) in table()) {
+        let table = csv::decode(text.as_bytes(), path(), &POINTS, &["missing"]).unwrap();
+        prop_assert_eq!(table.has, [false]);
+        prop_assert_eq!(table.rows.into_iter().map(|(_, row)| row).collect::<Vec<_>>(), rows);
+    }
+
+    #[test]
+    fn csv_of_random_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        check_csv(&bytes)?;
+        check_csv(&[b"x,y,scale\n", &bytes[..]].concat())?;
+    }
+
+    #[test]
+    fn csv_of_words(text in WORDS, others in WORDS) {
+        check_csv(text.as_bytes())?;
+        check_csv(format!("x,scale,y,\n{text}").as_bytes())?;
+        check_csv(format!("x1,y2,x2,y1,confidence{others}\n{text}").as_bytes())?;
+    }
+
+    #[test]
+    fn csv_of_mutated_bytes(bytes in table().prop_flat_map(|(text, _)| mutated(text.into()))) {
+        check_csv(&bytes)?;
+    }
+
+    #[test]
+    fn homography_comes_back(
+        rows in proptest::array::uniform9(proptest::num::f64::NORMAL | proptest::num::f64::ZERO),
+        between in proptest::sample::select(vec![" ", "\n", "\t\r\n "]),
+    ) {
+        let text = rows.map(|number| number.to_string()).join(between);
+        let matrix = homography::decode(text.as_bytes(), path()).unwrap();
+        prop_assert_eq!(matrix.transpose().to_cols_array(), rows);
+    }
+
+    #[test]
+    fn homography_of_random_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..200), text in WORDS) {
+        check_homography(&bytes)?;
+        check_homography(text.as_bytes())?;
+    }
+
+    #[test]
+    fn homography_of_mutated_bytes(bytes in mutated(HOMOGRAPHY.into())) {
+        check_homography(&bytes)?;
+    }
+}
+
+const HOMOGRAPHY: &str = "8.7976964e-01 3.1245438e-01 -3.9430589e+01
+-1.8389418e-01 9.3847198e-01 1.5315784e+02
+1.9641425e-04 -1.6015275e-05 1.0000000e+00
+";
+
+/// Nine finite numbers or an error, and either in so much memory as an error's text takes.
+fn check_homography(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let (result, allocated) = largest_allocation(|| homography::decode(bytes, path()));
+    prop_assert!(allocated <= 2 * bytes.len() + 256, "{} bytes reserved for {}", allocated, bytes.len());
+    if let Ok(matrix) = result {
+        prop_assert!(matrix.is_finite());
+        let words = String::from_utf8_lossy(bytes).split_whitespace().count();
+        prop_assert_eq!(words, 9);
+    }
+    Ok(())
+}
+
+/// Rows of as many finite numbers as there are columns, each with a line of its own.
+fn check_csv(bytes: &[u8]) -> Result<(), TestCaseError> {
+    for (needed, optional) in [(&POINTS[..], &[][..]), (&MATCHES, &["confidence"])] {
+        let (result, allocated) = largest_allocation(|| csv::decode(bytes, path(), needed, optional));
+        // A cell of one byte is 16 in a list of cells, a list as long again while it grows.
+        prop_assert!(allocated <= 32 * bytes.len() + 256, "{} bytes reserved for {}", allocated, bytes.len());
+        let Ok(table) = result else { continue };
+        prop_assert_eq!(table.has.len(), optional.len());
+        let columns = needed.len() + table.has.iter().filter(|&&has| has).count();
+        let lines = String::from_utf8_lossy(bytes).lines().count();
+        // The first is the header.
+        let mut last = 1;
+        for (line, row) in table.rows {
+            prop_assert!(line > last && line <= lines, "line {} after {} of {}", line, last, lines);
+            prop_assert!(row.len() == columns && row.iter().all(|number| number.is_finite()), "{:?}", row);
+            last = line;
+        }
+    }
+    Ok(())
 }
 
 const CALIBRATION: &str = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]
@@ -183,7 +294,7 @@ fn check_pfm(bytes: &[u8]) -> Result<(), TestCaseError> {
 
 proptest! {
     // Each case encodes a picture, or decodes one in six formats.
-    #![proptest_config(ProptestConfig::with_cases(cases_or(64)))]
+    #![proptest_config(ProptestConfig::with_cases(cases_or(1000)))]
 
     #[test]
     fn disparity_png_comes_back(map in plane(prop_oneof![1..65536_i32, Just(NONE)])) {
@@ -224,15 +335,33 @@ proptest! {
     }
 }
 
+/// The most memory that may be reserved at once for a file: for the pixels that its header names, if they are not too
+/// many, in the largest layout; for what a codec keeps of the file itself and beside it.
+fn most_bytes(bytes: &[u8]) -> usize {
+    let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().expect("bytes can be read");
+    let codec = if reader.format() == Some(ImageFormat::Tiff) { TIFF_BYTES } else { CODEC_BYTES };
+    let (width, height) = reader.into_dimensions().unwrap_or_default();
+    let pixels = u64::from(width) * u64::from(height);
+    let pixels = if pixels <= MAX_PIXELS { pixels as usize } else { 0 };
+    8 * pixels + 4 * bytes.len() + codec
+}
+
+/// Buffers and tables of a codec, whatever the picture's size: WebP's take 2 MiB.
+const CODEC_BYTES: usize = 1 << 22;
+
+/// TIFF's: the most that the codec reserves for a list of its header, at 32 bytes a value, before it reads it.
+const TIFF_BYTES: usize = 1 << 28;
+
 fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let (most, format) = (most_bytes(bytes), image::guess_format(bytes).ok());
     let (result, allocated) = largest_allocation(|| load::decode(bytes, path()));
-    prop_assert!(allocated <= MAX_PICTURE_BYTES, "{} bytes reserved", allocated);
+    prop_assert!(allocated <= most, "{:?}: {} bytes reserved, not {} at most", format, allocated, most);
     if let Ok(picture) = result {
         prop_assert!(picture.data().iter().all(|pixel| pixel[3] == 255));
     }
     // Both read the same files, but only one of them 16-bit grey.
     let (map, allocated) = largest_allocation(|| disparity_png::decode(bytes, path()));
-    prop_assert!(allocated <= MAX_PICTURE_BYTES, "{} bytes reserved", allocated);
+    prop_assert!(allocated <= most, "{:?}: {} bytes reserved, not {} at most", format, allocated, most);
     if let Ok(map) = map {
         prop_assert!(map.data().iter().all(|&disparity| disparity == NONE || (1..=65535).contains(&disparity)));
     }

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 
 use hsad::{
     disparity::SCALE,
-    verify::{Case, Extent, Values, cases, goldens, subjects},
+    gpu::DeviceChoice,
+    verify::{Array, Case, Comparison, Extent, Tolerance, Values, cases, goldens, subjects},
 };
 
 #[test]
@@ -52,6 +53,85 @@ fn the_twins_leave_what_is_stored() {
     let without = |name: &str| !stored.lines().any(|line| line.starts_with(&format!("{name} ")));
     let without: Vec<_> = subjects().map(|subject| subject.name).filter(|name| without(name)).collect();
     assert_eq!(without, ["descriptor"]);
+}
+
+/// What the thing from value `at` of `good` on, which has tolerances, could be instead if a kernel were wrong.
+fn garbage(good: &Array, at: usize) -> Vec<Vec<f32>> {
+    let (Values::F32(values), Tolerance::Within { angles, group, length, outliers, .. }) =
+        (&good.values, good.tolerance)
+    else {
+        panic!("{} are floats with a tolerance", good.name)
+    };
+    let thing = &values[at..at + group];
+    let first_is = |value: f32| [&[value], &thing[1..]].concat();
+    let mut garbage = [f32::NAN, f32::INFINITY, -f32::INFINITY, 1e30, -1e30].map(first_is).to_vec();
+    if angles {
+        garbage.extend([-0.1, 6.3].map(first_is));
+    }
+    if length.is_some() && thing.iter().any(|&value| value != 0.0) {
+        let times = |factor: f32| thing.iter().map(|value| factor * value).collect();
+        garbage.extend([0.0, 0.98, 2.0].map(times));
+        // As long as it should be, and another one: only where an orientation can be another one, that can be right.
+        if outliers.is_none_or(|outliers| outliers.difference < 0.1) {
+            garbage.extend([times(-1.0), [&thing[5..], &thing[..5]].concat()]);
+        }
+    }
+    garbage
+}
+
+/// As many things as may be off are no room for any that nothing explains, wherever it stands and however few there are.
+#[test]
+fn garbage_in_one_thing_is_noticed() {
+    let inexact = ["nonmax", "orientation", "descriptor", "features"];
+    let (mut without_outliers, mut with_outliers) = (0, 0);
+    for case in [Extent::Full, Extent::Quick].into_iter().flat_map(cases) {
+        if !inexact.contains(&case.subject.name) {
+            continue;
+        }
+        for good in case.trial().twin().unwrap() {
+            let Tolerance::Within { group, outliers, .. } = good.tolerance else { continue };
+            if good.values.is_empty() {
+                continue;
+            }
+            let noticed = |at: usize, thing: &[f32]| {
+                let mut bad = good.clone();
+                let Values::F32(values) = &mut bad.values else { unreachable!("what has a tolerance is a float") };
+                values[at..at + group].copy_from_slice(thing);
+                Comparison::new(&bad, &good).fault.is_some()
+            };
+            let last = good.values.len() - group;
+            for (at, thing) in
+                [0, last].into_iter().flat_map(|at| garbage(&good, at).into_iter().map(move |thing| (at, thing)))
+            {
+                assert!(noticed(at, &thing), "{case:?}, {} from {at} on: {thing:?}", good.name);
+            }
+            // A little off: only where there are many, and something may be.
+            let Values::F32(values) = &good.values else { unreachable!("what has a tolerance is a float") };
+            let mut thing = values[..group].to_vec();
+            thing[0] += 0.04;
+            let many = good.values.len() >= 200 * group;
+            if outliers.is_some() && many {
+                with_outliers += 1;
+            } else {
+                without_outliers += 1;
+                assert!(noticed(0, &thing), "{case:?}, {}: {thing:?}", good.name);
+            }
+        }
+    }
+    // There are some of either kind.
+    assert!(without_outliers > 20 && with_outliers > 2, "{without_outliers} {with_outliers}");
+}
+
+/// Whatever a device was chosen by, a shell gives it back.
+#[test]
+fn the_command_names_the_device() {
+    let case = Case::new("pad", (17, 13), 5).unwrap();
+    let command = |device: &str| case.command(&device.parse().unwrap());
+    let alone = "hsad verify --only pad --size 17x13 --seed 5";
+    assert_eq!(command("best"), alone);
+    assert_eq!(command("1"), format!("{alone} --device '1'"));
+    assert_eq!(command("Tom's $GPU"), format!(r"{alone} --device 'Tom'\''s $GPU'"));
+    assert_eq!(case.command(&DeviceChoice::Named("a b".into())), format!("{alone} --device 'a b'"));
 }
 
 #[test]

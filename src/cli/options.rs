@@ -2,6 +2,7 @@
 
 use std::{fmt::Display, path::PathBuf};
 
+use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
@@ -35,26 +36,27 @@ pub struct RunOptions {
 
 impl RunOptions {
     /// Opens the device, and tests it if that is asked for.
-    pub fn open(&self) -> Result<Backend> {
+    pub fn open(&self) -> anyhow::Result<Backend> {
         let backend = self.open_untested()?;
         if let (true, Backend::Gpu(gpu)) = (self.self_test, &backend) {
             let progress = Progress::new(self.quiet);
             progress.begin("testing the device");
-            self_test(gpu)?;
+            self_test(gpu, &self.device)?;
         }
         Ok(backend)
     }
 
     /// The best device there is can be none at all, and then the CPU works.
-    fn open_untested(&self) -> Result<Backend> {
+    fn open_untested(&self) -> anyhow::Result<Backend> {
         match Backend::open(&self.device) {
             Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if self.device == DeviceChoice::Best => {
                 if !self.quiet {
                     terminal::warning(format!("the CPU does the work, since {error}"));
                 }
-                Backend::open(&DeviceChoice::Cpu)
+                Ok(Backend::open(&DeviceChoice::Cpu)?)
             }
-            opened => opened,
+            Err(error @ Error::NoAdapter) => Err(anyhow!("{error}, or use the CPU with --device cpu")),
+            opened => Ok(opened?),
         }
     }
 }

@@ -161,6 +161,26 @@ impl Output {
     }
 }
 
+/// Finds out, before any work, whether a file can be written.
+///
+/// # Errors
+/// [`Error::Io`] with its path.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
+    let tried = if path.is_dir() {
+        Err(io::ErrorKind::IsADirectory.into())
+    } else if path.exists() {
+        Ok(())
+    } else {
+        temporary_in(folder).map(drop)
+    };
+    tried.map_err(|error| {
+        let reason = format!("the file cannot be written ({error}): name another one");
+        Error::Io { path: path.into(), source: io::Error::new(error.kind(), reason) }
+    })
+}
+
 /// Writes JSON as people can read it, too.
 ///
 /// # Errors

@@ -3,12 +3,12 @@
 use std::{
     fmt::Write as _,
     fs,
-    io::Write as _,
+    io::{self, Write as _},
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use clap::Args;
 use hsad::{
     Error,
@@ -18,7 +18,10 @@ use hsad::{
 };
 use serde_json::{Value, json};
 
-use super::terminal::{self, Progress};
+use super::{
+    output::{Output, check_writable, write_json},
+    terminal::{self, Progress},
+};
 
 /// Hold every kernel on a device against its CPU twin
 ///
@@ -71,6 +74,10 @@ impl Verify {
     /// Runs all cases, prints them as they come, and leaves what fails.
     pub fn run(self) -> anyhow::Result<()> {
         let cases = self.cases()?;
+        // An empty folder goes again.
+        let folder = Output::open(&self.output)?;
+        let json_file = self.json.as_deref().filter(|file| *file != Path::new("-"));
+        json_file.map(check_writable).transpose()?;
         let gpu = Gpu::open(&self.device)?;
         let table = !self.quiet && self.json.as_deref() != Some(Path::new("-"));
         let print = |text: &str| if table { terminal::print(text) } else { Ok(()) };
@@ -79,14 +86,15 @@ impl Verify {
 
         let start = Instant::now();
         let progress = Progress::new(self.quiet);
-        let (mut reports, mut faults) = (Vec::new(), 0);
+        let (mut reports, mut faults, mut unkept) = (Vec::new(), 0, Vec::new());
         for case in &cases {
             progress.begin(case.subject.name);
             let outcome = case.run(&Bench::new(&gpu));
             progress.suspend(|| print(&row(&outcome)))?;
             if !outcome.passes() {
                 faults += 1;
-                leave(&self.output, &device, &outcome, &self.command(case))?;
+                let left = leave(folder.folder(), &device, &outcome, &case.command(&self.device));
+                unkept.extend(left.err());
             }
             reports.push(self.report(&outcome));
             if outcome.lost {
@@ -108,7 +116,14 @@ impl Verify {
                 "failed": faults,
                 "cases": reports,
             });
-            write_json(path, &report)?;
+            if json_file.is_some() {
+                atomic::write_whole(path, |out| write_json(out, &report))?;
+            } else {
+                terminal::print(&format!("{report:#}\n"))?;
+            }
+        }
+        for error in unkept {
+            terminal::error(&anyhow!("what failed was not kept: {error}"));
         }
         if faults > 0 {
             let lost = if ran < cases.len() { "; the device is lost, and the rest was not run" } else { "" };
@@ -140,14 +155,6 @@ impl Verify {
         Ok(cases)
     }
 
-    /// What repeats a case on this device.
-    fn command(&self, case: &Case) -> String {
-        match &self.device {
-            DeviceChoice::Named(name) => format!("{} --device '{name}'", case.command()),
-            _ => case.command(),
-        }
-    }
-
     fn report(&self, outcome: &Outcome) -> Value {
         let Outcome { case, parameters, device_time, twin_time, comparisons, faults, golden, .. } = outcome;
         let array = |comparison: &Comparison| {
@@ -165,7 +172,7 @@ impl Verify {
             "seconds": { "device": device_time.as_secs_f64(), "twin": twin_time.as_secs_f64() },
             "passes": outcome.passes(),
             "faults": faults,
-            "command": self.command(case),
+            "command": case.command(&self.device),
         })
     }
 }
@@ -222,27 +229,18 @@ fn time(time: Duration) -> String {
     }
 }
 
-fn write_json(path: &Path, report: &Value) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(report)? + "\n";
-    if path == Path::new("-") {
-        terminal::print(&text)?;
-    } else {
-        atomic::write_whole(path, |out| out.write_all(text.as_bytes()))?;
-    }
-    Ok(())
-}
-
-/// Leaves all arrays of a case in a folder of its own, with a text that says what they are.
+/// Leaves all arrays of a case in a folder of its own, with a text that says what they are, and nothing that an earlier
+/// run left there.
 fn leave(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
     let Outcome { case, parameters, faults, input, expected, actual, .. } = outcome;
     let (width, height) = case.size;
     let folder = folder.join(format!("{}-{width}x{height}-{}", case.subject.name, case.seed));
     let failed = |source| Error::Io { path: folder.clone(), source };
-    fs::create_dir_all(&folder).map_err(failed)?;
+    fs::create_dir_all(&folder).and_then(|()| remove_left(&folder)).map_err(failed)?;
     let mut text = format!("{command}\n\n{device}{parameters}\n");
     faults.iter().for_each(|fault| text += &format!("{fault}\n"));
     text += "\nfile, number of values, type; all values have their lowest byte first\n";
-    for (kind, arrays) in [("input", input), ("expected", expected), ("actual", actual)] {
+    for (kind, arrays) in KINDS.into_iter().zip([input, expected, actual]) {
         for Array { name, values, .. } in arrays {
             let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
             let file = format!("{kind}-{}.{}", words.join("-"), values.kind());
@@ -250,7 +248,26 @@ fn leave(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad:
             text += &format!("{file} {} {}\n", values.len(), values.kind());
         }
     }
-    atomic::write_whole(&folder.join("case.txt"), |out| out.write_all(text.as_bytes()))?;
+    atomic::write_whole(&folder.join(TEXT), |out| out.write_all(text.as_bytes()))
+}
+
+/// What the files of arrays begin with.
+const KINDS: [&str; 3] = ["input", "expected", "actual"];
+
+/// The file that says what the others are.
+const TEXT: &str = "case.txt";
+
+/// Removes what [`leave`] has left in a folder, and no other file.
+fn remove_left(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let of_array = || KINDS.iter().any(|kind| name.strip_prefix(kind).is_some_and(|rest| rest.starts_with('-')));
+        if name == TEXT || of_array() {
+            fs::remove_file(entry.path())?;
+        }
+    }
     Ok(())
 }
 
@@ -284,8 +301,17 @@ mod tests {
         assert!(row.contains("1.000e0 (1 off)"), "{row}");
         assert!(row.ends_with("\n  FAILS: some words, two: value 1 is 3, not 2; 1 are off\n"), "{row}");
         let folder = tempfile::tempdir().unwrap();
-        leave(folder.path(), "a device\n", &outcome, &outcome.case.command()).unwrap();
+        let leave = || leave(folder.path(), "a device\n", &outcome, &outcome.case.command(&DeviceChoice::Best));
         let left = folder.path().join("pad-17x13-5");
+        // Of an earlier run, and of someone else.
+        fs::create_dir(&left).unwrap();
+        fs::write(left.join("actual-another.i32"), "old").unwrap();
+        fs::write(left.join("notes.txt"), "mine").unwrap();
+        leave().unwrap();
+        let mut names: Vec<_> = fs::read_dir(&left).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        let expected = ["actual-some-words-two.u32", "case.txt", "expected-some-words-two.u32", "notes.txt"];
+        assert_eq!(names, expected);
         assert_eq!(fs::read(left.join("actual-some-words-two.u32")).unwrap(), [1, 0, 0, 0, 3, 0, 0, 0]);
         assert_eq!(fs::read(left.join("expected-some-words-two.u32")).unwrap(), [1, 0, 0, 0, 2, 0, 0, 0]);
         let text = fs::read_to_string(left.join("case.txt")).unwrap();

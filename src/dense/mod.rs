@@ -68,32 +68,44 @@ pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use walk::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use weighted_median::{Median, WeightedMedian};
 
-/// Every stage of the dense half, for checks that need no GPU; block matching once for each
-/// window, either view and what it may be asked for.
+/// Every stage of the dense half, for checks that need no GPU, with all constants that make another kernel of it: block
+/// matching for each window, either view and what it may be asked for, and what has tiles or rows both with those for
+/// lavapipe and with those for all other devices.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage(), PartnerRanges::stage()];
     stages.push(Claim::stage());
     stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
+    let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
     for window in (3..=31).step_by(2) {
-        let hardware = [Tile::HARDWARE; 2];
-        let [tile, winners] = if window % 4 == 1 { hardware } else { [Tile::SOFTWARE, Tile::SOFTWARE_WINNERS] };
-        let config = DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
-        for view in [View::Left, View::Right] {
-            stages.push(BlockMatch::stage(&config, view, Wanted::Matches, tile));
-            stages.push(BlockMatch::stage(&config, view, Wanted::Winners, winners));
+        for [tile, winners] in [[Tile::SOFTWARE, Tile::SOFTWARE_WINNERS], [Tile::HARDWARE; 2]] {
+            for view in [View::Left, View::Right] {
+                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Matches, tile));
+                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Winners, winners));
+            }
         }
     }
+    let interpolations = [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular];
+    stages.extend(interpolations.map(|interpolation| {
+        let config = DenseConfig { interpolation, ..blocks(3) };
+        BlockMatch::stage(&config, View::Left, Wanted::Matches, Tile::HARDWARE)
+    }));
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part };
     stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
-    stages.push(BoxMean::stage(3));
+    stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
-    stages.extend([Wanted::Matches, Wanted::Winners].map(|wanted| {
-        let keys = wanted == Wanted::Matches;
-        let selection = Selection { stored: 3, interpolation: Interpolation::Parabola, wanted, keys, uniqueness: 0 };
-        Select::stage(&penalties, 2, selection)
-    }));
+    // Where there are no paths, no penalties are left in the code, and nothing is summed up.
+    for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
+        for interpolation in interpolations {
+            stages.extend([(Wanted::Matches, true), (Wanted::Matches, false), (Wanted::Winners, false)].map(
+                |(wanted, keys)| {
+                    let selection = Selection { stored, interpolation, wanted, keys, uniqueness: 0 };
+                    Select::stage(&penalties, 2, selection)
+                },
+            ));
+        }
+    }
     stages.extend([Residual::stage(), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));

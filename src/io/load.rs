@@ -20,6 +20,9 @@ use crate::error::{Error, Result};
 /// The largest sample layout that is accepted, RGBA of 16 bits.
 const MAX_BYTES_PER_PIXEL: u64 = 8;
 
+/// What a codec may need beside the pixels and the file.
+const CODEC_BYTES: u64 = 1 << 22;
+
 /// Loads a picture.
 ///
 /// # Errors
@@ -90,6 +93,11 @@ pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     check_pixels(width, height, path)?;
+    // Other claims of the header need no more than the pixels and the file itself do.
+    let pixels = u64::from(width) * u64::from(height);
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_BYTES_PER_PIXEL * pixels + bytes.len() as u64 + CODEC_BYTES);
+    decoder.set_limits(limits).map_err(damaged)?;
     let stored = decoder.original_color_type();
     if matches!(stored, ExtendedColorType::Cmyk8 | ExtendedColorType::Cmyk16) {
         return Err(unsupported("CMYK", path));

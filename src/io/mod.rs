@@ -1,11 +1,11 @@
-//! Files in and out: pictures, disparity maps, calibrations, point clouds and figures.
+//! Files in and out: pictures, disparity maps, calibrations, homographies, tables, point clouds and figures.
 //!
 //! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes
 //! and its path, which is there to be named in errors. No header is believed: memory is reserved
 //! only for bytes that are really there, or up to [`MAX_PIXELS`] where a codec expands them.
 //!
 //! Reading pictures comes with the feature `pictures`, writing them and whole files with `cli`; PFM,
-//! calibrations, PLY and colour maps are always there.
+//! calibrations, PLY, tables, homographies and colour maps are always there.
 
 #[cfg(feature = "cli")]
 pub mod atomic;
@@ -18,6 +18,7 @@ pub mod disparities;
 pub mod disparity_png;
 #[cfg(feature = "cli")]
 pub mod figure;
+pub mod homography;
 #[cfg(feature = "pictures")]
 mod jpeg;
 #[cfg(feature = "pictures")]

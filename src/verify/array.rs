@@ -1,6 +1,6 @@
 //! What kernels are given and what they leave, and how far the results of two may be apart.
 
-use std::f32::consts::TAU;
+use std::{f32::consts::TAU, ops::Range};
 
 /// Values in a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,9 +109,21 @@ pub enum Tolerance {
         angles: bool,
         /// So many values in a row are one thing, which is off where any of them is.
         group: usize,
-        /// Of a thousand things so many may be off, rounded up to whole ones.
-        outliers: usize,
+        /// Where a thing is a vector: how far its length may be from the twin's, that of an outlier too.
+        length: Option<f32>,
+        /// Things that may be off nevertheless.
+        outliers: Option<Outliers>,
     },
+}
+
+/// A few things that may be further off than the others, where a last digit decides between two answers: no excuse for
+/// anything that is no answer at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outliers {
+    /// Of a thousand things so many, rounded down: where 5 may, none may among fewer than 200 things.
+    pub of_thousand: usize,
+    /// The largest difference of any of their values.
+    pub difference: f32,
 }
 
 impl Tolerance {
@@ -119,8 +131,10 @@ impl Tolerance {
     pub fn text(&self) -> String {
         match *self {
             Self::Exact => "exact".into(),
-            Self::Within { difference, outliers: 0, .. } => format!("{difference}"),
-            Self::Within { difference, outliers, .. } => format!("{difference}, but {outliers} of 1000"),
+            Self::Within { difference, outliers: None, .. } => format!("{difference}"),
+            Self::Within { difference, outliers: Some(Outliers { of_thousand, difference: most, .. }), .. } => {
+                format!("{difference}, {of_thousand} of 1000 to {most:.2}")
+            }
         }
     }
 
@@ -134,8 +148,8 @@ impl Tolerance {
     /// How many things of `count` may be off.
     fn allowed(&self, count: usize) -> usize {
         match *self {
-            Self::Exact => 0,
-            Self::Within { outliers, .. } => (outliers * count).div_ceil(1000),
+            Self::Exact | Self::Within { outliers: None, .. } => 0,
+            Self::Within { outliers: Some(outliers), .. } => outliers.of_thousand * count / 1000,
         }
     }
 }
@@ -187,24 +201,36 @@ impl Comparison {
             return comparison;
         }
         let group = tolerance.group();
-        let mut first = None;
+        let (mut first, mut first_beyond) = (None, None);
         for start in (0..wanted.len()).step_by(group) {
+            let thing = start..(start + group).min(wanted.len());
             let mut off = None;
-            for index in start..(start + group).min(wanted.len()) {
+            // Where it is off by more than even an outlier may be.
+            let mut beyond = None;
+            for index in thing.clone() {
                 let (difference, near) = compare(values, wanted, index, tolerance);
                 // NaN is further away than any number, and stays.
                 if difference.is_nan() || difference > comparison.largest {
                     comparison.largest = difference;
                 }
-                if !near {
+                if near != Near::Enough {
                     off = off.or(Some(index));
                 }
+                if near == Near::No {
+                    beyond = beyond.or(Some(index));
+                }
+            }
+            if !length_kept(values, wanted, thing, tolerance) {
+                off = off.or(Some(start));
+                beyond = beyond.or(off);
             }
             comparison.count += 1;
             comparison.off += usize::from(off.is_some());
             first = first.or(off);
+            first_beyond = first_beyond.or(beyond);
         }
-        if let (Some(index), true) = (first, comparison.off > tolerance.allowed(comparison.count)) {
+        let too_many = first.filter(|_| comparison.off > tolerance.allowed(comparison.count));
+        if let Some(index) = first_beyond.or(too_many) {
             let (is, should, off) = (values.text(index), wanted.text(index), comparison.off);
             comparison.fault = Some(format!("{name}: value {index} is {is}, not {should}; {off} are off"));
         }
@@ -212,24 +238,47 @@ impl Comparison {
     }
 }
 
-/// The difference of two values, and whether it is within `tolerance`.
-fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Tolerance) -> (f64, bool) {
+/// What a value is taken for.
+#[derive(Clone, Copy, PartialEq)]
+enum Near {
+    /// The same, or within the tolerance.
+    Enough,
+    /// Off by no more than an outlier may be.
+    AnOutlier,
+    /// Neither.
+    No,
+}
+
+/// The difference of two values, and what `tolerance` takes the first for.
+fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Tolerance) -> (f64, Near) {
     let (a, e) = (actual.number(index), expected.number(index));
     let difference = (a - e).abs();
-    match tolerance {
-        Tolerance::Exact => {
-            let same = match (actual, expected) {
-                (Values::F32(actual), Values::F32(expected)) => actual[index].to_bits() == expected[index].to_bits(),
-                _ => a == e,
-            };
-            (difference, same)
-        }
-        Tolerance::Within { difference: limit, angles: false, .. } => (difference, difference <= limit.into()),
-        Tolerance::Within { difference: limit, .. } => {
-            let around = difference.min(f64::from(TAU) - difference);
-            (around, (0.0..TAU.into()).contains(&a) && around <= limit.into())
-        }
-    }
+    let Tolerance::Within { difference: limit, angles, outliers, .. } = tolerance else {
+        let same = match (actual, expected) {
+            (Values::F32(actual), Values::F32(expected)) => actual[index].to_bits() == expected[index].to_bits(),
+            _ => a == e,
+        };
+        return (difference, if same { Near::Enough } else { Near::No });
+    };
+    let difference = if angles { difference.min(f64::from(TAU) - difference) } else { difference };
+    let in_range = !angles || (0.0..TAU.into()).contains(&a);
+    // No comparison with NaN holds, and infinity is within no limit.
+    let within = |limit: f32| in_range && difference <= limit.into();
+    let near = match outliers {
+        _ if within(limit) => Near::Enough,
+        Some(outliers) if within(outliers.difference) => Near::AnOutlier,
+        _ => Near::No,
+    };
+    (difference, near)
+}
+
+/// Whether a thing is as long a vector as it should be, where that is asked for.
+fn length_kept(actual: &Values, expected: &Values, thing: Range<usize>, tolerance: Tolerance) -> bool {
+    let Tolerance::Within { length: Some(limit), .. } = tolerance else {
+        return true;
+    };
+    let length = |values: &Values| thing.clone().map(|index| values.number(index).powi(2)).sum::<f64>().sqrt();
+    (length(actual) - length(expected)).abs() <= limit.into()
 }
 
 #[cfg(test)]
@@ -240,8 +289,8 @@ mod tests {
         Comparison::new(&actual, &expected).fault
     }
 
-    fn floats(values: impl Into<Vec<f32>>, angles: bool, group: usize, outliers: usize) -> Array {
-        let tolerance = Tolerance::Within { difference: 0.001, angles, group, outliers };
+    fn floats(values: impl Into<Vec<f32>>, angles: bool) -> Array {
+        let tolerance = Tolerance::Within { difference: 0.001, angles, group: 1, length: None, outliers: None };
         Array { name: "floats", values: values.into().into(), tolerance }
     }
 
@@ -273,32 +322,55 @@ mod tests {
 
     #[test]
     fn a_changed_float_is_seen() {
-        let good = || floats([1.0, 2.0], false, 1, 0);
-        assert_eq!(fault(floats([1.0009, 2.0], false, 1, 0), good()), None);
+        let good = || floats([1.0, 2.0], false);
+        assert_eq!(fault(floats([1.0009, 2.0], false), good()), None);
         for value in [1.002, -1.0, f32::NAN, f32::INFINITY] {
-            let changed = Comparison::new(&floats([value, 2.0], false, 1, 0), &good());
+            let changed = Comparison::new(&floats([value, 2.0], false), &good());
             assert!(changed.fault.is_some() && (changed.largest > 0.001 || changed.largest.is_nan()), "{changed:?}");
         }
     }
 
     #[test]
     fn a_changed_angle_is_seen() {
-        let angles = |values: [f32; 2]| floats(values, true, 1, 0);
+        let angles = |values: [f32; 2]| floats(values, true);
         assert_eq!(fault(angles([1.0, 0.0]), angles([1.0, TAU - 1e-4])), None);
         for value in [1.002, TAU + 1.0, f32::NAN] {
             assert!(fault(angles([value, 0.0]), angles([1.0, 0.0])).is_some(), "{value}");
         }
     }
 
+    /// Vectors of length 1 along the first of their two axes, the first of them another way round; one of 200 may be off.
+    fn vectors(count: usize, turned: &[f32]) -> Array {
+        let outliers = Some(Outliers { of_thousand: 5, difference: 0.5 });
+        let tolerance = Tolerance::Within { difference: 0.001, angles: false, group: 2, length: Some(1e-4), outliers };
+        let angle = |index| turned.get(index).copied().unwrap_or(0.0);
+        let values: Vec<f32> = (0..count).flat_map(|index| [angle(index).cos(), angle(index).sin()]).collect();
+        Array { name: "vectors", values: values.into(), tolerance }
+    }
+
     #[test]
     fn more_than_may_be_off_are_seen() {
-        let mut values = vec![1.0; 400];
-        values[14] = 9.0;
-        values[15] = 9.0;
-        // Two values of one pair: one of 200 is allowed.
-        assert_eq!(fault(floats(values.clone(), false, 2, 5), floats(vec![1.0; 400], false, 2, 5)), None);
-        values[16] = 9.0;
-        let expected = Some("floats: value 14 is 9, not 1; 2 are off");
-        assert_eq!(fault(floats(values, false, 2, 5), floats(vec![1.0; 400], false, 2, 5)).as_deref(), expected);
+        assert_eq!(fault(vectors(200, &[0.3]), vectors(200, &[])), None);
+        let expected = "vectors: value 0 is 0.9553365, not 1; 2 are off";
+        assert_eq!(fault(vectors(200, &[0.3, 0.3]), vectors(200, &[])).as_deref(), Some(expected));
+        assert_eq!(fault(vectors(400, &[0.3, 0.3]), vectors(400, &[])), None);
+        // There has to be a whole one that may be off.
+        assert!(fault(vectors(199, &[0.3]), vectors(199, &[])).is_some());
+        assert!(fault(vectors(1, &[0.3]), vectors(1, &[])).is_some());
+    }
+
+    #[test]
+    fn what_is_no_outlier_but_garbage_is_seen() {
+        let good = vectors(1000, &[]);
+        for garbage in [[f32::NAN, 0.0], [f32::INFINITY, 0.0], [1.0, f32::NAN], [0.4, 0.917], [0.9, 0.0], [0.9995, 0.0]]
+        {
+            let mut changed = good.clone();
+            let Values::F32(values) = &mut changed.values else { unreachable!("they are floats") };
+            values[40..42].copy_from_slice(&garbage);
+            let comparison = Comparison::new(&changed, &good);
+            let value = if garbage[0] == 1.0 { "value 41 is NaN, not 0" } else { "value 40 is" };
+            assert!(comparison.fault.is_some_and(|fault| fault.contains(value)), "{garbage:?}");
+            assert_eq!(comparison.off, 1);
+        }
     }
 }

@@ -11,7 +11,10 @@ use super::{
     dice::{Dice, Size},
     goldens,
 };
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    gpu::DeviceChoice,
+};
 
 /// A kernel, or several in a row, with everything they are given.
 pub trait Trial {
@@ -119,10 +122,14 @@ impl Case {
         (self.subject.draw)(self.size, &mut Dice::new(self.subject.name, self.seed))
     }
 
-    /// The command that repeats this case alone.
-    pub fn command(&self) -> String {
+    /// The command that repeats this case alone, on `device`.
+    pub fn command(&self, device: &DeviceChoice) -> String {
         let (width, height) = self.size;
-        format!("hsad verify --only {} --size {width}x{height} --seed {}", self.subject.name, self.seed)
+        let command = format!("hsad verify --only {} --size {width}x{height} --seed {}", self.subject.name, self.seed);
+        match device {
+            DeviceChoice::Named(name) => format!("{command} --device {}", quoted(name)),
+            DeviceChoice::Best | DeviceChoice::Cpu => command,
+        }
     }
 
     /// Runs it on a device and on the CPU.
@@ -167,6 +174,11 @@ impl Case {
         }
         outcome
     }
+}
+
+/// A word as a shell takes it for itself, whatever stands in it.
+fn quoted(word: &str) -> String {
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// What came of a case.

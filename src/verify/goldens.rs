@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn floats_with_a_tolerance_are_not_hashed() {
         let exact = Array::exact("words", vec![1_u32, 2]);
-        let tolerance = Tolerance::Within { difference: 0.1, angles: false, group: 1, outliers: 0 };
+        let tolerance = Tolerance::Within { difference: 0.1, angles: false, group: 1, length: None, outliers: None };
         let floats = Array { name: "floats", values: vec![1.5_f32].into(), tolerance };
         assert_eq!(hash(std::slice::from_ref(&floats)), None);
         assert_eq!(hash(&[exact.clone(), floats]), hash(std::slice::from_ref(&exact)));

@@ -18,14 +18,14 @@ pub mod paths;
 pub mod pipelines;
 pub mod points;
 
-pub use array::{Array, Comparison, Tolerance, Values};
+pub use array::{Array, Comparison, Outliers, Tolerance, Values};
 pub use bench::Bench;
 pub use case::{Case, MAX_SIDE, Outcome, Subject, Trial, compare};
 pub use dice::{Dice, Size, smooth_noise};
 
 use crate::{
     error::{Error, Result},
-    gpu::Gpu,
+    gpu::{DeviceChoice, Gpu},
 };
 
 /// Sizes that divide by nothing, that are smaller than any filter, that are all edge.
@@ -67,16 +67,17 @@ pub fn cases(extent: Extent) -> Vec<Case> {
     subjects().flat_map(of_subject).collect()
 }
 
-/// Refuses a device on which any kernel fails, at one size.
+/// Refuses a device on which any kernel fails, at one size. `choice` is what it was opened by, for the command that
+/// repeats the failure.
 ///
 /// # Errors
 /// [`Error::WrongResults`].
-pub fn self_test(gpu: &Gpu) -> Result<()> {
+pub fn self_test(gpu: &Gpu, choice: &DeviceChoice) -> Result<()> {
     let bench = Bench::new(gpu);
     for case in cases(Extent::Quick) {
         if let Some(fault) = case.run(&bench).faults.into_iter().next() {
             let what = format!("{}: {fault}", case.subject.name);
-            return Err(Error::WrongResults { device: gpu.info.name.clone(), what, command: case.command() });
+            return Err(Error::WrongResults { device: gpu.info.name.clone(), what, command: case.command(choice) });
         }
     }
     Ok(())

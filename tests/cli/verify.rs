@@ -1,11 +1,11 @@
 //! `hsad verify`.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
 
-use crate::common::{folder, hsad, hsad_without_driver, names, scene};
+use crate::common::{fails, folder, hsad, hsad_without_driver, names, scene};
 
 #[test]
 fn one_case_as_a_table_and_as_json() {
@@ -41,7 +41,35 @@ fn what_cannot_be_verified_is_told() {
     hsad().args(["verify", "--size", "17"]).assert().code(2).stderr(contains("as in 311x239"));
     hsad().args(["verify", "--size", "5000x2"]).assert().code(2).stderr(contains("1 to 4096 px"));
     hsad().args(["verify", "--device", "cpu"]).assert().code(1).stderr(contains("adapters only"));
-    hsad_without_driver().arg("verify").assert().code(1).stderr(contains("no GPU adapter was found"));
+}
+
+/// A device is what is verified, so the CPU is no way out.
+#[test]
+fn without_a_driver_the_cpu_is_offered_to_those_who_can_use_it() {
+    let told = || contains("no GPU adapter was found").and(contains("apt-get install mesa-vulkan-drivers"));
+    let cpu = || contains("--device cpu");
+    hsad_without_driver().arg("verify").assert().code(1).stderr(told().and(cpu().not()));
+    let mut command = hsad_without_driver();
+    command.args(["features", "--device", "0"]).arg(scene("weak", "left.png"));
+    command.assert().code(1).stderr(told().and(cpu()));
+}
+
+/// Before a single case has run.
+#[test]
+fn what_cannot_be_written_is_told_at_once() {
+    let temporary = folder();
+    let file = temporary.path().join("file");
+    fs::write(&file, "mine").unwrap();
+    let verify = |option: &str, path: &Path| {
+        let mut command = hsad();
+        command.current_dir(temporary.path()).args(["verify", "--only", "pad", option]).arg(path);
+        command
+    };
+    fails(verify("-o", &file), 1, "name another folder");
+    fails(verify("-o", &file.join("below")), 1, "name another folder");
+    fails(verify("--json", &temporary.path().join("missing/report.json")), 1, "name another one");
+    fails(verify("--json", temporary.path()), 1, "name another one");
+    assert_eq!(names(temporary.path()), ["file"]);
 }
 
 #[test]

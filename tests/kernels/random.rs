@@ -2,7 +2,10 @@
 //!
 //! `PROPTEST_CASES=2000 cargo test --test kernels anything` takes half an hour on a software driver.
 
-use hsad::verify::{Case, Subject, subjects};
+use hsad::{
+    gpu::DeviceChoice,
+    verify::{Case, Subject, subjects},
+};
 use proptest::{
     prelude::*,
     test_runner::{Config, TestRunner},
@@ -25,7 +28,7 @@ fn anything_equals_the_twin() {
     let checked = TestRunner::new(config).run(&strategy, |(subject, size, seed)| {
         let case = Case::new(subject.name, size, seed).expect("a case that exists");
         let outcome = case.run(&bench());
-        prop_assert!(outcome.passes(), "{}: {:?}", case.command(), outcome.faults);
+        prop_assert!(outcome.passes(), "{}: {:?}", case.command(&DeviceChoice::Best), outcome.faults);
         Ok(())
     });
     if let Err(error) = checked {

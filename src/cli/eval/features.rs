@@ -22,12 +22,12 @@ use serde_json::json;
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        check_writable, complain,
+        complain,
         kept::{self, Place},
         scenes,
     },
     options::{FeatureOptions, RunOptions, with_default},
-    output::Output,
+    output::{Output, check_writable},
     report,
     terminal::{self, Progress},
 };

@@ -5,11 +5,10 @@ mod kept;
 mod paper;
 mod scenes;
 
-use std::{fmt::Display, io, path::Path};
+use std::fmt::Display;
 
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
-use hsad::{Error, io::atomic::temporary_in};
 
 use crate::cli::terminal;
 
@@ -43,21 +42,4 @@ fn complain(failures: &[impl Display]) -> anyhow::Result<()> {
     let Some((last, others)) = failures.split_last() else { return Ok(()) };
     others.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
     Err(anyhow!("{last}"))
-}
-
-/// Finds out, before any work, whether a file can be written.
-fn check_writable(path: &Path) -> hsad::Result<()> {
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
-    let tried = if path.is_dir() {
-        Err(io::ErrorKind::IsADirectory.into())
-    } else if path.exists() {
-        Ok(())
-    } else {
-        temporary_in(folder).map(drop)
-    };
-    tried.map_err(|error| {
-        let reason = format!("the file cannot be written ({error}): name another one");
-        Error::Io { path: path.into(), source: io::Error::new(error.kind(), reason) }
-    })
 }

@@ -17,9 +17,9 @@ use serde_json::{Value, json};
 
 use self::{given::Given, record::Record, run::Run};
 use crate::cli::{
-    eval::{check_writable, complain, kept, scenes},
+    eval::{complain, kept, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
-    output::{Output, write_json},
+    output::{Output, check_writable, write_json},
     report, terminal,
 };
 

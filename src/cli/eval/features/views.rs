@@ -2,16 +2,14 @@
 
 use std::{
     cell::OnceCell,
-    fs,
     path::{Path, PathBuf},
 };
 
-use glam::DMat3;
 use hsad::{
     Error, Result,
     dense::View,
     eval::{Truth, scene::SceneFiles},
-    io::{Picture, load},
+    io::{Picture, homography, load},
 };
 
 /// A pair of views, read when it is first needed, which may be never.
@@ -112,7 +110,7 @@ impl Pair {
             }
             Files::Plane { first, second, matrix } => {
                 let (first, second) = (load::load(first)?, load::load(second)?);
-                let truth = Truth::homography(read_matrix(matrix)?, first.size(), second.size())
+                let truth = Truth::homography(homography::read(matrix)?, first.size(), second.size())
                     .map_err(|error| Error::Format { path: matrix.clone(), reason: error.to_string() })?;
                 Views { first, second, truth }
             }
@@ -125,14 +123,4 @@ impl Pair {
 fn folder_name(folder: &Path) -> String {
     let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     name.unwrap_or_else(|| folder.display().to_string())
-}
-
-/// Nine numbers, row by row.
-fn read_matrix(path: &Path) -> Result<DMat3> {
-    let text = fs::read_to_string(path).map_err(|source| Error::Io { path: path.into(), source })?;
-    let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-    match numbers.as_deref().map(<[f64; 9]>::try_from) {
-        Some(Ok(rows)) => Ok(DMat3::from_cols_array(&rows).transpose()),
-        _ => Err(Error::Format { path: path.into(), reason: "a homography is nine numbers, row by row".into() }),
-    }
 }
