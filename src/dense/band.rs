@@ -2,6 +2,9 @@
 
 use crate::disparity::DisparityRange;
 
+/// The bits of a key that hold the disparity's index; its cost, a sum of at most 16 bits, is above.
+pub(super) const INDEX_BITS: u32 = 16;
+
 /// Some rows of the transformed views, and the disparities of each of their pixels, four a word of eight bits each. A
 /// pixel's words follow each other, then come the next pixel's.
 #[derive(Clone, Copy, Debug)]

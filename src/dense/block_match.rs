@@ -1,10 +1,10 @@
 //! Block matching: SAD, winner-take-all, uniqueness and sub-pixel. `shaders/block_match.wgsl`.
 
 use super::{
+    answer::{Wanted, answer_constants},
     cells::Ranges,
     config::{DenseConfig, View},
     pad::PadParams,
-    select::answer_constants,
 };
 use crate::{
     disparity::{DisparityRange, SCALE},
@@ -66,15 +66,6 @@ shader_struct! {
         confidence_offset: u32,
         max_difference: u32,
     }
-}
-
-/// What is wanted of a view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
-    /// Sub-pixel disparities that pass the uniqueness check, and confidences.
-    Matches,
-    /// Whole disparities of all winners: enough for the other view's consistency check.
-    Winners,
 }
 
 /// The block-matching kernel for one view, one window and one interpolation.

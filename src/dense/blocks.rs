@@ -5,7 +5,8 @@
 //! finds the ranges of its cells first: see [`super::coarse`].
 
 use super::{
-    block_match::{BlockMatch, Layout, Tile, Wanted},
+    answer::Wanted,
+    block_match::{BlockMatch, Layout, Tile},
     cells::{CELL, Ranges},
     coarse::Coarse,
     config::{DenseConfig, Search, View},

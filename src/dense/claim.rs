@@ -1,6 +1,9 @@
 //! What the other view sees, told from one view's winners. `shaders/claim.wgsl`.
 
-use super::{band::VolumeBand, config::View, select::INDEX_BITS};
+use super::{
+    band::{INDEX_BITS, VolumeBand},
+    config::View,
+};
 use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
 
 const WORKGROUP: [u32; 2] = [64, 4];

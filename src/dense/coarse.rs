@@ -4,7 +4,8 @@
 //! cells -> those of the other view's cells.
 
 use super::{
-    block_match::{BlockMatch, Layout, Tile, Wanted},
+    answer::Wanted,
+    block_match::{BlockMatch, Layout, Tile},
     cell_ranges::CellRanges,
     cells::{CELL, CellBand, REACH, Ranges, halved_config},
     config::{DenseConfig, View},

@@ -1,6 +1,6 @@
 //! What the dense half is asked to do.
 
-use super::{Brightness, Refinement, SemiGlobal, select::INDEX_BITS};
+use super::{Brightness, Refinement, SemiGlobal, band::INDEX_BITS};
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},

@@ -1,6 +1,6 @@
 //! Left-right consistency. `shaders/consistency.wgsl`.
 
-use super::{config::View, select::INDEX_BITS};
+use super::{band::INDEX_BITS, config::View};
 use crate::{
     disparity::{NONE, SCALE},
     gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},

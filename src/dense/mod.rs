@@ -7,6 +7,7 @@
 //! left-right consistency -> residuals and support -> medians and filling. All of it is integer arithmetic and equals
 //! the CPU twins bit for bit.
 
+mod answer;
 mod band;
 mod block_match;
 mod blocks;
@@ -39,8 +40,9 @@ mod weighted_median;
 
 use crate::{disparity::DisparityRange, gpu::Stage};
 
+pub use answer::Wanted;
 pub use band::VolumeBand;
-pub use block_match::{BlockMatch, Layout, Tile, Wanted};
+pub use block_match::{BlockMatch, Layout, Tile};
 pub use box_mean::BoxMean;
 pub use cell_ranges::CellRanges;
 pub use cells::{CELL, CellBand, Ranges};

@@ -1,42 +1,12 @@
 //! The last path, and from the costs of all paths to disparities. `shaders/select.wgsl`.
 
 use super::{
-    band::VolumeBand,
-    block_match::Wanted,
+    answer::{Wanted, answer_constants},
+    band::{INDEX_BITS, VolumeBand},
     config::Interpolation,
     path::{Direction, Params, Penalties, line_constants},
 };
-use crate::{
-    disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
-};
-
-/// The bits of a key that hold the disparity's index.
-pub(super) const INDEX_BITS: u32 = 16;
-
-/// The constants of `shaders/shared/selection.wgsl`, for keys with so many bits for the disparity's index.
-pub(super) fn answer_constants(
-    interpolation: Interpolation,
-    wanted: Wanted,
-    index_bits: u32,
-) -> [(&'static str, i64); 7] {
-    const PARABOLA: i64 = 1;
-    const EQUIANGULAR: i64 = 2;
-    let chosen = match interpolation {
-        Interpolation::None => 0,
-        Interpolation::Parabola => PARABOLA,
-        Interpolation::Equiangular => EQUIANGULAR,
-    };
-    [
-        ("SHIFT", index_bits.into()),
-        ("SCALE", SCALE.into()),
-        ("NONE", NONE.into()),
-        ("FULL", (wanted == Wanted::Matches).into()),
-        ("PARABOLA", PARABOLA),
-        ("EQUIANGULAR", EQUIANGULAR),
-        ("INTERPOLATION", chosen),
-    ]
-}
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, uniform_buffer};
 
 /// What is selected, and from what.
 #[derive(Clone, Copy, Debug)]

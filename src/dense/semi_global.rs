@@ -9,8 +9,8 @@
 //! it. So no result depends on where the bands are cut.
 
 use super::{
+    answer::Wanted,
     band::VolumeBand,
-    block_match::Wanted,
     box_mean::BoxMean,
     census::Census,
     claim::Claim,
