@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// Disparities that are searched beyond the rest, at either end.
-pub const MARGIN: u32 = 1;
+pub const MARGIN: u32 = 2;
 
 /// Per cent of a cell's pixels that must have a disparity, or the whole range is searched.
 pub const LEAST: u32 = 10;
