@@ -6,7 +6,8 @@ use crate::{
     gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
 };
 
-/// Disparities that are searched beyond the rest, at either end.
+/// Disparities that are searched beyond the rest, at either end: with fewer a winner has no rival two disparities away,
+/// and what shows nothing passes for unique.
 pub const MARGIN: u32 = 2;
 
 /// Per cent of a cell's pixels that must have a disparity, or the whole range is searched.
