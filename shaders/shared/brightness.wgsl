@@ -9,4 +9,3 @@ fn brightened(pixels: vec4<i32>, by: Brightness) -> vec4<i32> {
     let changed = (by.gain * pixels + by.offset + 128) >> vec4<u32>(8u);
     return clamp(changed, vec4<i32>(0), vec4<i32>(255));
 }
-

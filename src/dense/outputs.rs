@@ -8,8 +8,8 @@ use crate::gpu::Dispatch;
 pub enum Destination<'a> {
     /// In a buffer with `COPY_DST`: an `i32` a pixel, row by row, in 1/256 px or [`crate::disparity::NONE`].
     Buffer(&'a wgpu::Buffer),
-    /// In a texture with `STORAGE_BINDING`, in the mip level that the view shows, which has the pair's size. `R32Sint` holds what a buffer does, `R32Float` pixels or
-    /// [`crate::disparity::NONE_IN_PIXELS`].
+    /// In a texture with `STORAGE_BINDING`, in the mip level that the view shows, which has the pair's size. `R32Sint`
+    /// holds what a buffer does, `R32Float` pixels or [`crate::disparity::NONE_IN_PIXELS`].
     Texture(&'a wgpu::TextureView),
 }
 

@@ -89,13 +89,13 @@ const fn descriptors(upright: bool) -> Tolerance {
 }
 
 /// Of the same at places that are themselves only near, turned by orientations that are only near, some of which are
-/// others altogether. On lavapipe none of 11,648 is off upright, and one of 15,088 turned, by 0.18: that with another
-/// orientation.
+/// others altogether. On lavapipe none of 11,648 is off upright; turned, one of 15,088 by 0.18, that with another
+/// orientation, and of some pictures more than one in 200 by up to 0.011: no case that is verified by default.
 const fn descriptors_anywhere(upright: bool) -> Tolerance {
     if upright {
         return of_descriptors(1e-3, None);
     }
-    of_descriptors(ANOTHER_SIXTEENTH, Some(Outliers { of_thousand: 5, difference: 0.5 }))
+    of_descriptors(1e-3, Some(Outliers { of_thousand: 5, difference: 0.5 }))
 }
 
 /// The names of an octave's arrays, the finest first.
@@ -542,6 +542,14 @@ mod tests {
         actual.iter().zip(expected).any(differs)
     }
 
+    /// What last digits decide is left out of the trial, and is not most of it.
+    #[test]
+    fn most_orientations_are_decided() {
+        let trial = OrientationTrial::draw((311, 239), &mut Dice::new("orientation", 8));
+        let left = trial.keypoints.iter().filter(|keypoint| keypoint.x != NOTHING_THERE).count();
+        assert!(2 * left > trial.keypoints.len(), "{left} of {}", trial.keypoints.len());
+    }
+
     #[test]
     fn a_changed_keypoint_is_seen() {
         let good = Keypoint { x: 30.0, y: 20.0, scale: 2.0, orientation: 0.0, response: 9, octave: 1, index: 5 };
@@ -590,7 +598,7 @@ mod tests {
         let arrays = |feature: &Feature| FeaturesTrial::arrays(&vec![feature.clone(); 100], false);
         assert!(!differ(&arrays(&good), &arrays(&good)));
         let mut descriptor = good.descriptor;
-        descriptor[0] = 0.15;
+        descriptor[0] = 0.13;
         for changed in [
             Feature { x: 30.001, ..good.clone() },
             Feature { y: 20.001, ..good.clone() },
