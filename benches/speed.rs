@@ -1,4 +1,5 @@
-//! What the two halves take on a device, cold and warm: `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES]]`.
+//! What the two halves take on a device, cold and warm: `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES [NAME]]]`,
+//! where the name is that of one thing to measure: 7x7, fast, balanced, quality or features.
 //!
 //! One line a measurement: its name, the first run (which compiles) and the minimum and the median of
 //! the others, in milliseconds; below a dense one what each kernel takes by the device's clock. `scripts/compare-opencv.py` runs it beside OpenCV.
@@ -38,8 +39,9 @@ fn main() -> hsad::Result<()> {
     let (width, height) = pair[0].size();
     println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info.name, gpu.info.driver_info);
     let luma = pair.each_ref().map(Picture::luma);
-    dense(&gpu, &luma, disparities)?;
-    features(&gpu, &luma)
+    let is_wanted = |name: &str| arguments.get(3).is_none_or(|wanted| wanted == name);
+    dense(&gpu, &luma, disparities, is_wanted)?;
+    if is_wanted("features") { features(&gpu, &luma) } else { Ok(()) }
 }
 
 /// Runs `work` and prints its times.
@@ -71,11 +73,11 @@ fn submit(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
 }
 
 /// Block matching with a 7x7 window (both views, uniqueness, consistency and sub-pixel), then the presets.
-fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result<()> {
+fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32, is_wanted: impl Fn(&str) -> bool) -> hsad::Result<()> {
     let range = DisparityRange::new(0, disparities)?;
     let blocks = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
     let preset =
-        |preset: Preset| (format!("dense {preset:?}").to_lowercase(), preset.config().dense(range, Brightness::SAME));
+        |preset: Preset| (format!("{preset:?}").to_lowercase(), preset.config().dense(range, Brightness::SAME));
     let presets = [Preset::Fast, Preset::Balanced, Preset::Quality].map(preset);
     let bytes = 4 * left.data().len() as u64;
     let [map, confidence] = ["disparities", "confidences"].map(|label| {
@@ -86,15 +88,18 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
             mapped_at_creation: false,
         })
     });
-    for (name, config) in [("dense 7x7".into(), blocks)].into_iter().chain(presets) {
+    for (name, config) in [("7x7".into(), blocks)].into_iter().chain(presets) {
+        if !is_wanted(&name) {
+            continue;
+        }
         let start = Instant::now();
         let matcher = Matcher::new(&gpu.device, left.size(), &config)?;
-        println!("{name}, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
+        println!("dense {name}, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
         for (view, luma) in [left, right].into_iter().zip(matcher.luma()) {
             gpu.queue.write_buffer(luma, 0, bytemuck::cast_slice(&pack(view)));
         }
         let outputs = matcher.outputs(&gpu.device, Destination::Buffer(&map), Some(&confidence))?;
-        time(&name, || {
+        time(&format!("dense {name}"), || {
             submit(gpu, |encoder| matcher.record(encoder, &outputs));
             Ok(())
         })?;
@@ -103,22 +108,24 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32) -> hsad::Result
     Ok(())
 }
 
-/// What each kernel takes by the device's clock: the sum of its dispatches, each at its fastest.
+/// What each kernel takes by the device's clock: its dispatches, each at its fastest.
 fn kernels(gpu: &Gpu, matcher: &Matcher) -> hsad::Result<()> {
     let (_, mut least) = matcher.profile(gpu)?;
     for _ in 1..PROFILES {
         let (_, times) = matcher.profile(gpu)?;
         least.iter_mut().zip(times).for_each(|(least, time)| least.1 = least.1.min(time.1));
     }
-    let mut sums: Vec<(&str, usize, Duration)> = Vec::new();
+    let mut sums: Vec<(&str, Vec<Duration>)> = Vec::new();
     for (name, time) in least {
         match sums.iter_mut().find(|sum| sum.0 == name) {
-            Some(sum) => (sum.1, sum.2) = (sum.1 + 1, sum.2 + time),
-            None => sums.push((name, 1, time)),
+            Some(sum) => sum.1.push(time),
+            None => sums.push((name, vec![time])),
         }
     }
-    for (name, dispatches, time) in sums {
-        println!("  {name}: {:.2} ms in {dispatches}", 1e3 * time.as_secs_f64());
+    for (name, times) in sums {
+        let milliseconds = |time: Duration| format!("{:.2}", 1e3 * time.as_secs_f64());
+        let each: Vec<String> = times.iter().copied().map(milliseconds).collect();
+        println!("  {name}: {} ms = {}", milliseconds(times.iter().sum()), each.join(" + "));
     }
     Ok(())
 }

@@ -38,9 +38,11 @@ struct Params {
     max_difference: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<uniform> uniforms: Params;
+// Loaded once before any branch: software drivers load for each lane what stands behind one.
+var<private> params: Params;
 // Both padded planes, four pixels a word.
-@group(0) @binding(1) var planes: texture_2d<u32>;
+@group(0) @binding(1) var words: texture_storage_2d<r32uint, read>;
 // What is searched in each cell of the picture: the index of the first disparity, and how many.
 @group(0) @binding(2) var<storage, read> ranges: array<vec2<u32>>;
 // A fixed-point disparity a pixel of the other view, where it is asked.
@@ -168,11 +170,12 @@ fn row_sums(a: array<vec4<i32>, WORDS>, searched: array<u32, WORDS + 1>) -> Cost
     return sums;
 }
 
-@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let column = QUADS * id.x;
+@compute @workgroup_size(TILES_ACROSS * TILES_DOWN)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    params = uniforms;
+    let column = QUADS * (TILES_ACROSS * group.x + thread % TILES_ACROSS);
     let x = 4u * column;
-    let y0 = TILE_HEIGHT * id.y;
+    let y0 = TILE_HEIGHT * (TILES_DOWN * group.y + thread / TILES_ACROSS);
     if x >= params.width || y0 >= params.rows {
         return;
     }
@@ -188,8 +191,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var y = 0; y < ROWS; y++) { // unroll
         let row = (y0 + y) * params.stride + column;
         for (var j = 0; j < WORDS; j++) { // unroll
-            reference[y][j] = unpack(word_of(planes, params.reference_start + row + j));
-            searched[y][j + START] = word_of(planes, searched_start + row + j);
+            reference[y][j] = unpack(word_at(params.reference_start + row + j));
+            searched[y][j + START] = word_at(searched_start + row + j);
         }
     }
 
@@ -213,12 +216,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 for (var j = 0; j < WORDS; j++) { // unroll
                     searched[y][WORDS - j] = searched[y][WORDS - j - 1];
                 }
-                searched[y][0] = word_of(planes, row - 1u - step);
+                searched[y][0] = word_at(row - 1u - step);
             } else {
                 for (var j = 0; j < WORDS; j++) { // unroll
                     searched[y][j] = searched[y][j + 1];
                 }
-                searched[y][WORDS] = word_of(planes, row + WORDS + step);
+                searched[y][WORDS] = word_at(row + WORDS + step);
             }
             sums[y + SIDE] = row_sums(reference[y], searched[y]);
             window = slide(window, sums[y + SIDE], sums[y]);

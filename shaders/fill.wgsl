@@ -14,13 +14,13 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// In a texture, since it is read here and there.
-@group(0) @binding(1) var disparities: texture_2d<u32>;
+// The disparities, in a texture, since they are read here and there.
+@group(0) @binding(1) var words: texture_storage_2d<r32uint, read>;
 @group(0) @binding(2) var<storage, read_write> filled: array<i32>;
 
 // The disparity of a pixel.
 fn disparity_at(pixel: i32) -> i32 {
-    return bitcast<i32>(word_of(disparities, u32(pixel)));
+    return bitcast<i32>(word_at(u32(pixel)));
 }
 
 // The quotient, rounded down.

@@ -15,39 +15,35 @@ use crate::{
     },
 };
 
-const WORKGROUP: [u32; 2] = [8, 8];
-
-/// The pixels that one thread matches.
+/// The pixels that one thread matches, and the tiles that a workgroup does.
 ///
 /// A larger tile shares more of its row sums and loads; a smaller one needs fewer registers and less
 /// time to compile, and leaves more threads. The result is the same. Where each cell has a range of its own, a
-/// tile must lie in one cell.
+/// tile must lie in one cell, and the threads that run in step should in few: all of them wait for the longest range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
     /// Columns, in fours.
     pub quads: u32,
     /// Rows.
     pub height: u32,
+    /// Tiles of a workgroup in a row; its threads take them row by row.
+    pub across: u32,
+    /// Rows of tiles of a workgroup.
+    pub down: u32,
 }
 
 impl Tile {
-    /// For lavapipe, where loads are the bottleneck and registers spill into the first cache. Other drivers that
-    /// compute on the CPU take minutes to compile it: SwiftShader five for a window of 11.
-    pub const SOFTWARE: Self = Self { quads: 2, height: 8 };
+    /// For lavapipe, where loads are the bottleneck, registers spill into the first cache and eight threads run in
+    /// step: in two cells. Other drivers that compute on the CPU take minutes to compile it: SwiftShader five for a
+    /// window of 11.
+    pub const SOFTWARE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
 
     /// For all others: GPUs would rather run many threads of few registers.
-    pub const HARDWARE: Self = Self { quads: 1, height: 4 };
-
-    /// The same where only winners are wanted, of which there is less to remember.
-    pub const SOFTWARE_WINNERS: Self = Self { quads: 2, height: 16 };
+    pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
 
     /// The tile for `device`.
-    pub fn of(device: &wgpu::Device, wanted: Wanted) -> Self {
-        match (is_lavapipe(device), wanted) {
-            (true, Wanted::Matches) => Self::SOFTWARE,
-            (true, Wanted::Winners) => Self::SOFTWARE_WINNERS,
-            (false, _) => Self::HARDWARE,
-        }
+    pub fn of(device: &wgpu::Device) -> Self {
+        if is_lavapipe(device) { Self::SOFTWARE } else { Self::HARDWARE }
     }
 }
 
@@ -100,16 +96,10 @@ impl BlockMatch {
                 include_str!("../../shaders/shared/words.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[
-                Binding::Uniform(Params::SHAPE),
-                Binding::Texture,
-                Binding::Read,
-                Binding::Read,
-                Binding::Write,
-            ],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Read, Binding::Read, Binding::Write],
             constants: [
-                ("WORKGROUP_WIDTH", constant(WORKGROUP[0])),
-                ("WORKGROUP_HEIGHT", constant(WORKGROUP[1])),
+                ("TILES_ACROSS", constant(tile.across)),
+                ("TILES_DOWN", constant(tile.down)),
                 ("TILE_HEIGHT", constant(tile.height)),
                 ("SIDE", constant(config.window())),
                 ("ROWS", constant(tile.height + 2 * radius)),
@@ -163,8 +153,8 @@ impl BlockMatch {
             confidence_offset,
             max_difference: others.map_or(u32::MAX, |(_, max_difference)| max_difference),
         };
-        let Tile { quads, height } = self.tile;
-        let groups = [layout.width.div_ceil(4 * quads * WORKGROUP[0]), layout.rows.div_ceil(height * WORKGROUP[1]), 1];
+        let Tile { quads, height, across, down } = self.tile;
+        let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
         let params = uniform_buffer(device, "block_match", &params);
         // Where there are none, something has to be bound.
         let others = others.map_or(&ranges.buffer, |(others, _)| others);
@@ -190,7 +180,7 @@ pub struct Layout {
 
 impl Layout {
     /// The layout for rows `first_row` to `first_row + rows` of a picture of `size`, for kernels of
-    /// these `tiles`.
+    /// this `tile`.
     ///
     /// # Errors
     /// As [`DenseConfig::searched`].
@@ -199,12 +189,9 @@ impl Layout {
         first_row: u32,
         rows: u32,
         config: &DenseConfig,
-        tiles: &[Tile],
+        tile: Tile,
     ) -> Result<Self> {
         let range = config.searched(width)?;
-        let covered = |length: u32, side: fn(&Tile) -> u32| {
-            tiles.iter().map(|tile| length.next_multiple_of(side(tile))).max().unwrap_or(length)
-        };
         Ok(Self {
             width,
             height,
@@ -212,8 +199,8 @@ impl Layout {
             rows,
             radius: config.radius(),
             range,
-            tiled_rows: covered(rows, |tile| tile.height),
-            tiled_words: covered(width.div_ceil(4), |tile| tile.quads),
+            tiled_rows: rows.next_multiple_of(tile.height),
+            tiled_words: width.div_ceil(4).next_multiple_of(tile.quads),
         })
     }
 

@@ -38,18 +38,18 @@ pub(super) fn plan(
     (limit, band_rows): (u64, u32),
 ) -> Result<Plan> {
     let (width, height) = size;
-    let tiles = tiles(device, config);
+    let tile = Tile::of(device);
     let most_rows = band_rows;
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
-    let band_rows = band_rows_within((limit, 4 * most_words(device)), size, config, &tiles, (unit, band_rows))?;
+    let band_rows = band_rows_within((limit, 4 * most_words(device)), size, config, tile, (unit, band_rows))?;
     let view = config.reference;
     let pad = Pad::new(device);
-    let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tiles[0]);
+    let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tile);
 
     let mut plan = Plan::new(device, config, height.div_ceil(band_rows) as usize);
     let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
     let (match_words, confidence_offset) = match_words(width, band_rows);
-    let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, &tiles)?.words())?;
+    let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
     let matches = plan.buffer(device, "matches", match_words)?;
     let coarse = match search {
         Search::Whole => None,
@@ -59,7 +59,7 @@ pub(super) fn plan(
     let other_view = match config.consistency {
         None => None,
         Some(max_difference) => {
-            let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tiles[1]);
+            let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tile);
             let winners = plan.buffer(device, "winners of the other view", confidence_offset.into())?;
             Some((find_winners, winners, max_difference))
         }
@@ -67,7 +67,7 @@ pub(super) fn plan(
 
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
-        let layout = Layout::new(size, first_row, rows, config, &tiles)?;
+        let layout = Layout::new(size, first_row, rows, config, tile)?;
         let (ranges, partners) = match &coarse {
             None => (&whole_range, Some(&whole_range)),
             Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
@@ -91,19 +91,13 @@ pub(super) fn plan(
     Ok(plan)
 }
 
-/// The tiles for matches, and for the other view's winners if they are wanted.
-fn tiles(device: &wgpu::Device, config: &DenseConfig) -> Vec<Tile> {
-    let winners = config.consistency.map(|_| Wanted::Winners);
-    [Some(Wanted::Matches), winners].into_iter().flatten().map(|wanted| Tile::of(device, wanted)).collect()
-}
-
 /// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes, every
 /// texture within `texture_limit`, and its work within a second or so.
 fn band_rows_within(
     (limit, texture_limit): (u64, u64),
     size: (u32, u32),
     config: &DenseConfig,
-    tiles: &[Tile],
+    tile: Tile,
     (unit, wanted): (u32, u32),
 ) -> Result<u32> {
     let (width, height) = size;
@@ -112,7 +106,7 @@ fn band_rows_within(
     let whole_units = |rows: u32| if rows >= height { height } else { (rows / unit * unit).max(unit) };
     let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
-        let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tiles)?.words());
+        let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tile)?.words());
         let matches = 4 * match_words(width, rows).0;
         let over =
             [(planes, limit.min(texture_limit)), (matches, limit)].into_iter().find(|(needed, limit)| needed > limit);

@@ -4,7 +4,6 @@
 //! cells -> those of the other view's cells.
 
 use super::{
-    answer::Wanted,
     block_match::{BlockMatch, Layout, Tile},
     cell_ranges::CellRanges,
     cells::{CELL, CellBand, REACH, Ranges, halved_config},
@@ -61,9 +60,8 @@ impl Coarse {
         });
         // No band looks at more rows than one in the midst of the picture.
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.1);
-        let tile = Tile::of(device, Wanted::Matches);
-        let planes =
-            plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, &[tile])?.words())?;
+        let tile = Tile::of(device);
+        let planes = plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
         let map = plan.buffer(device, "map of half the size", match_words(half_size.0, most_rows).0)?;
         let words = CellBand::new(size, (0, band_rows), range).words();
         let ranges = |plan: &mut Plan| -> Result<Ranges> {
@@ -101,8 +99,8 @@ impl Coarse {
     ) -> Result<(&Ranges, Option<&Ranges>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
-        let tile = Tile::of(device, Wanted::Matches);
-        let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, &[tile])?;
+        let tile = Tile::of(device);
+        let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, tile)?;
         for ((params, view), half) in layout.padding().into_iter().zip(View::BOTH).zip(&self.halves) {
             plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
         }

@@ -40,7 +40,7 @@ impl Fill {
         Stage {
             name: "fill",
             source: concat!(include_str!("../../shaders/shared/words.wgsl"), include_str!("../../shaders/fill.wgsl")),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Texture, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),

@@ -79,10 +79,10 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
     let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
     for window in (3..=31).step_by(2) {
-        for [tile, winners] in [[Tile::SOFTWARE, Tile::SOFTWARE_WINNERS], [Tile::HARDWARE; 2]] {
+        for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
             for view in [View::Left, View::Right] {
                 stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Matches, tile));
-                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Winners, winners));
+                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Winners, tile));
             }
         }
     }

@@ -12,8 +12,8 @@ pub enum Binding {
     Read,
     /// A storage buffer that is written.
     Write,
-    /// A texture of one `u32` a texel that is only read.
-    Texture,
+    /// A storage texture of one `u32` a texel that is only read.
+    Words,
     /// A texture of floats that is only read, and not sampled.
     Picture,
     /// A texture of this format that is only written.
@@ -85,7 +85,11 @@ impl Kernel {
                     Binding::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
                     Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
                     Binding::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-                    Binding::Texture => texture(wgpu::TextureSampleType::Uint),
+                    Binding::Words => wgpu::BindingType::StorageTexture {
+                        access: wgpu::StorageTextureAccess::ReadOnly,
+                        format: wgpu::TextureFormat::R32Uint,
+                        view_dimension,
+                    },
                     Binding::Picture => texture(wgpu::TextureSampleType::Float { filterable: false }),
                     Binding::Map(format) => wgpu::BindingType::StorageTexture {
                         access: wgpu::StorageTextureAccess::WriteOnly,

@@ -1,5 +1,6 @@
 //! Words in a texture, for kernels that read many of them here and there: software drivers load those of all lanes at
-//! once from a texture, and one after the other from a buffer.
+//! once from a texture, and one after the other from a buffer. It is bound as a storage texture that is only read: that
+//! has no mip levels, whose sizes lavapipe would work out for each lane of each load.
 
 use crate::error::{Error, Result};
 
@@ -50,7 +51,7 @@ impl WordTexture {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: wgpu::TextureFormat::R32Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

@@ -100,7 +100,7 @@ pub struct BlockMatchTrial {
 impl BlockMatchTrial {
     fn matched(&self, bench: &Bench<'_>, wanted: Wanted) -> Result<Vec<u32>> {
         let (device, (width, height)) = (bench.device(), self.left.size());
-        let layout = Layout::new(self.left.size(), 0, height, &self.config, &[self.tile])?;
+        let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
         let [left, right] = layout.padding();
         let plane = |view, params| padded(view, params, Brightness::SAME);
@@ -148,7 +148,12 @@ impl BlockMatchTrial {
         // Compilers of software drivers take seconds for a window, and for a wide one a minute.
         let window = if dice.below(16) == 0 { dice.pick(&[11, 13, 15, 21]) } else { dice.pick(&[3, 3, 5, 7, 9]) };
         let (interpolation, view) = (dice.interpolation(), dice.view());
-        let tile = dice.pick(&[Tile::HARDWARE, Tile::HARDWARE, Tile::SOFTWARE, Tile { quads: 3, height: 1 }]);
+        let tile = dice.pick(&[
+            Tile::HARDWARE,
+            Tile::HARDWARE,
+            Tile::SOFTWARE,
+            Tile { quads: 3, height: 1, across: 3, down: 5 },
+        ]);
         let uniqueness = dice.pick(&[0, 0, 1, 15, 100]);
         let range = dice.range(80);
         // Also ranges that none of the costs of most pixels lie in.

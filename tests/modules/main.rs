@@ -98,9 +98,9 @@ fn difference(module: &Module, ty: naga::Handle<naga::Type>, shape: &Shape) -> O
     Some(format!("value {first} is {:?}, Rust's {:?}", wgsl.get(first), rust.get(first)))
 }
 
-/// Whether it is a texture of one `u32` a texel, as far as a module tells.
+/// Whether it is a texture of one `u32` a texel that is only read.
 fn is_word_texture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
-    let class = naga::ImageClass::Sampled { kind: ScalarKind::Uint, multi: false };
+    let class = naga::ImageClass::Storage { format: naga::StorageFormat::R32Uint, access: StorageAccess::LOAD };
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
@@ -154,7 +154,7 @@ fn disagreements(stage: &Stage) -> Vec<String> {
             (AddressSpace::Uniform, Binding::Uniform(shape)) => difference(&module, variable.ty, shape),
             (AddressSpace::Storage { access }, Binding::Read) if !access.contains(StorageAccess::STORE) => None,
             (AddressSpace::Storage { access }, Binding::Write) if access.contains(StorageAccess::STORE) => None,
-            (AddressSpace::Handle, Binding::Texture) if is_word_texture(&module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Words) if is_word_texture(&module, variable.ty) => None,
             (AddressSpace::Handle, Binding::Picture) if is_picture(&module, variable.ty) => None,
             (AddressSpace::Handle, Binding::Map(format)) if is_map(&module, variable.ty, *format) => None,
             (space, binding) => Some(format!("it is in {space:?}, in Rust it is {binding:?}")),
@@ -250,7 +250,7 @@ fn required_limits_are_those_that_some_shader_needs() {
         need("max_bindings_per_bind_group", stage.bindings.len() as u64);
         need("max_uniform_buffers_per_shader_stage", count(|b| matches!(b, Binding::Uniform(_))));
         need("max_storage_buffers_per_shader_stage", count(|b| matches!(b, Binding::Read | Binding::Write)));
-        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Texture | Binding::Picture)));
+        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Words | Binding::Picture)));
         need("max_storage_textures_per_shader_stage", count(|b| matches!(b, Binding::Map(_))));
         let uniforms = stage.bindings.iter().filter_map(|binding| match binding {
             Binding::Uniform(shape) => Some(size_of_rust(shape)),
