@@ -36,6 +36,9 @@ struct Params {
     confidence_offset: u32,
     // How far apart, in 1/256 px, the disparities of both views may be; all ones where the other is not asked.
     max_difference: u32,
+    // Where the other view's map begins and how wide it is.
+    others_first_row: i32,
+    others_width: u32,
 }
 
 @group(0) @binding(0) var<uniform> uniforms: Params;
@@ -45,8 +48,8 @@ var<private> params: Params;
 @group(0) @binding(1) var words: texture_storage_2d<r32uint, read>;
 // What is searched in each cell of the picture: the index of the first disparity, and how many.
 @group(0) @binding(2) var<storage, read> ranges: array<vec2<u32>>;
-// A fixed-point disparity a pixel of the other view, where it is asked.
-@group(0) @binding(3) var<storage, read> others: array<i32>;
+// The other view's winners, where it is asked: a fixed-point disparity a pixel, of a picture of half the size if HALVED.
+@group(0) @binding(3) var others: texture_storage_2d<r32uint, read>;
 // A fixed-point disparity a pixel; then, if FULL, a confidence a pixel, 0 to 255, four a word.
 @group(0) @binding(4) var<storage, read_write> matches: array<i32>;
 
@@ -238,11 +241,20 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
 }
 
+// Whether the other view says the same of a pixel's partner; at half the size, of that or a direct neighbour in its row:
+// there a window reaches twice as far over the edges of things.
 fn is_confirmed(x: u32, y: u32, disparity: i32) -> bool {
     let partner = partner_of(i32(x), disparity, DIRECTION);
-    let other = others[y * params.width + u32(clamp(partner, 0, i32(params.width) - 1))];
-    return params.max_difference == 0xffffffffu
-        || is_consistent(disparity, partner, params.width, other, params.max_difference);
+    let row = (i32(y >> HALVED) + params.others_first_row) * i32(params.others_width);
+    var holds = params.max_difference == 0xffffffffu;
+    for (var i = 0; i < HALVED + HALVED + 1; i++) { // unroll
+        let column = clamp((partner >> HALVED) + i - HALVED, 0, i32(params.others_width) - 1);
+        let index = u32(row + column);
+        let other = i32(textureLoad(others, vec2<u32>(index & ((1u << ROW_BITS) - 1u), index >> ROW_BITS)).x);
+        let scaled = select(NONE, other << HALVED, other != NONE);
+        holds = holds || is_consistent(disparity, partner, params.width, scaled, params.max_difference);
+    }
+    return holds;
 }
 
 // Writes the answers of four pixels, of which those of a last column may lie beyond the picture.

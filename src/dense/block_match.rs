@@ -61,6 +61,8 @@ shader_struct! {
         uniqueness: u32,
         confidence_offset: u32,
         max_difference: u32,
+        others_first_row: i32,
+        others_width: u32,
     }
 }
 
@@ -96,7 +98,7 @@ impl BlockMatch {
                 include_str!("../../shaders/shared/words.wgsl"),
                 include_str!("../../shaders/block_match.wgsl")
             ),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Read, Binding::Words, Binding::Write],
             constants: [
                 ("TILES_ACROSS", constant(tile.across)),
                 ("TILES_DOWN", constant(tile.down)),
@@ -110,6 +112,7 @@ impl BlockMatch {
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
                 ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
+                ("HALVED", config.is_coarse_to_fine().into()),
                 ("ROW_BITS", ROW_BITS.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
             ]
@@ -127,15 +130,15 @@ impl BlockMatch {
 
     /// Matches the padded `planes` of `layout` at the disparities that `ranges` name, writing a fixed-point disparity for each pixel of
     /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
-    /// `confidence_offset` on, four a word and each row in words of its own. Where there are `others`, the disparities
-    /// of the other view, and the largest difference to them in 1/256 px, a match that they contradict is none.
+    /// `confidence_offset` on, four a word and each row in words of its own. Where there are `others`, a match that they
+    /// contradict is none.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
-        others: Option<(&wgpu::Buffer, u32)>,
+        others: Option<OtherMap<'_>>,
         (matches, confidence_offset): (&wgpu::Buffer, u32),
     ) -> Dispatch {
         let [reference_start, searched_start] = layout.starts(self.view);
@@ -151,16 +154,32 @@ impl BlockMatch {
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset,
-            max_difference: others.map_or(u32::MAX, |(_, max_difference)| max_difference),
+            max_difference: others.map_or(u32::MAX, |others| others.max_difference),
+            others_first_row: others.map_or(0, |others| others.first_row),
+            others_width: others.map_or(1, |others| others.width),
         };
         let Tile { quads, height, across, down } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
         let params = uniform_buffer(device, "block_match", &params);
         // Where there are none, something has to be bound.
-        let others = others.map_or(&ranges.buffer, |(others, _)| others);
-        let bound: [&dyn Bindable; 5] = [&params, &planes.view, &ranges.buffer, others, matches];
+        let others = others.map_or(planes, |others| others.words);
+        let bound: [&dyn Bindable; 5] = [&params, &planes.view, &ranges.buffer, &others.view, matches];
         self.kernel.dispatch(device, &bound, groups)
     }
+}
+
+/// The other view's winners, which confirm matches: coarse to fine those of pictures of half the size.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherMap<'a> {
+    /// A fixed-point disparity a pixel, row by row.
+    pub words: &'a WordTexture,
+    /// Pixels of a row.
+    pub width: u32,
+    /// The row in which the matched band begins.
+    pub first_row: i32,
+    /// The largest difference, in 1/256 px of the pictures that are matched, between a pixel's disparity and that of its
+    /// partner; coarse to fine, between it and twice the disparity of its partner or of one to the left or right.
+    pub max_difference: u32,
 }
 
 /// How the padded planes of a band lie in their buffer: the left one, then the right one. Each
@@ -202,6 +221,11 @@ impl Layout {
             tiled_rows: rows.next_multiple_of(tile.height),
             tiled_words: width.div_ceil(4).next_multiple_of(tile.quads),
         })
+    }
+
+    /// Width of the picture.
+    pub(super) fn width(&self) -> u32 {
+        self.width
     }
 
     /// Words of both planes.

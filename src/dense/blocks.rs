@@ -2,7 +2,7 @@
 //!
 //! padding -> the other view's winners -> block matching of the reference view, which they confirm; in bands of rows
 //! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band
-//! finds the ranges of its cells first: see [`super::coarse`].
+//! finds the ranges of its cells and the other view's winners first, at half the size: see [`super::coarse`].
 
 use super::{
     answer::Wanted,
@@ -10,6 +10,7 @@ use super::{
     cells::{CELL, Ranges},
     coarse::Coarse,
     config::{DenseConfig, Search, View},
+    other_view::OtherView,
     pad::Pad,
     plan::{Plan, match_words},
     refine::plan_refinement,
@@ -51,35 +52,27 @@ pub(super) fn plan(
     let (match_words, confidence_offset) = match_words(width, band_rows);
     let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
     let matches = plan.buffer(device, "matches", match_words)?;
-    let coarse = match search {
-        Search::Whole => None,
-        Search::CoarseToFine => Some(Coarse::new(device, &mut plan, size, config, [left, right], band_rows)?),
-    };
     let whole_range = Ranges::whole(device, config.searched(width)?);
-    let other_view = match config.consistency {
-        None => None,
-        Some(max_difference) => {
-            let find_winners = BlockMatch::new(device, config, view.other(), Wanted::Winners, tile);
-            let winners = plan.buffer(device, "winners of the other view", confidence_offset.into())?;
-            Some((find_winners, winners, max_difference))
-        }
+    let (coarse, other_view) = match search {
+        Search::Whole => (None, OtherView::new(device, &mut plan, config, confidence_offset.into())?),
+        Search::CoarseToFine => (Some(Coarse::new(device, &mut plan, size, config, [left, right], band_rows)?), None),
     };
 
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, tile)?;
-        let (ranges, partners) = match &coarse {
-            None => (&whole_range, Some(&whole_range)),
+        let (ranges, others) = match &coarse {
+            None => (&whole_range, None),
             Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
         };
         for ((params, view), picture) in layout.padding().into_iter().zip(View::BOTH).zip([left, right]) {
             plan.run(pad.prepare(device, params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
-        let others = other_view.as_ref().zip(partners).map(|((find_winners, winners, max_difference), partners)| {
-            plan.run(find_winners.prepare(device, &layout, &planes.1, partners, None, (winners, 0)));
-            (winners, *max_difference)
-        });
+        let others = match &other_view {
+            None => others,
+            Some(view) => Some(view.plan(device, &mut plan, (&layout, &planes.1), ranges, (1, 0))),
+        };
         plan.run(block_match.prepare(device, &layout, &planes.1, ranges, others, (&matches, confidence_offset)));
         plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
     }
@@ -108,8 +101,11 @@ fn band_rows_within(
     loop {
         let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tile)?.words());
         let matches = 4 * match_words(width, rows).0;
-        let over =
-            [(planes, limit.min(texture_limit)), (matches, limit)].into_iter().find(|(needed, limit)| needed > limit);
+        // Those of the other view, which stand in a texture.
+        let winners = if config.consistency.is_some() { 4 * in_rows(match_words(width, rows).1.into()) } else { 0 };
+        let over = [(planes, limit.min(texture_limit)), (matches, limit), (winners, limit.min(texture_limit))]
+            .into_iter()
+            .find(|(needed, limit)| needed > limit);
         let Some((needed, limit)) = over else {
             return Ok(rows);
         };

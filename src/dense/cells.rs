@@ -78,8 +78,8 @@ impl CellBand {
     }
 }
 
-/// What is asked of a pair of half the size: nothing of the other view, whose search would cost more than it
-/// saves.
+/// How a pair of half the size is matched to find what to search: unconfirmed, since what the other view says of it
+/// confirms the matches of the whole size.
 pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> DenseConfig {
     DenseConfig { range: halved(range), consistency: None, refinement: None, ..config.clone() }
 }

@@ -1,16 +1,16 @@
 //! Coarse to fine: what is worth searching in each cell, found in pictures of half the size.
 //!
-//! halving, once -> and in each band of rows: padding -> block matching of the reference view -> the ranges of its
-//! cells -> those of the other view's cells.
+//! halving, once -> and in each band of rows: padding -> the other view's winners -> block matching of the reference view
+//! -> the ranges of its cells.
 
 use super::{
-    block_match::{BlockMatch, Layout, Tile},
+    block_match::{BlockMatch, Layout, OtherMap, Tile},
     cell_ranges::CellRanges,
     cells::{CELL, CellBand, REACH, Ranges, halved_config},
     config::{DenseConfig, View},
     halve::Halve,
+    other_view::OtherView,
     pad::Pad,
-    partner_ranges::PartnerRanges,
     plan::{Plan, match_words},
 };
 use crate::{
@@ -24,17 +24,16 @@ use crate::{
 pub(super) struct Coarse {
     size: (u32, u32),
     range: DisparityRange,
-    view: View,
     half: DenseConfig,
     cell_ranges: CellRanges,
     /// Left and right picture of half the size.
     halves: [wgpu::Buffer; 2],
     planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
-    /// What is searched at half the size, in the reference view's cells, and in the other's, where it is asked.
+    other_view: Option<OtherView>,
+    /// What is searched at half the size, and in the cells.
     whole: Ranges,
     ranges: Ranges,
-    partners: Option<(PartnerRanges, Ranges)>,
 }
 
 impl Coarse {
@@ -64,31 +63,24 @@ impl Coarse {
         let planes = plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
         let map = plan.buffer(device, "map of half the size", match_words(half_size.0, most_rows).0)?;
         let words = CellBand::new(size, (0, band_rows), range).words();
-        let ranges = |plan: &mut Plan| -> Result<Ranges> {
-            let buffer = plan.buffer(device, "ranges of cells", words)?;
-            Ok(Ranges::of_cells(buffer, width))
-        };
-        let ranges_of_view = ranges(plan)?;
-        let partners = match config.consistency {
-            Some(_) => Some((PartnerRanges::new(device), ranges(plan)?)),
-            None => None,
-        };
+        let ranges = Ranges::of_cells(plan.buffer(device, "ranges of cells", words)?, width);
+        let most_pixels = u64::from(half_size.0) * u64::from(most_rows);
         Ok(Self {
             size,
             range,
-            view: config.reference,
             whole: Ranges::whole(device, half.range),
             half,
             cell_ranges: CellRanges::new(device),
             halves: [left?, right?],
             planes,
             map,
-            ranges: ranges_of_view,
-            partners,
+            other_view: OtherView::new(device, plan, config, most_pixels)?,
+            ranges,
         })
     }
 
-    /// Plans what finds the ranges of the reference view's cells, and of the other's where it is asked, for some rows.
+    /// Plans what finds the ranges of the reference view's cells for some rows, and the other view's winners where they
+    /// are asked for.
     pub(super) fn plan(
         &self,
         device: &wgpu::Device,
@@ -96,7 +88,7 @@ impl Coarse {
         pad: &Pad,
         block_match: &BlockMatch,
         rows: (u32, u32),
-    ) -> Result<(&Ranges, Option<&Ranges>)> {
+    ) -> Result<(&Ranges, Option<OtherMap<'_>>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
         let tile = Tile::of(device);
@@ -105,6 +97,9 @@ impl Coarse {
             plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
+        let others = self.other_view.as_ref().map(|other_view| {
+            other_view.plan(device, plan, (&layout, &self.planes.1), &self.whole, (2, band.map_start))
+        });
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
         plan.run(block_match.prepare(
             device,
@@ -114,12 +109,7 @@ impl Coarse {
             None,
             (&self.map, confidence_offset),
         ));
-        let ranges = &self.ranges.buffer;
-        plan.run(self.cell_ranges.prepare(device, &band, &self.map, ranges));
-        let partners = self.partners.as_ref().map(|(kernel, partners)| {
-            plan.run(kernel.prepare(device, &band, self.view, ranges, &partners.buffer));
-            partners
-        });
-        Ok((&self.ranges, partners))
+        plan.run(self.cell_ranges.prepare(device, &band, &self.map, &self.ranges.buffer));
+        Ok((&self.ranges, others))
     }
 }

@@ -91,7 +91,8 @@ pub struct DenseConfig {
     /// the winner's; 0 accepts every winner, at most 100.
     pub uniqueness: u32,
     /// The largest difference, in 1/256 px, between a pixel's disparity and that of its partner in
-    /// the other view; `None` accepts every winner.
+    /// the other view; `None` accepts every winner. [`Search::CoarseToFine`] asks the other view at half the size, where
+    /// pixels are twice as large, and there the partner or one to its left or right.
     pub consistency: Option<u32>,
     /// What becomes of the map after that; `None`: it stays as it is.
     pub refinement: Option<Refinement>,
@@ -124,6 +125,11 @@ impl DenseConfig {
             Aggregation::Window { side, .. } => side,
             Aggregation::Paths(_) => 1,
         }
+    }
+
+    /// Whether maps of half the size say what is searched, and confirm it.
+    pub(crate) fn is_coarse_to_fine(&self) -> bool {
+        matches!(self.aggregation, Aggregation::Window { search: Search::CoarseToFine, .. })
     }
 
     /// Half the window without its centre.

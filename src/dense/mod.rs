@@ -25,9 +25,9 @@ mod halve;
 mod inputs;
 mod map_texture;
 mod matcher;
+mod other_view;
 mod outputs;
 mod pad;
-mod partner_ranges;
 mod path;
 mod plan;
 mod refine;
@@ -42,7 +42,7 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 
 pub use answer::Wanted;
 pub use band::VolumeBand;
-pub use block_match::{BlockMatch, Layout, Tile};
+pub use block_match::{BlockMatch, Layout, OtherMap, Tile};
 pub use box_mean::BoxMean;
 pub use cell_ranges::CellRanges;
 pub use cells::{CELL, CellBand, Ranges};
@@ -60,7 +60,6 @@ pub use matcher::compute;
 pub use matcher::{Dense, Matcher, compute_async};
 pub use outputs::{Destination, Outputs};
 pub use pad::{Brightness, Pad, PadParams};
-pub use partner_ranges::PartnerRanges;
 pub use path::{Direction, Path, Penalties};
 pub use refine::Refinement;
 pub use residual::{MAX_RESIDUAL, Residual, Views};
@@ -74,7 +73,7 @@ pub use weighted_median::{Median, WeightedMedian};
 /// matching for each window, either view and what it may be asked for, and what has tiles or rows both with those for
 /// lavapipe and with those for all other devices.
 pub fn stages() -> Vec<Stage> {
-    let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage(), PartnerRanges::stage()];
+    let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
     stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
     let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
@@ -86,6 +85,9 @@ pub fn stages() -> Vec<Stage> {
             }
         }
     }
+    let coarse_to_fine = Aggregation::Window { side: 7, search: Search::CoarseToFine };
+    let coarse_to_fine = DenseConfig { aggregation: coarse_to_fine, ..blocks(7) };
+    stages.extend(View::BOTH.map(|view| BlockMatch::stage(&coarse_to_fine, view, Wanted::Matches, Tile::HARDWARE)));
     let interpolations = [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular];
     stages.extend(interpolations.map(|interpolation| {
         let config = DenseConfig { interpolation, ..blocks(3) };

@@ -8,6 +8,25 @@ use crate::{
 /// Takes away what the other view contradicts: the partner of a pixel, at the nearest whole
 /// disparity, must exist and must have a disparity that differs by at most `max_difference` / 256 px.
 pub fn check_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+    keep_confirmed(dense, view, |disparity, partner, y| {
+        let other = others.get(partner, y);
+        other != NONE && disparity.abs_diff(other) <= max_difference
+    });
+}
+
+/// The same with the other view's disparities at half the size, and in its pixels: the partner there, or the pixel to its
+/// left or right, must have half the disparity.
+pub fn check_half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+    keep_confirmed(dense, view, |disparity, partner, y| {
+        (-1..=1).any(|i| {
+            let other = others.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
+            other != NONE && disparity.abs_diff(2 * other) <= 2 * max_difference
+        })
+    });
+}
+
+/// Takes away what is not confirmed: a disparity, the column of the partner in the other view, and the row.
+fn keep_confirmed(dense: &mut Dense, view: View, is_confirmed: impl Fn(i32, u32, u32) -> bool) {
     let (width, height) = dense.disparity.size();
     for y in 0..height {
         for x in 0..width {
@@ -20,10 +39,7 @@ pub fn check_consistency(dense: &mut Dense, view: View, others: &DisparityMap, m
                 View::Left => i64::from(x) - i64::from(whole),
                 View::Right => i64::from(x) + i64::from(whole),
             };
-            let confirmed = (0..i64::from(width)).contains(&partner) && {
-                let other = others.get(partner as u32, y);
-                other != NONE && disparity.abs_diff(other) <= max_difference
-            };
+            let confirmed = (0..i64::from(width)).contains(&partner) && is_confirmed(disparity, partner as u32, y);
             if !confirmed {
                 dense.disparity.set(x, y, NONE);
                 dense.confidence.set(x, y, 0);
@@ -47,6 +63,11 @@ mod tests {
         check_consistency(&mut dense, View::Left, &others, 40);
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
         assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
+
+        // At half the size: pixel 3 asks 0 to 2 (its partner is 2, so 1), 4 asks the same with another disparity.
+        let mut dense = Dense { disparity: plane(&[NONE, NONE, NONE, 256, 512]), confidence: Plane::filled(5, 1, 9) };
+        check_half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 158]), 30);
+        assert_eq!(dense.disparity.data(), [NONE, NONE, NONE, 256, NONE]);
 
         let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled(3, 1, 9) };
         // -128 is a half: up, to 0.

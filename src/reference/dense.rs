@@ -1,8 +1,8 @@
 //! The dense half in one call.
 
 use super::{
-    CellPlane, block_match, box_mean, brightened, cell_ranges, census, check_consistency, claimed, cost_volume, filled,
-    halved, partner_ranges, path, path_winners, residuals, select, supported, weighted_median, winners,
+    block_match, box_mean, brightened, cell_ranges, census, check_consistency, check_half_consistency, claimed,
+    cost_volume, filled, halved, path, path_winners, residuals, select, supported, weighted_median, winners,
 };
 use crate::{
     dense::{
@@ -29,16 +29,13 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     let mut dense;
     let others;
     match &config.aggregation {
-        Aggregation::Window { search, .. } => {
-            let ranges = match search {
-                Search::Whole => None,
-                Search::CoarseToFine => Some(ranges_from_half(unchanged, &config)),
-            };
-            dense = block_match(left, right, view, &config, ranges.as_ref());
-            others = config.consistency.map(|_| {
-                let partners = ranges.map(|ranges| partner_ranges(&ranges, view, config.range));
-                winners(left, right, view.other(), &config, partners.as_ref())
-            });
+        Aggregation::Window { search: Search::Whole, .. } => {
+            dense = block_match(left, right, view, &config, None);
+            others = config.consistency.map(|_| winners(left, right, view.other(), &config, None));
+        }
+        Aggregation::Window { search: Search::CoarseToFine, .. } => {
+            dense = coarse_to_fine([left, right], unchanged, &config);
+            others = None;
         }
         Aggregation::Paths(semi_global) => {
             let paths = all_paths(left, right, view, &config, semi_global);
@@ -66,13 +63,20 @@ pub fn compute_dense(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<
     }
 }
 
-/// What is to be searched in the cells of the reference view, from a map of half the size.
-fn ranges_from_half([left, right]: [&Luma; 2], config: &DenseConfig) -> CellPlane {
-    let [left_half, right_half] = [left, right].map(halved);
+/// Block matching of a pair where one of half the size, made of the `unchanged` pictures, shows something; confirmed by
+/// the other view at half the size.
+fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &DenseConfig) -> Dense {
+    let [left_half, right_half] = unchanged.map(halved);
     let right_half = right_half.map(|&luma| brightened(luma, config.brightness));
-    let half = halved_config(config, config.range);
-    let map = block_match(&left_half, &right_half, config.reference, &half, None).disparity;
-    cell_ranges(&map, left.size(), config.range)
+    let (half, view) = (halved_config(config, config.range), config.reference);
+    let map = block_match(&left_half, &right_half, view, &half, None).disparity;
+    let ranges = cell_ranges(&map, left.size(), config.range);
+    let mut dense = block_match(left, right, view, config, Some(&ranges));
+    if let Some(max_difference) = config.consistency {
+        let others = winners(&left_half, &right_half, view.other(), &half, None);
+        check_half_consistency(&mut dense, view, &others, max_difference);
+    }
+    dense
 }
 
 /// A map after all that `refinement` asks for.

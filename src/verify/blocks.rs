@@ -7,13 +7,16 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    dense::{BlockMatch, Brightness, CELL, DenseConfig, Layout, Pad, PadParams, Ranges, Tile, View, Wanted},
+    dense::{
+        Aggregation, BlockMatch, Brightness, CELL, DenseConfig, Layout, OtherMap, Pad, PadParams, Ranges, Search, Tile,
+        View, Wanted, cells::halved_config,
+    },
     disparity::DisparityRange,
     error::Result,
     gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
-    reference::{CellPlane, block_match, check_consistency, padded, winners},
+    reference::{CellPlane, block_match, check_consistency, check_half_consistency, halved, padded, winners},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -112,10 +115,14 @@ impl BlockMatchTrial {
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
         let others = match (self.config.consistency, wanted) {
-            (Some(limit), Wanted::Matches) => Some((bench.upload(self.others()?.data())?, limit)),
+            (Some(limit), Wanted::Matches) => Some((self.others()?, limit)),
             _ => None,
         };
-        let others = others.as_ref().map(|(others, limit)| (others, *limit));
+        let words = others.as_ref().map(|(others, _)| bench.upload_words(others.data())).transpose()?;
+        let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| {
+            let scale = if self.config.is_coarse_to_fine() { 2 } else { 1 };
+            OtherMap { words, width: map.width(), first_row: 0, max_difference: scale * limit }
+        });
         let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
         let matches = bench.output(width * height + confidences)?;
         let kernel = BlockMatch::new(device, &self.config, self.view, wanted, self.tile);
@@ -129,9 +136,17 @@ impl BlockMatchTrial {
         Ok(DenseConfig { range: self.config.searched(self.left.width())?, ..self.config.clone() })
     }
 
-    /// What the other view's winners are, over the whole range.
+    /// What the other view's winners are, over the whole range; coarse to fine those at half the size.
     fn others(&self) -> Result<Plane<i32>> {
-        Ok(winners(&self.left, &self.right, self.view.other(), &self.searched()?, None))
+        let (config, view) = (self.searched()?, self.view.other());
+        Ok(if config.is_coarse_to_fine() {
+            let [left, right] = [&self.left, &self.right].map(halved);
+            let half = halved_config(&config, config.range);
+            let half = DenseConfig { range: half.searched(left.width())?, ..half };
+            winners(&left, &right, view, &half, None)
+        } else {
+            winners(&self.left, &self.right, view, &config, None)
+        })
     }
 
     fn arrays(disparities: Vec<i32>, confidences: Vec<u32>, winners: Vec<i32>) -> Vec<Array> {
@@ -162,7 +177,8 @@ impl BlockMatchTrial {
         let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) }.with_window(window);
         let [left, right] = dice.pair(size);
         let consistency = dice.pick(&[None, Some(0), Some(256)]);
-        let config = DenseConfig { consistency, ..config };
+        let search = dice.pick(&[Search::Whole, Search::CoarseToFine]);
+        let config = DenseConfig { consistency, aggregation: Aggregation::Window { side: window, search }, ..config };
         let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
         let ranges = config.searched(size.0).ok().filter(|_| in_cells).map(|range| {
             Plane::from_fn(size.0.div_ceil(CELL), size.1.div_ceil(CELL), |_, _| {
@@ -196,7 +212,8 @@ impl Trial for BlockMatchTrial {
         let (config, ranges) = (self.searched()?, self.ranges.as_ref());
         let mut dense = block_match(&self.left, &self.right, self.view, &config, ranges);
         if let Some(max_difference) = config.consistency {
-            check_consistency(&mut dense, self.view, &self.others()?, max_difference);
+            let check = if config.is_coarse_to_fine() { check_half_consistency } else { check_consistency };
+            check(&mut dense, self.view, &self.others()?, max_difference);
         }
         let winners = winners(&self.left, &self.right, self.view, &config, ranges).into_data();
         Ok(Self::arrays(dense.disparity.into_data(), pack(&dense.confidence), winners))

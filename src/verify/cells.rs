@@ -8,18 +8,17 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    dense::{CELL, CellBand, CellRanges, Halve, PartnerRanges, View},
+    dense::{CellBand, CellRanges, Halve},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane},
     luma::pack,
-    reference::{CellPlane, cell_ranges, halved, partner_ranges},
+    reference::{cell_ranges, halved},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("halve", |size, dice| Box::new(HalveTrial(dice.picture(size)))),
     Subject::kernel("cell_ranges", |size, dice| Box::new(CellRangesTrial::draw(size, dice))),
-    Subject::kernel("partner_ranges", |size, dice| Box::new(PartnerRangesTrial::draw(size, dice))),
 ];
 
 /// A picture that is halved.
@@ -95,54 +94,5 @@ impl Trial for CellRangesTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(vec![Array::exact("ranges", cell_words(&cell_ranges(&self.map, self.size, self.range)))])
-    }
-}
-
-/// Ranges of one view's cells, to which the other's are found.
-#[derive(Clone, Debug)]
-pub struct PartnerRangesTrial {
-    /// What is searched in each cell of the reference view.
-    pub cells: CellPlane,
-    /// The reference view.
-    pub view: View,
-    /// Of which cells have a part.
-    pub range: DisparityRange,
-}
-
-impl PartnerRangesTrial {
-    /// A cell a pixel of a small picture, fewer of a large one.
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let range = dice.range(150);
-        let cells = Plane::from_fn(size.0.min(70), size.1.min(9), |_, _| {
-            let first = dice.below(range.count);
-            (first, dice.below(range.count - first + 1))
-        });
-        Self { cells, view: dice.view(), range }
-    }
-}
-
-impl Trial for PartnerRangesTrial {
-    fn parameters(&self) -> String {
-        format!("{:?} {:?}", self.view, self.range)
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("ranges", cell_words(&self.cells))]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let device = bench.device();
-        let size = (CELL * self.cells.width(), CELL * self.cells.height());
-        let band = CellBand::new(size, (0, size.1), self.range);
-        let partners = bench.output(band.words() as u32)?;
-        let cells = bench.upload(&cell_words(&self.cells))?;
-        let dispatch = PartnerRanges::new(device).prepare(device, &band, self.view, &cells, &partners);
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(vec![Array::exact("ranges of the other view", bench.download::<u32>(&partners)?)])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        let partners = partner_ranges(&self.cells, self.view, self.range);
-        Ok(vec![Array::exact("ranges of the other view", cell_words(&partners))])
     }
 }

@@ -133,7 +133,7 @@ fn a_limit_that_is_too_low_is_named() {
         ("max_compute_workgroup_storage_size", |limits| limits.max_compute_workgroup_storage_size = 1024),
         ("max_compute_workgroups_per_dimension", |limits| limits.max_compute_workgroups_per_dimension = 1000),
         ("max_texture_dimension_2d", |limits| limits.max_texture_dimension_2d = 1024),
-        ("max_storage_textures_per_shader_stage", |limits| limits.max_storage_textures_per_shader_stage = 0),
+        ("max_storage_textures_per_shader_stage", |limits| limits.max_storage_textures_per_shader_stage = 1),
     ];
     for (name, change) in lower {
         let limit = REQUIRED_LIMITS.iter().find(|limit| limit.name == name).expect("a limit that is needed");

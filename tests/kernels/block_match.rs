@@ -1,7 +1,7 @@
 //! Block matching.
 
 use hsad::{
-    dense::{CELL, DenseConfig, Interpolation, Tile, View},
+    dense::{Aggregation, CELL, DenseConfig, Interpolation, Search, Tile, View},
     disparity::{DisparityRange, SCALE},
     image::{Luma, Plane},
     reference::CellPlane,
@@ -76,6 +76,21 @@ fn the_twin_searches_the_same_cells() {
         for min in [0, -7, 2] {
             let what = format!("{view:?} {tile:?} from {min}");
             compare_tiled(&what, (&left, &right), view, &config(5, min, 30), Some(&cells), tile);
+        }
+    }
+}
+
+#[test]
+fn the_other_view_is_asked_at_half_the_size() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height, 71);
+        for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
+            for min in [0, -9] {
+                let aggregation = Aggregation::Window { side: 7, search: Search::CoarseToFine };
+                let config = DenseConfig { aggregation, ..config(7, min, 21) };
+                let what = format!("{width}x{height} {view:?} from {min}");
+                compare_tiled(&what, (&left, &right), view, &config, None, tile);
+            }
         }
     }
 }

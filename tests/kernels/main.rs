@@ -32,7 +32,6 @@ mod mean_shift;
 mod nonmax;
 mod orientation;
 mod pad;
-mod partner_ranges;
 mod path;
 mod random;
 mod residual;

@@ -250,8 +250,8 @@ fn required_limits_are_those_that_some_shader_needs() {
         need("max_bindings_per_bind_group", stage.bindings.len() as u64);
         need("max_uniform_buffers_per_shader_stage", count(|b| matches!(b, Binding::Uniform(_))));
         need("max_storage_buffers_per_shader_stage", count(|b| matches!(b, Binding::Read | Binding::Write)));
-        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Words | Binding::Picture)));
-        need("max_storage_textures_per_shader_stage", count(|b| matches!(b, Binding::Map(_))));
+        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Picture)));
+        need("max_storage_textures_per_shader_stage", count(|b| matches!(b, Binding::Words | Binding::Map(_))));
         let uniforms = stage.bindings.iter().filter_map(|binding| match binding {
             Binding::Uniform(shape) => Some(size_of_rust(shape)),
             _ => None,
