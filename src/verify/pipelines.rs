@@ -58,7 +58,9 @@ impl DenseTrial {
 /// A pair whose disparities go through the range from left to right, up and down, in more and more noise: for every
 /// penalty and every check there are pixels on which it decides.
 fn uneven((width, height): Size, dice: &mut Dice) -> (DisparityRange, [Luma; 2]) {
-    let range = DisparityRange { min: dice.between(-6, 1), count: 24 + dice.below(25) };
+    // In a picture of one column only 0 has a partner.
+    let min = dice.between(-6, 1).min(width as i32 - 1);
+    let range = DisparityRange { min, count: 24 + dice.below(25) };
     let [right, relief, grain] = [0; 3].map(|_| dice.word());
     let right = smooth_noise(width, height, right);
     let relief = smooth_noise(width / 8 + 1, height / 8 + 1, relief);
