@@ -116,7 +116,8 @@ const OPENSURF_THRESHOLD: f32 = 0.0004;
 /// A set of parameters that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Block matching in windows of 9x9, coarse to fine, checked for uniqueness and from the other view, with holes.
+    /// Block matching in windows of 9x9, coarse to fine, checked for uniqueness and, at half the size, from the other view;
+    /// with holes.
     Fast,
     /// Semi-global matching along three paths, checked and filled.
     #[default]

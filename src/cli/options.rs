@@ -121,8 +121,8 @@ pub struct MatchOptions {
     /// quality: 1]
     #[arg(long, value_name = "PX", conflicts_with = "window")]
     cost_window: Option<u32>,
-    /// Compare blocks at every disparity of the range [fast: only at those that a map of half the size
-    /// shows nearby]
+    /// Compare blocks of both views at every disparity of the range [fast: at those that a map of half the
+    /// size shows nearby, and of the other view at half the size]
     #[arg(long)]
     whole_range: bool,
     /// Smallest disparity: with --disparities where the range begins [default: 0], without it a
@@ -139,14 +139,15 @@ pub struct MatchOptions {
     /// fast: 10, paper: 0]
     #[arg(long, value_name = "PERCENT")]
     uniqueness: Option<u32>,
-    /// Largest difference of the disparities that the two views find [default: 1, paper: no check]
+    /// Largest difference of the disparities that the two views find [default: 1, paper: no check]; fast
+    /// allows a pixel more, since it asks the other view at half the size
     #[arg(long, value_name = "PX", conflicts_with = "no_lr_check", allow_negative_numbers = true)]
     max_lr_difference: Option<f32>,
     /// Do not ask the other view
     #[arg(long)]
     no_lr_check: bool,
     /// Search the other view as well, instead of taking the first one's word for it: fewer mistakes beside
-    /// things that hide others, for nearly twice the time [fast: always]
+    /// things that hide others, for nearly twice the time [fast: --whole-range]
     #[arg(long, conflicts_with = "no_lr_check")]
     search_both_views: bool,
     /// Leave holes where the two views disagree or hardly any neighbour agrees

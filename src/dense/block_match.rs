@@ -178,7 +178,7 @@ pub struct OtherMap<'a> {
     /// The row in which the matched band begins.
     pub first_row: i32,
     /// The largest difference, in 1/256 px of the pictures that are matched, between a pixel's disparity and that of its
-    /// partner; coarse to fine, between it and twice the disparity of its partner or of one to the left or right.
+    /// partner; coarse to fine, twice the disparity of its partner there or of the pixel to the left or right.
     pub max_difference: u32,
 }
 

@@ -1,7 +1,10 @@
 //! The cells of a picture, each with disparities of its own to search.
 
 use super::config::DenseConfig;
-use crate::{disparity::DisparityRange, gpu::buffer_of};
+use crate::{
+    disparity::{DisparityRange, SCALE},
+    gpu::buffer_of,
+};
 
 /// The side of a cell in pixels.
 pub const CELL: u32 = 16;
@@ -77,6 +80,10 @@ impl CellBand {
         2 * u64::from(self.columns) * u64::from(self.rows)
     }
 }
+
+/// What a whole disparity at half the size stands for on either side, in 1/256 px of the whole one: no odd disparity is
+/// closer to twice a whole one.
+pub(crate) const HALF_GRAIN: u32 = SCALE as u32;
 
 /// How a pair of half the size is matched to find what to search: unconfirmed, since what the other view says of it
 /// confirms the matches of the whole size.

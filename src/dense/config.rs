@@ -56,7 +56,8 @@ pub enum Search {
     /// All of them.
     Whole,
     /// Those that a map of half the size shows around it, and a few more; all, where that map has holes. A
-    /// thing that is too thin or too small to be seen at half the size may be lost.
+    /// thing that is too thin or too small to be seen at half the size may be lost. The other view is searched at half the
+    /// size only.
     CoarseToFine,
 }
 
@@ -91,8 +92,8 @@ pub struct DenseConfig {
     /// the winner's; 0 accepts every winner, at most 100.
     pub uniqueness: u32,
     /// The largest difference, in 1/256 px, between a pixel's disparity and that of its partner in
-    /// the other view; `None` accepts every winner. [`Search::CoarseToFine`] asks the other view at half the size, where
-    /// pixels are twice as large, and there the partner or one to its left or right.
+    /// the other view; `None` accepts every winner. [`Search::CoarseToFine`] asks the other view at half the size: the
+    /// partner there or one to its left or right, and a pixel more is allowed, since disparities there are even.
     pub consistency: Option<u32>,
     /// What becomes of the map after that; `None`: it stays as it is.
     pub refinement: Option<Refinement>,

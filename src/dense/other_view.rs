@@ -38,19 +38,19 @@ impl OtherView {
         }))
     }
 
-    /// Plans the search of the padded `planes` of `layout`. A pixel of the map is `scale` pixels wide, and the matched band
-    /// begins in its row `first_row`.
+    /// Plans the search of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map, whose
+    /// disparities allow for `grain` 1/256 px more of difference.
     pub(super) fn plan(
         &self,
         device: &wgpu::Device,
         plan: &mut Plan,
         (layout, planes): (&Layout, &WordTexture),
         ranges: &Ranges,
-        (scale, first_row): (u32, i32),
+        (grain, first_row): (u32, i32),
     ) -> OtherMap<'_> {
         let (buffer, words) = &self.winners;
         plan.run(self.find_winners.prepare(device, layout, planes, ranges, None, (buffer, 0)));
         plan.fill_texture(buffer, words);
-        OtherMap { words, width: layout.width(), first_row, max_difference: scale * self.max_difference }
+        OtherMap { words, width: layout.width(), first_row, max_difference: self.max_difference + grain }
     }
 }

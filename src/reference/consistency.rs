@@ -1,7 +1,7 @@
 //! Left-right consistency, from the definition.
 
 use crate::{
-    dense::{Dense, View},
+    dense::{Dense, View, cells::HALF_GRAIN},
     disparity::{DisparityMap, NONE, SCALE},
 };
 
@@ -14,13 +14,13 @@ pub fn check_consistency(dense: &mut Dense, view: View, others: &DisparityMap, m
     });
 }
 
-/// The same with the other view's disparities at half the size, and in its pixels: the partner there, or the pixel to its
-/// left or right, must have half the disparity.
+/// The same with the other view's whole disparities at half the size: twice that of the partner there, or of the pixel to
+/// its left or right, must differ by at most `max_difference` / 256 px and the pixel that lies between two of them.
 pub fn check_half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
         (-1..=1).any(|i| {
             let other = others.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
-            other != NONE && disparity.abs_diff(2 * other) <= 2 * max_difference
+            other != NONE && disparity.abs_diff(2 * other) <= max_difference + HALF_GRAIN
         })
     });
 }
@@ -64,10 +64,12 @@ mod tests {
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
         assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
 
-        // At half the size: pixel 3 asks 0 to 2 (its partner is 2, so 1), 4 asks the same with another disparity.
-        let mut dense = Dense { disparity: plane(&[NONE, NONE, NONE, 256, 512]), confidence: Plane::filled(5, 1, 9) };
-        check_half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 158]), 30);
-        assert_eq!(dense.disparity.data(), [NONE, NONE, NONE, 256, NONE]);
+        // At half the size. The partner of 3 is 2, there 1: an odd disparity lies between even ones. That of 4 is 1, there 0,
+        // and its neighbour has another disparity. That of 5 is 3, there 1, and its neighbour has half the disparity.
+        let mut dense =
+            Dense { disparity: plane(&[NONE, NONE, NONE, 256, 800, 512]), confidence: Plane::filled(6, 1, 9) };
+        check_half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 256, NONE]), 0);
+        assert_eq!(dense.disparity.data(), [NONE, NONE, NONE, 256, NONE, 512]);
 
         let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled(3, 1, 9) };
         // -128 is a half: up, to 0.

@@ -9,7 +9,8 @@ use super::{
 use crate::{
     dense::{
         Aggregation, BlockMatch, Brightness, CELL, DenseConfig, Layout, OtherMap, Pad, PadParams, Ranges, Search, Tile,
-        View, Wanted, cells::halved_config,
+        View, Wanted,
+        cells::{HALF_GRAIN, halved_config},
     },
     disparity::DisparityRange,
     error::Result,
@@ -120,8 +121,8 @@ impl BlockMatchTrial {
         };
         let words = others.as_ref().map(|(others, _)| bench.upload_words(others.data())).transpose()?;
         let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| {
-            let scale = if self.config.is_coarse_to_fine() { 2 } else { 1 };
-            OtherMap { words, width: map.width(), first_row: 0, max_difference: scale * limit }
+            let grain = if self.config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
+            OtherMap { words, width: map.width(), first_row: 0, max_difference: limit + grain }
         });
         let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
         let matches = bench.output(width * height + confidences)?;
