@@ -249,8 +249,7 @@ fn is_confirmed(x: u32, y: u32, disparity: i32) -> bool {
     var holds = params.max_difference == 0xffffffffu;
     for (var i = 0; i < HALVED + HALVED + 1; i++) { // unroll
         let column = clamp((partner >> HALVED) + i - HALVED, 0, i32(params.others_width) - 1);
-        let index = u32(row + column);
-        let other = i32(textureLoad(others, vec2<u32>(index & ((1u << ROW_BITS) - 1u), index >> ROW_BITS)).x);
+        let other = i32(textureLoad(others, place_of(u32(row + column))).x);
         let scaled = select(NONE, other << HALVED, other != NONE);
         holds = holds || is_consistent(disparity, partner, params.width, scaled, params.max_difference);
     }

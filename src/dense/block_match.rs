@@ -2,7 +2,7 @@
 
 use super::{
     answer::{Wanted, answer_constants},
-    cells::Ranges,
+    cells::{HALF_GRAIN, Ranges},
     config::{DenseConfig, View},
     pad::PadParams,
 };
@@ -71,6 +71,8 @@ pub struct BlockMatch {
     kernel: Kernel,
     view: View,
     uniqueness: u32,
+    /// How coarse the other view's disparities are, in 1/256 px.
+    grain: u32,
     tile: Tile,
 }
 
@@ -125,7 +127,8 @@ impl BlockMatch {
     /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
     pub fn new(device: &Context<'_>, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
         let kernel = Kernel::new(device, &Self::stage(config, view, wanted, tile));
-        Self { kernel, view, uniqueness: config.uniqueness, tile }
+        let grain = if config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
+        Self { kernel, view, uniqueness: config.uniqueness, grain, tile }
     }
 
     /// Matches the padded `planes` of `layout` at the disparities that `ranges` name, writing a fixed-point disparity for each pixel of
@@ -154,7 +157,7 @@ impl BlockMatch {
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset,
-            max_difference: others.map_or(u32::MAX, |others| others.max_difference),
+            max_difference: others.map_or(u32::MAX, |others| others.max_difference + self.grain),
             others_first_row: others.map_or(0, |others| others.first_row),
             others_width: others.map_or(1, |others| others.width),
         };
@@ -178,7 +181,8 @@ pub struct OtherMap<'a> {
     /// The row in which the matched band begins.
     pub first_row: i32,
     /// The largest difference, in 1/256 px of the pictures that are matched, between a pixel's disparity and that of its
-    /// partner; coarse to fine, twice the disparity of its partner there or of the pixel to the left or right.
+    /// partner; coarse to fine a pixel more, from twice the disparity of its partner there or of the pixel to the left or
+    /// right.
     pub max_difference: u32,
 }
 

@@ -71,7 +71,7 @@ pub(super) fn plan(
         plan.fill_texture(&planes.0, &planes.1);
         let others = match &other_view {
             None => others,
-            Some(view) => Some(view.plan(device, &mut plan, (&layout, &planes.1), ranges, (0, 0))),
+            Some(view) => Some(view.plan(device, &mut plan, (&layout, &planes.1), ranges, 0)),
         };
         plan.run(block_match.prepare(device, &layout, &planes.1, ranges, others, (&matches, confidence_offset)));
         plan.hand_out(&matches, confidence_offset, width, (first_row, rows));

@@ -6,7 +6,7 @@
 use super::{
     block_match::{BlockMatch, Layout, OtherMap, Tile},
     cell_ranges::CellRanges,
-    cells::{CELL, CellBand, HALF_GRAIN, REACH, Ranges, halved_config},
+    cells::{CELL, CellBand, REACH, Ranges, halved_config},
     config::{DenseConfig, View},
     halve::Halve,
     other_view::OtherView,
@@ -97,9 +97,10 @@ impl Coarse {
             plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
-        let others = self.other_view.as_ref().map(|other_view| {
-            other_view.plan(device, plan, (&layout, &self.planes.1), &self.whole, (HALF_GRAIN, band.map_start))
-        });
+        let others = self
+            .other_view
+            .as_ref()
+            .map(|other_view| other_view.plan(device, plan, (&layout, &self.planes.1), &self.whole, band.map_start));
         let confidence_offset = match_words(band.map_width, band.map_rows).1;
         plan.run(block_match.prepare(
             device,

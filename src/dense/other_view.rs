@@ -38,19 +38,18 @@ impl OtherView {
         }))
     }
 
-    /// Plans the search of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map, whose
-    /// disparities allow for `grain` 1/256 px more of difference.
+    /// Plans the search of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map.
     pub(super) fn plan(
         &self,
         device: &wgpu::Device,
         plan: &mut Plan,
         (layout, planes): (&Layout, &WordTexture),
         ranges: &Ranges,
-        (grain, first_row): (u32, i32),
+        first_row: i32,
     ) -> OtherMap<'_> {
         let (buffer, words) = &self.winners;
         plan.run(self.find_winners.prepare(device, layout, planes, ranges, None, (buffer, 0)));
         plan.fill_texture(buffer, words);
-        OtherMap { words, width: layout.width(), first_row, max_difference: self.max_difference + grain }
+        OtherMap { words, width: layout.width(), first_row, max_difference: self.max_difference }
     }
 }

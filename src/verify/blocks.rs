@@ -9,8 +9,7 @@ use super::{
 use crate::{
     dense::{
         Aggregation, BlockMatch, Brightness, CELL, DenseConfig, Layout, OtherMap, Pad, PadParams, Ranges, Search, Tile,
-        View, Wanted,
-        cells::{HALF_GRAIN, halved_config},
+        View, Wanted, cells::halved_config,
     },
     disparity::DisparityRange,
     error::Result,
@@ -120,9 +119,11 @@ impl BlockMatchTrial {
             _ => None,
         };
         let words = others.as_ref().map(|(others, _)| bench.upload_words(others.data())).transpose()?;
-        let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| {
-            let grain = if self.config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
-            OtherMap { words, width: map.width(), first_row: 0, max_difference: limit + grain }
+        let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| OtherMap {
+            words,
+            width: map.width(),
+            first_row: 0,
+            max_difference: *limit,
         });
         let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
         let matches = bench.output(width * height + confidences)?;
@@ -142,9 +143,7 @@ impl BlockMatchTrial {
         let (config, view) = (self.searched()?, self.view.other());
         Ok(if config.is_coarse_to_fine() {
             let [left, right] = [&self.left, &self.right].map(halved);
-            let half = halved_config(&config, config.range);
-            let half = DenseConfig { range: half.searched(left.width())?, ..half };
-            winners(&left, &right, view, &half, None)
+            winners(&left, &right, view, &halved_config(&config, config.range), None)
         } else {
             winners(&self.left, &self.right, view, &config, None)
         })
