@@ -9,15 +9,16 @@ use std::path::Path;
 
 use hsad::{
     config::{Config, Method, Preset},
-    dense::{Aggregation, CellBand, Dense, DenseConfig, Search, View},
+    cpu,
+    dense::{Aggregation, Dense, DenseConfig, Search, View, kernels::CellBand},
     disparity::{self, DisparityRange, SCALE},
     eval::scene::{self, SceneFiles},
     features::Feature,
     gpu::DeviceChoice,
-    hybrid::HybridParameters,
+    kamencay::KamencayParameters,
     matching::{MatchConfig, Rows, Seed, match_features, refine},
     pair::{Backend, Pair},
-    pipeline, reference,
+    pipeline,
 };
 
 type AnyError = Box<dyn std::error::Error>;
@@ -96,7 +97,7 @@ fn main() -> Result<(), AnyError> {
         let shares = [visible.of_known, all.of_known, visible.of_estimated, all.of_estimated, scores.all.coverage()];
         Ok(shares.map(|share| 100.0 * share))
     })?;
-    let hybrid = Method::Kamencay(HybridParameters::default());
+    let hybrid = Method::Kamencay(KamencayParameters::default());
     for (name, config) in [
         ("preset fast", Preset::Fast.config()),
         ("preset balanced", Preset::Balanced.config()),
@@ -167,8 +168,8 @@ fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     let half =
         DenseConfig { range: CellBand::new(size, (0, size.1), range).map_range, consistency: None, ..config.clone() };
     let map = pair.reduced(2)?.dense(&half.with_window(config.window()))?.disparity;
-    let ranges = reference::cell_ranges(&map, size, range);
-    let share = |cells: &reference::CellPlane| {
+    let ranges = cpu::dense::cell_ranges(&map, size, range);
+    let share = |cells: &cpu::dense::CellPlane| {
         let counts = cells.data().iter().map(|&(_, count)| f64::from(count) / f64::from(range.count));
         counts.sum::<f64>() / cells.data().len() as f64
     };

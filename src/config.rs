@@ -8,7 +8,7 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     features::FeatureConfig,
-    hybrid::{HybridConfig, HybridParameters},
+    kamencay::{KamencayConfig, KamencayParameters},
     seeding::SeedingConfig,
 };
 
@@ -17,9 +17,9 @@ use crate::{
 pub enum Method {
     /// As [`crate::dense`] does it.
     Hsad,
-    /// As [`crate::hybrid`] does it, for comparison: what aggregates, interpolates, checks and refines there is not
+    /// As [`crate::kamencay`] does it, for comparison: what aggregates, interpolates, checks and refines there is not
     /// asked for then. [`Config::reference`] and [`Config::equalise`] are.
-    Kamencay(HybridParameters),
+    Kamencay(KamencayParameters),
 }
 
 /// All parameters of the pipeline.
@@ -91,8 +91,13 @@ impl Config {
     }
 
     /// What the hybrid method is asked to do in `range`, with the right view's brightness changed first.
-    pub fn hybrid(&self, parameters: &HybridParameters, range: DisparityRange, brightness: Brightness) -> HybridConfig {
-        HybridConfig { range, reference: self.reference, brightness, parameters: *parameters }
+    pub fn hybrid(
+        &self,
+        parameters: &KamencayParameters,
+        range: DisparityRange,
+        brightness: Brightness,
+    ) -> KamencayConfig {
+        KamencayConfig { range, reference: self.reference, brightness, parameters: *parameters }
     }
 
     /// What the dense half is asked to do in `range`, with the right view's brightness changed first.

@@ -17,7 +17,7 @@ pub type Luma = Plane<u8>;
 
 /// The grey value of a colour: `(77 R + 150 G + 29 B + 128) >> 8`, the weights of ITU-R BT.601 in
 /// 1/256, rounded.
-pub const fn luma([red, green, blue]: [u8; 3]) -> u8 {
+pub const fn luma_of([red, green, blue]: [u8; 3]) -> u8 {
     ((77 * red as u32 + 150 * green as u32 + 29 * blue as u32 + 128) >> 8) as u8
 }
 
@@ -151,18 +151,18 @@ mod tests {
 
     #[test]
     fn luma_of_known_colours() {
-        assert_eq!(luma([0, 0, 0]), 0);
-        assert_eq!(luma([255, 255, 255]), 255);
+        assert_eq!(luma_of([0, 0, 0]), 0);
+        assert_eq!(luma_of([255, 255, 255]), 255);
         // 77 * 255 = 19635, + 128 = 19763, / 256 = 77.2
-        assert_eq!(luma([255, 0, 0]), 77);
+        assert_eq!(luma_of([255, 0, 0]), 77);
         // 77 * 10 + 150 * 20 + 29 * 30 + 128 = 4768, / 256 = 18.6
-        assert_eq!(luma([10, 20, 30]), 18);
+        assert_eq!(luma_of([10, 20, 30]), 18);
     }
 
     #[test]
     fn luma_keeps_grey() {
         for grey in 0..=255 {
-            assert_eq!(luma([grey; 3]), grey);
+            assert_eq!(luma_of([grey; 3]), grey);
         }
     }
 }

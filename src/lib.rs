@@ -8,7 +8,7 @@
 //!     config::Preset,
 //!     dense::{Brightness, Destination, Inputs, Matcher, Outputs},
 //!     disparity::DisparityRange,
-//!     input::Source,
+//!     luma::Source,
 //!     wgpu,
 //! };
 //!
@@ -41,7 +41,7 @@
 //! }
 //! ```
 //!
-//! [`input::Source`] says which textures and buffers it takes, [`dense::Destination`] where disparities can go,
+//! [`luma::Source`] says which textures and buffers it takes, [`dense::Destination`] where disparities can go,
 //! [`gpu::REQUIRED_LIMITS`] what a device must offer, and [`gpu::Context`] how an application's pipeline cache is used.
 //! `examples/embed` draws the disparities, `examples/stream` goes through a sequence of frames.
 //!
@@ -103,15 +103,16 @@
 //!
 //! # The way through
 //!
-//! [`io`] or [`input`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
-//! [`pipeline`]; where its method is asked for, [`hybrid`] stands in the place of [`dense`]. Each stage has one name in
-//! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/reference/<stage>.rs` (its twin) and
+//! [`io`] or [`luma`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
+//! [`pipeline`]; where its method is asked for, [`kamencay`] stands in the place of [`dense`]. Each stage has one name in
+//! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/cpu/<stage>.rs` (its twin) and
 //! `tests/kernels/<stage>.rs`.
 //!
-//! Beside it, [`sparse`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
+//! Beside it, [`wide_baseline`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
 //! results are where the truth is known.
 
 pub mod config;
+pub mod cpu;
 pub mod dense;
 pub mod disparity;
 pub mod error;
@@ -119,29 +120,23 @@ pub mod eval;
 pub mod features;
 pub mod filter;
 pub mod gpu;
-pub mod hybrid;
 pub mod image;
-pub mod input;
 pub mod io;
+pub mod kamencay;
 pub mod luma;
-pub mod luma_texture;
 pub mod matching;
 pub mod pair;
 pub mod pipeline;
-pub mod reference;
 pub mod seeding;
-pub mod sparse;
 #[cfg(all(feature = "verify", not(target_arch = "wasm32")))]
 pub mod verify;
+pub mod wide_baseline;
 
 pub use error::{Error, Result};
 pub use wgpu;
 
 /// Every stage there is, for checks that need no GPU.
 pub fn stages() -> Vec<gpu::Stage> {
-    let mut stages = vec![luma::stage(), luma_texture::stage()];
-    stages.extend(features::stages());
-    stages.extend(dense::stages());
-    stages.extend(hybrid::stages());
-    stages
+    [luma::kernels::stages(), features::kernels::stages(), dense::kernels::stages(), kamencay::kernels::stages()]
+        .concat()
 }

@@ -3,16 +3,15 @@
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::wait;
 use crate::{
+    cpu,
     dense::{self, Dense, DenseConfig},
     error::{Error, Result},
     features::{self, Detector, Feature, FeatureConfig},
     gpu::{DeviceChoice, Gpu, Readback, check_limits, guarded, storage_buffer},
-    hybrid::{self, HybridConfig},
     image::{Luma, reduced},
-    input::Source,
     io::Picture,
-    luma::{MAX_SIDE, RgbaToLuma, packed_bytes, unpack, upload},
-    reference,
+    kamencay::{self, KamencayConfig},
+    luma::{MAX_SIDE, Source, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
 };
 
 /// What computes: a device, or the CPU twins.
@@ -95,27 +94,27 @@ impl Backend {
     pub async fn features_async(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self {
             Self::Gpu(gpu) => features::detect_async(gpu, luma, config).await,
-            Self::Cpu => reference::detector::detect(luma, config),
+            Self::Cpu => cpu::features::detector::detect(luma, config),
         }
     }
 
     /// The disparities of a pair by the hybrid method, which sees the colours of the pictures.
     ///
     /// # Errors
-    /// As [`hybrid::compute`].
+    /// As [`kamencay::compute`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn hybrid(&self, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
-        self.wait(self.hybrid_async(left, right, config))
+    pub fn hybrid(&self, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
+        self.wait(self.kamencay_async(left, right, config))
     }
 
     /// As [`Backend::hybrid`], without blocking on a device.
     ///
     /// # Errors
     /// As [`Backend::hybrid`].
-    pub async fn hybrid_async(&self, left: &Picture, right: &Picture, config: &HybridConfig) -> Result<Dense> {
+    pub async fn kamencay_async(&self, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
         match self {
-            Self::Gpu(gpu) => hybrid::compute_async(gpu, left, right, config).await,
-            Self::Cpu => reference::compute_hybrid(left, right, config),
+            Self::Gpu(gpu) => kamencay::compute_async(gpu, left, right, config).await,
+            Self::Cpu => cpu::kamencay::compute(left, right, config),
         }
     }
 }
@@ -223,8 +222,8 @@ impl<'b> Pair<'b> {
     pub async fn features_async(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
         let Some(OnDevice { gpu, left, right }) = &self.device else {
             return Ok([
-                reference::detector::detect(&self.left, config)?,
-                reference::detector::detect(&self.right, config)?,
+                cpu::features::detector::detect(&self.left, config)?,
+                cpu::features::detector::detect(&self.right, config)?,
             ]);
         };
         let device = &gpu.device;
@@ -268,7 +267,7 @@ impl<'b> Pair<'b> {
                 gpu.queue.submit([encoder.finish()]);
                 matcher.run_async(gpu).await
             }
-            None => reference::compute_dense(&self.left, &self.right, config),
+            None => cpu::dense::compute(&self.left, &self.right, config),
         }
     }
 }

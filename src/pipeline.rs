@@ -8,8 +8,8 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
-    hybrid::HybridConfig,
     io::Picture,
+    kamencay::KamencayConfig,
     pair::{Backend, Pair},
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
@@ -160,7 +160,7 @@ pub async fn run_async(
             let hybrid = config.hybrid(parameters, range, brightness);
             let range = hybrid.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, backend.hybrid_async(left, right, &HybridConfig { range, ..hybrid }).await?)
+            (range, backend.kamencay_async(left, right, &KamencayConfig { range, ..hybrid }).await?)
         }
     };
     enter(None);

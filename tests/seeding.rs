@@ -6,11 +6,11 @@ use std::path::Path;
 
 use hsad::{
     Error,
+    cpu::features::detector::detect,
     disparity::DisparityRange,
     features::{Feature, FeatureConfig},
     image::{Luma, Plane},
     io::{load, pfm},
-    reference::detector::detect,
     seeding::{Seeding, SeedingConfig, Verdict},
 };
 

@@ -15,8 +15,8 @@ use hsad::{
     config::Preset,
     dense::{Brightness, Destination, Matcher},
     disparity::DisparityRange,
-    input::Source,
     io::{Picture, atomic, load, png},
+    luma::Source,
     wgpu::{self, TextureFormat, TextureUsages},
 };
 

@@ -5,8 +5,8 @@ use std::sync::mpsc::{Receiver, channel};
 use hsad::{
     dense::{Destination, Inputs, Matcher, Outputs},
     features::{DESCRIPTOR_LENGTH, Detector, Feature, collect, keypoints::Keypoint},
-    input::Source,
     io::Picture,
+    luma::Source,
     seeding::{Seeding, SeedingConfig},
     wgpu,
 };

@@ -11,8 +11,8 @@ use hsad::{
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
-    hybrid::HybridParameters,
     io::Calibration,
+    kamencay::KamencayParameters,
     matching::MatchConfig,
     pair::Backend,
     verify::self_test,
@@ -180,7 +180,7 @@ impl MatchOptions {
         let mut config = self.preset.map_or(Preset::default(), Preset::from).config();
         if let MethodName::Kamencay = self.method {
             self.refuse_what_only_hsad_does()?;
-            config.method = Method::Kamencay(HybridParameters::default());
+            config.method = Method::Kamencay(KamencayParameters::default());
         }
         config.features = features.over(config.features);
         config.seeding.matching.ratio = self.ratio.unwrap_or(config.seeding.matching.ratio);

@@ -4,8 +4,8 @@ use hsad::{
     config::{Config, Method},
     dense::{Aggregation, Difference, Interpolation, OtherView, Paths, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
-    hybrid::HybridParameters,
     io::Calibration,
+    kamencay::KamencayParameters,
     pair::Backend,
     pipeline::RangeSource,
     seeding::{Brightness, Rectification, Verdict},
@@ -132,8 +132,9 @@ fn dense(config: &Config) -> Vec<(&'static str, Value)> {
 }
 
 /// What only the hybrid method is told.
-fn hybrid(parameters: &HybridParameters) -> Vec<(&'static str, Value)> {
-    let HybridParameters { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } = parameters;
+fn hybrid(parameters: &KamencayParameters) -> Vec<(&'static str, Value)> {
+    let KamencayParameters { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } =
+        parameters;
     vec![
         ("mean_shift", json!({ "radius_px": mean_shift.radius, "range": mean_shift.range, "turns": mean_shift.turns })),
         ("segments", json!({ "join": segmentation.join, "least_px": segmentation.least })),

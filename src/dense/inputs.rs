@@ -1,6 +1,6 @@
 //! The views that a matcher matches.
 
-use crate::input::Input;
+use crate::luma::Input;
 
 /// Left and right view on their way into a [`super::Matcher`]: see [`super::Matcher::inputs`].
 pub struct Inputs(pub(super) [Input; 2]);

@@ -3,14 +3,11 @@
 use std::{sync::OnceLock, time::Duration};
 
 use super::{
-    blocks,
-    config::{Aggregation, DenseConfig, View},
+    config::{Aggregation, Brightness, DenseConfig, View},
     inputs::Inputs,
-    map_texture::{MapRows, MapTexel, MapTexture},
+    kernels::{MapRows, MapTexel, MapTexture},
     outputs::{Destination, Disparities, Outputs},
-    pad::Brightness,
-    plan::{Copy, Plan},
-    semi_global,
+    plan::{Copy, Plan, blocks, semi_global},
 };
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::wait;
@@ -19,9 +16,10 @@ use crate::{
     error::{Error, Result},
     gpu::{Context, Dispatch, Gpu, Readback, Stopwatch, check_limits, guarded, storage_buffer},
     image::{Luma, Plane},
-    input::{Input, Source, check_buffer, check_texture, try_recording},
-    luma::{check_size, pack, packed_bytes, unpack},
-    luma_texture::LumaTexture,
+    luma::{
+        Input, Source, check_buffer, check_size, check_texture, kernels::luma_texture::LumaTexture, pack, packed_bytes,
+        try_recording, unpack,
+    },
 };
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    sparse::SparseMatch,
+    wide_baseline::WideBaselineMatch,
 };
 
 /// A point of the first view and where the second is said to show it.
@@ -27,9 +27,9 @@ pub struct PointMatch {
     pub points: Option<[usize; 2]>,
 }
 
-impl From<&SparseMatch> for PointMatch {
-    fn from(found: &SparseMatch) -> Self {
-        let SparseMatch { first, second, confidence, points } = *found;
+impl From<&WideBaselineMatch> for PointMatch {
+    fn from(found: &WideBaselineMatch) -> Self {
+        let WideBaselineMatch { first, second, confidence, points } = *found;
         Self { first, second, confidence: confidence.into(), points: Some(points) }
     }
 }

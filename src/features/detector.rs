@@ -2,15 +2,17 @@
 
 use super::{
     DESCRIPTOR_LENGTH, Feature, FeatureConfig,
-    descriptor::Descriptor,
-    hessian::{DETERMINANT_SCALE, Hessian},
-    integral_columns::IntegralColumns,
-    integral_rows::IntegralRows,
+    kernels::{
+        descriptor::Descriptor,
+        hessian::{DETERMINANT_SCALE, Hessian},
+        integral_columns::IntegralColumns,
+        integral_rows::IntegralRows,
+        nonmax::Nonmax,
+        orientation::Orientation,
+        workgroups::Workgroups,
+    },
     keypoints::{Keypoint, KeypointList},
-    nonmax::Nonmax,
-    orientation::Orientation,
     too_many,
-    workgroups::Workgroups,
 };
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::wait;

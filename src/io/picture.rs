@@ -1,6 +1,6 @@
 //! Colour pictures in memory.
 
-use crate::image::{Luma, Plane, luma};
+use crate::image::{Luma, Plane, luma_of};
 
 /// A colour picture: red, green, blue and alpha, 8 bits each. Alpha means nothing here.
 pub type Picture = Plane<[u8; 4]>;
@@ -19,7 +19,7 @@ impl Picture {
 
     /// The grey picture that the kernels see.
     pub fn luma(&self) -> Luma {
-        self.map(|&[red, green, blue, _]| luma([red, green, blue]))
+        self.map(|&[red, green, blue, _]| luma_of([red, green, blue]))
     }
 }
 

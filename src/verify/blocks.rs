@@ -7,16 +7,16 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
+    cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
-        Aggregation, BlockMatch, Brightness, CELL, DenseConfig, Layout, OtherMap, Pad, PadParams, Ranges, Search, Tile,
-        View, Wanted, cells::halved_config,
+        Aggregation, Brightness, DenseConfig, Search, View,
+        kernels::{BlockMatch, CELL, Layout, OtherMap, Pad, PadParams, Ranges, Tile, Wanted, halved_config},
     },
     disparity::DisparityRange,
     error::Result,
     gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
-    reference::{CellPlane, block_match, check_consistency, check_half_consistency, halved, padded, winners},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -76,7 +76,7 @@ impl Trial for PadTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let mut plane = padded(&self.picture, &self.params, self.brightness);
+        let mut plane = pad(&self.picture, &self.params, self.brightness);
         // The kernel leaves what stands in front of the plane alone.
         plane[..self.params.offset as usize].fill(u32::MAX);
         Ok(vec![Array::exact("padded plane", plane)])
@@ -106,7 +106,7 @@ impl BlockMatchTrial {
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
         let [left, right] = layout.padding();
-        let plane = |view, params| padded(view, params, Brightness::SAME);
+        let plane = |view, params| pad(view, params, Brightness::SAME);
         let (mut planes, right_plane) = (plane(&self.left, &left), plane(&self.right, &right));
         planes.extend(&right_plane[right.offset as usize..]);
         let texture = bench.upload_words(&planes)?;
@@ -142,7 +142,7 @@ impl BlockMatchTrial {
     fn others(&self) -> Result<Plane<i32>> {
         let (config, view) = (self.searched()?, self.view.other());
         Ok(if config.is_coarse_to_fine() {
-            let [left, right] = [&self.left, &self.right].map(halved);
+            let [left, right] = [&self.left, &self.right].map(halve);
             winners(&left, &right, view, &halved_config(&config, config.range), None)
         } else {
             winners(&self.left, &self.right, view, &config, None)
@@ -212,7 +212,7 @@ impl Trial for BlockMatchTrial {
         let (config, ranges) = (self.searched()?, self.ranges.as_ref());
         let mut dense = block_match(&self.left, &self.right, self.view, &config, ranges);
         if let Some(max_difference) = config.consistency {
-            let check = if config.is_coarse_to_fine() { check_half_consistency } else { check_consistency };
+            let check = if config.is_coarse_to_fine() { half_consistency } else { consistency };
             check(&mut dense, self.view, &self.others()?, max_difference);
         }
         let winners = winners(&self.left, &self.right, self.view, &config, ranges).into_data();

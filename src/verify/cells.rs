@@ -8,12 +8,12 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    dense::{CellBand, CellRanges, Halve},
+    cpu::dense::{cell_ranges, halve},
+    dense::kernels::{CellBand, CellRanges, Halve},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane},
     luma::pack,
-    reference::{cell_ranges, halved},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -43,7 +43,7 @@ impl Trial for HalveTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("half the picture", pack(&halved(&self.0)))])
+        Ok(vec![Array::exact("half the picture", pack(&halve(&self.0)))])
     }
 }
 

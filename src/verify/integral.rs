@@ -7,13 +7,19 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
+    cpu::{
+        features::{integral_columns::integral_columns, integral_rows::integral_rows},
+        luma::{Texels, luma, luma_texture},
+    },
     error::{Error, Result},
-    features::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
+    features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
     gpu::storage_buffer,
     image::{Luma, Plane},
-    luma::{RgbaToLuma, pack, packed_bytes},
-    luma_texture::{LumaTexture, TexelFormat},
-    reference::{Texels, integral_columns::sum_columns, integral_rows::sum_rows, luma::from_rgba, luma_of_texels},
+    luma::{
+        TexelFormat,
+        kernels::{luma::RgbaToLuma, luma_texture::LumaTexture},
+        pack, packed_bytes,
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -53,7 +59,7 @@ impl Trial for LumaTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let (width, height) = self.0.size();
-        let luma = from_rgba(width, height, self.0.data().as_flattened())?;
+        let luma = luma(width, height, self.0.data().as_flattened())?;
         Ok(vec![Array::exact("luma", pack(&luma))])
     }
 }
@@ -134,7 +140,7 @@ impl Trial for LumaTextureTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("luma", pack(&luma_of_texels(&self.texels)))])
+        Ok(vec![Array::exact("luma", pack(&luma_texture(&self.texels)))])
     }
 }
 
@@ -166,7 +172,7 @@ impl Trial for RowsTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("sums", sum_rows(&self.0).into_data())])
+        Ok(vec![Array::exact("sums", integral_rows(&self.0).into_data())])
     }
 }
 
@@ -176,7 +182,7 @@ pub struct ColumnsTrial(pub Plane<u32>);
 
 impl ColumnsTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let sums = sum_rows(&dice.picture(size));
+        let sums = integral_rows(&dice.picture(size));
         // Sums that wrap, as in a picture of many megapixels.
         let large = if dice.coin() { u32::MAX >> dice.below(8) } else { 0 };
         Self(sums.map(|&sum| sum.wrapping_add(large)))
@@ -201,7 +207,7 @@ impl Trial for ColumnsTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let mut sums = self.0.clone();
-        sum_columns(&mut sums);
+        integral_columns(&mut sums);
         Ok(vec![Array::exact("integral image", sums.into_data())])
     }
 }

@@ -8,16 +8,19 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
+    cpu::dense::{consistency, fill, map_texture, residual, support, weighted_median},
     dense::{
-        Brightness, Consistency, Dense, Fill, MAX_RESIDUAL, MapRows, MapTexel, MapTexture, Median, Others, Residual,
-        Support, View, Views, WeightedMedian,
+        Brightness, Dense, Median, View,
+        kernels::{
+            Consistency, Fill, MAX_RESIDUAL, MapRows, MapTexel, MapTexture, Others, Residual, Support, Views,
+            WeightedMedian,
+        },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
-    reference::{brightened, check_consistency, filled, residuals, supported, texels_in_pixels, weighted_median},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -119,7 +122,7 @@ impl Trial for ConsistencyTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let mut dense = self.dense.clone();
-        check_consistency(&mut dense, self.view, &self.others, self.max_difference);
+        consistency(&mut dense, self.view, &self.others, self.max_difference);
         Ok(arrays(&matches(&dense), dense.disparity.data().len()))
     }
 }
@@ -183,8 +186,8 @@ impl Trial for ResidualTrial {
         let (width, rows) = self.disparities.size();
         let rows_of = |view: &Luma| Plane::from_fn(width, rows, |x, y| view.get(x, self.first_row + y));
         let [left, right] = self.views.each_ref().map(rows_of);
-        let right = right.map(|&luma| brightened(luma, self.brightness));
-        let found = residuals([&left, &right], self.reference, &self.disparities);
+        let right = right.map(|&luma| self.brightness.apply(luma));
+        let found = residual([&left, &right], self.reference, &self.disparities);
         Ok(vec![Array::exact("residuals", pack(&found))])
     }
 }
@@ -229,7 +232,7 @@ impl Trial for SupportTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let dense = supported(&self.dense, &self.residuals, self.least);
+        let dense = support(&self.dense, &self.residuals, self.least);
         Ok(arrays(&matches(&dense), dense.disparity.data().len()))
     }
 }
@@ -277,7 +280,7 @@ impl Trial for FillTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("filled disparities", filled(&self.disparities, self.range).into_data())])
+        Ok(vec![Array::exact("filled disparities", fill(&self.disparities, self.range).into_data())])
     }
 }
 
@@ -333,7 +336,7 @@ impl Trial for MapTextureTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(vec![match self.texel {
             MapTexel::FixedPoint => Array::exact("texels", self.disparities.data().to_vec()),
-            MapTexel::Pixels => Array::exact("texels", texels_in_pixels(&self.disparities)),
+            MapTexel::Pixels => Array::exact("texels", map_texture(&self.disparities)),
         }])
     }
 }

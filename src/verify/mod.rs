@@ -11,8 +11,8 @@ mod case;
 pub mod cells;
 mod dice;
 pub mod goldens;
-pub mod hybrid;
 pub mod integral;
+pub mod kamencay;
 pub mod maps;
 pub mod paths;
 pub mod pipelines;
@@ -50,7 +50,7 @@ pub enum Extent {
 pub fn subjects() -> impl Iterator<Item = &'static Subject> {
     let groups =
         [integral::SUBJECTS, points::SUBJECTS, blocks::SUBJECTS, cells::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];
-    groups.into_iter().chain([hybrid::SUBJECTS, pipelines::SUBJECTS]).flatten()
+    groups.into_iter().chain([kamencay::SUBJECTS, pipelines::SUBJECTS]).flatten()
 }
 
 /// The cases that are verified if none is named.

@@ -8,15 +8,15 @@ use super::{
     dice::{Dice, Size, smooth_noise},
 };
 use crate::{
+    cpu::dense::{box_mean, census, claim, cost, pad, path, path_winners, select},
     dense::{
-        BoxMean, Brightness, Census, Claim, Cost, CostVolume, DenseConfig, Difference, Direction, Interpolation, Path,
-        Penalties, Places, Select, Selection, View, VolumeBand, Wanted,
+        Brightness, Cost, DenseConfig, Difference, Direction, Interpolation, Penalties, View,
+        kernels::{BoxMean, Census, Claim, CostVolume, Path, Places, Select, Selection, VolumeBand, Wanted},
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane},
     luma::pack,
-    reference::{box_mean, census, claimed, cost_volume, padded, path, path_winners, select},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -58,7 +58,7 @@ impl Trial for CensusTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.0.size();
-        let plane = padded(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
+        let plane = pad(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
         let transformed = bench.output(size.0 * size.1)?;
         let kernel = Census::new(bench.device());
         let dispatch = kernel.prepare(bench.device(), size, &bench.upload(&plane)?, &transformed);
@@ -168,7 +168,7 @@ impl Trial for CostTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let Self { views: [reference, other], range, rows, .. } = self;
-        let costs = cost_volume([reference, other], self.view, &self.cost, *range);
+        let costs = cost([reference, other], self.view, &self.cost, *range);
         let row = costs.len() / reference.height() as usize;
         Ok(vec![Array::exact("costs", costs[rows.start as usize * row..rows.end as usize * row].to_vec())])
     }
@@ -430,7 +430,7 @@ impl Trial for ClaimTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("claimed disparities", claimed(&self.winners, self.view).into_data())])
+        Ok(vec![Array::exact("claimed disparities", claim(&self.winners, self.view).into_data())])
     }
 }
 

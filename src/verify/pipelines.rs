@@ -8,12 +8,12 @@ use super::{
 };
 use crate::{
     config::Preset,
+    cpu::dense::compute,
     dense::{Brightness, Dense, DenseConfig, Matcher},
     disparity::DisparityRange,
     error::Result,
     image::Luma,
     luma::pack,
-    reference::compute_dense,
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -94,6 +94,6 @@ impl Trial for DenseTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(Self::arrays(compute_dense(&self.left, &self.right, &self.config)?))
+        Ok(Self::arrays(compute(&self.left, &self.right, &self.config)?))
     }
 }

@@ -11,20 +11,8 @@ use super::{
     dice::{Dice, Size},
 };
 use crate::{
-    error::Result,
-    features::{
-        Feature, FeatureConfig,
-        descriptor::Descriptor,
-        detect,
-        hessian::{Grid, Hessian},
-        keypoints::{DISPATCH_WIDTH, Keypoint, KeypointList},
-        nonmax::Nonmax,
-        orientation::Orientation,
-        workgroups::Workgroups,
-    },
-    image::{Luma, Plane},
-    reference::{
-        descriptor::describe,
+    cpu::features::{
+        descriptor::descriptor,
         detector,
         haar::Place,
         hessian::{Octave, Response},
@@ -33,6 +21,19 @@ use crate::{
         orientation::{is_decided, orientation},
         workgroups::workgroups,
     },
+    error::Result,
+    features::{
+        Feature, FeatureConfig, detect,
+        kernels::{
+            descriptor::Descriptor,
+            hessian::{Grid, Hessian},
+            nonmax::Nonmax,
+            orientation::Orientation,
+            workgroups::Workgroups,
+        },
+        keypoints::{DISPATCH_WIDTH, Keypoint, KeypointList},
+    },
+    image::{Luma, Plane},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
@@ -471,8 +472,9 @@ impl Trial for DescriptorTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let integral = IntegralImage::new(&self.picture);
-        let described =
-            |keypoint: &Keypoint| describe(&integral, place(keypoint), (!self.upright).then_some(keypoint.orientation));
+        let described = |keypoint: &Keypoint| {
+            descriptor(&integral, place(keypoint), (!self.upright).then_some(keypoint.orientation))
+        };
         Ok(self.arrays(self.keypoints.iter().flat_map(described).collect()))
     }
 }

@@ -7,7 +7,7 @@ use hsad::{
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{Gpu, REQUIRED_LIMITS},
-    input::{Input, Source},
+    luma::{Input, Source},
     wgpu::{Buffer, BufferUsages, Features, Limits, TextureFormat, TextureUsages},
 };
 

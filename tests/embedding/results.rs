@@ -2,13 +2,12 @@
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, Dense, DenseConfig, Destination, MapTexel, Matcher},
+    cpu::dense::{compute, map_texture},
+    dense::{Brightness, Dense, DenseConfig, Destination, Matcher, kernels::MapTexel},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     image::Luma,
-    input::Source,
-    luma::pack,
-    reference::{compute_dense, texels_in_pixels},
+    luma::{Source, pack},
     wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
 };
 
@@ -40,7 +39,7 @@ fn textures_in_and_out_in_bands_and_not() {
     let (device, bench) = (application.device(), application.bench());
     let views = pair(SIZE, 1);
     for config in configs() {
-        let expected = compute_dense(&views[0], &views[1], &config).unwrap();
+        let expected = compute(&views[0], &views[1], &config).unwrap();
         for band_rows in [u32::MAX, 20] {
             let matcher = Matcher::with_band_rows(device, SIZE, &config, band_rows).unwrap();
             // Two formats that are not read alike.
@@ -66,7 +65,7 @@ fn textures_in_and_out_in_bands_and_not() {
                     }
                     MapTexel::Pixels => {
                         let pixels = bench.download_texture::<f32>(&map).unwrap();
-                        assert_eq!(pixels, texels_in_pixels(&expected.disparity), "{what}");
+                        assert_eq!(pixels, map_texture(&expected.disparity), "{what}");
                     }
                 }
             }
@@ -99,7 +98,7 @@ fn frames_take_turns_in_one_encoder() {
         }
     });
     for ([left, right], (.., map, confidences)) in frames.iter().zip(&prepared) {
-        let expected = compute_dense(left, right, &config()).unwrap();
+        let expected = compute(left, right, &config()).unwrap();
         let disparities = bench.download::<i32>(map).unwrap();
         let (disparities, rest) = disparities.split_at((SIZE.0 * SIZE.1) as usize);
         assert_answers("a frame", disparities, &bench.download::<u32>(confidences).unwrap(), &expected);
@@ -162,8 +161,8 @@ fn recording_creates_nothing_and_submits_nothing() {
         // Nothing was done: every texel is as it was left.
         assert!(bench.download_texture::<u32>(&map).unwrap().iter().all(|&texel| texel == u32::MAX));
         application.gpu.queue.submit([commands]);
-        let expected = compute_dense(&views[0], &views[1], &config).unwrap();
-        assert_eq!(bench.download_texture::<f32>(&map).unwrap(), texels_in_pixels(&expected.disparity));
+        let expected = compute(&views[0], &views[1], &config).unwrap();
+        assert_eq!(bench.download_texture::<f32>(&map).unwrap(), map_texture(&expected.disparity));
     }
     application.assert_quiet();
 }
@@ -247,7 +246,7 @@ fn brightness_changes_without_another_matcher() {
         }
         for brightness in [Brightness { gain: 300, offset: -4000 }, Brightness { gain: 100, offset: 9 }] {
             matcher.set_brightness(&application.gpu.queue, brightness).unwrap();
-            let expected = compute_dense(&left, &right, &DenseConfig { brightness, ..config.clone() }).unwrap();
+            let expected = compute(&left, &right, &DenseConfig { brightness, ..config.clone() }).unwrap();
             assert_eq!(matcher.run(&application.gpu).unwrap(), expected);
         }
         let refused = matcher.set_brightness(&application.gpu.queue, Brightness { gain: 1 << 21, offset: 0 });
@@ -272,7 +271,7 @@ fn a_map_goes_to_a_buffer_that_can_be_mapped() {
     application.bench().run(|encoder| matcher.record(encoder, &outputs));
     map.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let expected = compute_dense(&left, &right, &config()).unwrap();
+    let expected = compute(&left, &right, &config()).unwrap();
     let read = map.get_mapped_range(..).unwrap();
     assert_eq!(bytemuck::pod_collect_to_vec::<u8, i32>(&read), expected.disparity.data());
     application.assert_quiet();

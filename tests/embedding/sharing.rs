@@ -4,13 +4,13 @@ use std::thread;
 
 use hsad::{
     config::Preset,
+    cpu::dense::compute,
     dense::{self, Brightness, Destination, Inputs, Matcher, Outputs},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::Context,
     image::Luma,
-    input::{Input, Source},
-    reference::compute_dense,
+    luma::{Input, Source},
     wgpu::{Features, Limits, PipelineCacheDescriptor, TextureFormat, TextureUsages},
 };
 
@@ -41,7 +41,7 @@ fn threads_share_a_device() {
             let application = &application;
             scope.spawn(move || {
                 let [left, right] = views;
-                let expected = compute_dense(left, right, config).unwrap();
+                let expected = compute(left, right, config).unwrap();
                 for _ in 0..5 {
                     assert_eq!(dense::compute(&application.gpu, left, right, config).unwrap(), expected);
                 }
@@ -83,7 +83,7 @@ fn the_pipeline_cache_of_the_application_is_used() {
     let [own, foreign] = caches.each_ref().map(|cache| Context { device, cache: Some(cache) });
     let matcher = Matcher::new(own, SIZE, &config()).unwrap();
     let black = Luma::filled(SIZE.0, SIZE.1, 0);
-    assert_eq!(matcher.run(&applications[0].gpu).unwrap(), compute_dense(&black, &black, &config()).unwrap());
+    assert_eq!(matcher.run(&applications[0].gpu).unwrap(), compute(&black, &black, &config()).unwrap());
 
     let picture = applications[0].texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
     let map = applications[0].texture(TextureFormat::R32Float, SIZE, TextureUsages::STORAGE_BINDING, &[]);

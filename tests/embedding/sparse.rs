@@ -3,7 +3,7 @@
 use hsad::{
     dense::Matcher,
     features::{DESCRIPTOR_LENGTH, Detector, FeatureConfig, collect, detect, keypoints::Keypoint},
-    input::Source,
+    luma::Source,
     verify::smooth_noise,
     wgpu::TextureFormat,
 };

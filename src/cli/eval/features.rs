@@ -15,7 +15,7 @@ use hsad::{
     eval::{Judged, OfPoints, Point, PointMatch, conditions::Changed, curves::accuracy_of_first},
     io::{atomic::write_whole, png},
     pair::Backend,
-    sparse::{SparseConfig, match_views},
+    wide_baseline::{WideBaselineConfig, match_views},
 };
 use serde_json::json;
 
@@ -76,7 +76,7 @@ fn details() -> String {
 
 /// The default here is not that of the other subcommands.
 fn threshold_help() -> String {
-    let default = SparseConfig::default().features.threshold;
+    let default = WideBaselineConfig::default().features.threshold;
     with_default("Least determinant of the Hessian, with grey values of 0 to 1", default)
 }
 
@@ -127,7 +127,7 @@ pub struct Features {
     #[arg(long)]
     plain: bool,
     #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
-        descriptor, up to 1", SparseConfig::default().matching.ratio))]
+        descriptor, up to 1", WideBaselineConfig::default().matching.ratio))]
     ratio: Option<f32>,
     #[command(flatten)]
     run: RunOptions,
@@ -137,7 +137,7 @@ pub struct Features {
 
 /// Who finds the matches.
 enum Finder {
-    Hsad(Backend, SparseConfig),
+    Hsad(Backend, WideBaselineConfig),
     Other { matches: PathBuf, points: Option<Vec<PathBuf>> },
 }
 
@@ -146,7 +146,7 @@ impl Features {
     pub fn run(mut self) -> anyhow::Result<()> {
         self.first.sort_unstable();
         self.first.dedup();
-        let mut config = SparseConfig { adapt: !self.plain, ..SparseConfig::default() };
+        let mut config = WideBaselineConfig { adapt: !self.plain, ..WideBaselineConfig::default() };
         config.features = self.features.over(config.features);
         config.matching.ratio = self.ratio.unwrap_or(config.matching.ratio);
         config.validate()?;

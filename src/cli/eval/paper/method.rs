@@ -7,11 +7,11 @@ use hsad::{
     dense::Dense,
     disparity::pixels,
     eval::PointMatch,
-    hybrid::HybridParameters,
     io::Picture,
+    kamencay::KamencayParameters,
     pair::Backend,
     pipeline,
-    sparse::{SparseConfig, match_views},
+    wide_baseline::{WideBaselineConfig, match_views},
 };
 
 /// Who answers.
@@ -61,7 +61,7 @@ impl Method {
     /// All parameters, as a text that is another one where they are others.
     pub fn described(self) -> String {
         match self.dense() {
-            None => format!("{:?}", SparseConfig::default()),
+            None => format!("{:?}", WideBaselineConfig::default()),
             Some(config) => format!("{config:?}"),
         }
     }
@@ -73,7 +73,7 @@ impl Method {
         match self {
             Self::Sparse => None,
             Self::Kamencay => {
-                Some(Config { method: config::Method::Kamencay(HybridParameters::default()), ..balanced })
+                Some(Config { method: config::Method::Kamencay(KamencayParameters::default()), ..balanced })
             }
             Self::Balanced => Some(balanced),
         }
@@ -85,7 +85,7 @@ impl Method {
     /// As [`match_views`] and [`pipeline::run`].
     pub fn answer(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<Answers> {
         let Some(config) = self.dense() else {
-            let found = match_views(backend, &first.luma(), &second.luma(), &SparseConfig::default())?;
+            let found = match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default())?;
             let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
             let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
             return Ok(Answers { points, at_points: matches.clone(), everywhere: matches });

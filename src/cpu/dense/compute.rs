@@ -1,0 +1,114 @@
+//! The dense half in one call.
+
+use super::{
+    block_match, box_mean, cell_ranges, census, claim, consistency, cost, fill, half_consistency, halve, path,
+    path_winners, residual, select, support, weighted_median, winners,
+};
+use crate::{
+    dense::{
+        Aggregation, Dense, DenseConfig, OtherView, Paths, Refinement, Search, SemiGlobal, View, kernels::halved_config,
+    },
+    disparity::{DisparityRange, NONE, SCALE},
+    error::{Error, Result},
+    image::{Luma, Plane},
+};
+
+/// What [`crate::dense::compute`] computes, on the CPU.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], [`Error::Parameter`].
+pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    if left.size() != right.size() {
+        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+    }
+    config.validate()?;
+    let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
+    let unchanged = [left, right];
+    let right = &right.map(|&luma| config.brightness.apply(luma));
+    let view = config.reference;
+    let mut dense;
+    let others;
+    match &config.aggregation {
+        Aggregation::Window { search: Search::Whole, .. } => {
+            dense = block_match(left, right, view, &config, None);
+            others = config.consistency.map(|_| winners(left, right, view.other(), &config, None));
+        }
+        Aggregation::Window { search: Search::CoarseToFine, .. } => {
+            dense = coarse_to_fine([left, right], unchanged, &config);
+            others = None;
+        }
+        Aggregation::Paths(semi_global) => {
+            let paths = all_paths(left, right, view, &config, semi_global);
+            dense = select(&paths, left.size(), &config);
+            others = config.consistency.map(|_| match semi_global.other_view {
+                OtherView::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
+                OtherView::Searched => {
+                    let paths = all_paths(left, right, view.other(), &config, semi_global);
+                    path_winners(&paths, left.size(), &config)
+                        .map(|winner| winner.map_or(NONE, |(_, disparity)| disparity * SCALE))
+                }
+            });
+        }
+    }
+    if let (Some(max_difference), Some(others)) = (config.consistency, others) {
+        consistency(&mut dense, view, &others, max_difference);
+    }
+    match &config.refinement {
+        Some(refinement) => {
+            let residuals = residual([left, right], view, &dense.disparity);
+            let luma = unchanged[usize::from(view == View::Right)];
+            Ok(refined(&dense, &residuals, luma, refinement, config.range))
+        }
+        None => Ok(dense),
+    }
+}
+
+/// Block matching of a pair where one of half the size, made of the `unchanged` pictures, shows something; confirmed by
+/// the other view at half the size.
+fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &DenseConfig) -> Dense {
+    let [left_half, right_half] = unchanged.map(halve);
+    let right_half = right_half.map(|&luma| config.brightness.apply(luma));
+    let (half, view) = (halved_config(config, config.range), config.reference);
+    let map = block_match(&left_half, &right_half, view, &half, None).disparity;
+    let ranges = cell_ranges(&map, left.size(), config.range);
+    let mut dense = block_match(left, right, view, config, Some(&ranges));
+    if let Some(max_difference) = config.consistency {
+        let others = winners(&left_half, &right_half, view.other(), &half, None);
+        half_consistency(&mut dense, view, &others, max_difference);
+    }
+    dense
+}
+
+/// A map after all that `refinement` asks for.
+fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
+    let Dense { disparity: mut map, confidence } = support(dense, residuals, refinement.support);
+    for median in refinement.before() {
+        map = weighted_median(luma, &map, &map, median);
+    }
+    let before = map.clone();
+    if refinement.fill {
+        map = fill(&map, range);
+    }
+    for median in refinement.after() {
+        map = weighted_median(luma, &map, &before, median);
+    }
+    Dense { disparity: map, confidence }
+}
+
+/// The costs along all paths through one view; those of the pixels themselves, where there are none.
+fn all_paths(
+    left: &Luma,
+    right: &Luma,
+    view: View,
+    config: &DenseConfig,
+    SemiGlobal { cost: parts, window, penalties, paths, .. }: &SemiGlobal,
+) -> Vec<Vec<u8>> {
+    let (left, right) = (census(left), census(right));
+    let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
+    let costs = cost([reference, other], view, parts, config.range);
+    let costs = box_mean(&costs, left.size(), *window);
+    if *paths == Paths::None {
+        return vec![costs];
+    }
+    paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
+}

@@ -1,0 +1,27 @@
+//! How unlike both views look where disparities say that they show the same, from the definition.
+
+use crate::{
+    dense::{View, kernels::MAX_RESIDUAL},
+    disparity::{DisparityMap, NONE, SCALE},
+    image::{Luma, Plane},
+};
+
+/// For each pixel of the `reference` view by how much its luma differs from that of its partner in the other one, at the
+/// nearest whole disparity, up to [`MAX_RESIDUAL`]. Where there is no disparity it is 0, where there is no partner
+/// [`MAX_RESIDUAL`].
+pub fn residual([left, right]: [&Luma; 2], reference: View, disparities: &DisparityMap) -> Plane<u8> {
+    let (width, height) = disparities.size();
+    let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
+    Plane::from_fn(width, height, |x, y| {
+        let disparity = disparities.get(x, y);
+        if disparity == NONE {
+            return 0;
+        }
+        let nearest = (disparity + SCALE / 2).div_euclid(SCALE);
+        let partner = i64::from(x) + i64::from(reference.direction()) * i64::from(nearest);
+        if !(0..i64::from(width)).contains(&partner) {
+            return MAX_RESIDUAL;
+        }
+        own.get(x, y).abs_diff(other.get(partner as u32, y)).min(MAX_RESIDUAL)
+    })
+}

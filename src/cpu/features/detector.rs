@@ -1,0 +1,107 @@
+//! The whole sparse half on the CPU: a picture in, interest points out.
+
+use rayon::prelude::*;
+
+use crate::{
+    cpu::features::{
+        descriptor::descriptor,
+        haar::Place,
+        hessian::Octave,
+        integral::IntegralImage,
+        nonmax::{Extremum, candidates, integer_threshold, locate},
+        orientation::orientation,
+    },
+    error::Result,
+    features::{Feature, FeatureConfig, too_many},
+    image::Luma,
+};
+
+/// Finds and describes the interest points of a picture, by octave, interval, row and column.
+///
+/// A picture too small for the filters has none.
+///
+/// # Errors
+/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`], or if there are more
+/// than `max_features` points.
+pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+    config.validate()?;
+    let integral = IntegralImage::new(luma);
+    let extrema = extrema(&integral, config);
+    if extrema.len() > config.max_features as usize {
+        return Err(too_many(extrema.len(), config.max_features));
+    }
+    Ok(extrema.into_par_iter().map(|extremum| feature(&integral, extremum, config.upright)).collect())
+}
+
+fn extrema(integral: &IntegralImage, config: &FeatureConfig) -> Vec<Extremum> {
+    let threshold = integer_threshold(config.threshold);
+    let octave_extrema = |index| {
+        let octave = Octave::new(integral, index, config.step);
+        let candidates = candidates(&octave, integral.width(), integral.height(), threshold);
+        candidates.into_iter().map(|candidate| locate(&octave, candidate)).collect::<Vec<_>>()
+    };
+    (0..config.octaves).flat_map(octave_extrema).collect()
+}
+
+fn feature(integral: &IntegralImage, at: Extremum, upright: bool) -> Feature {
+    let Extremum { x, y, scale, response, dark } = at;
+    let place = Place::new(x, y, scale);
+    let orientation = (!upright).then(|| orientation(integral, place));
+    let descriptor = descriptor(integral, place, orientation);
+    Feature { x, y, scale, response, dark, orientation: orientation.unwrap_or(0.0), descriptor }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blobs of several sizes on a grid, light and dark.
+    fn blobs(width: u32, height: u32) -> Luma {
+        Luma::from_fn(width, height, |x, y| {
+            let (column, row) = (x / 40, y / 40);
+            let (dx, dy) = ((x % 40) as f32 - 20.0 + row as f32, (y % 40) as f32 - 20.0);
+            let sigma = 2.5 + 0.5 * column as f32;
+            let sign = if (column + row) % 2 == 0 { 1.0 } else { -1.0 };
+            (128.0 + sign * 90.0 * (-(dx * dx + 0.6 * dy * dy + 0.3 * dx * dy) / (2.0 * sigma * sigma)).exp()) as u8
+        })
+    }
+
+    #[test]
+    fn features_are_valid_and_described() {
+        let features = detect(&blobs(200, 160), &FeatureConfig { upright: false, ..Default::default() }).unwrap();
+        assert!(features.len() >= 20);
+        for feature in &features {
+            let length: f32 = feature.descriptor.iter().map(|value| value * value).sum();
+            assert!((length - 1.0).abs() < 1e-5);
+            assert!((0.0..std::f32::consts::TAU).contains(&feature.orientation));
+            assert!((0.0..200.0).contains(&feature.x) && (0.0..160.0).contains(&feature.y) && feature.scale > 1.0);
+        }
+    }
+
+    #[test]
+    fn upright_features_are_not_turned() {
+        let features = detect(&blobs(200, 160), &FeatureConfig::default()).unwrap();
+        assert!(features.iter().all(|feature| feature.orientation == 0.0));
+    }
+
+    #[test]
+    fn flat_and_tiny_pictures_have_none() {
+        for (width, height) in [(1, 1), (3, 200), (200, 3), (200, 200)] {
+            assert_eq!(detect(&Luma::filled(width, height, 77), &FeatureConfig::default()).unwrap(), []);
+        }
+    }
+
+    #[test]
+    fn one_feature_too_many_is_an_error() {
+        let picture = blobs(200, 160);
+        let count = detect(&picture, &FeatureConfig::default()).unwrap().len() as u32;
+        let limited = |max_features| detect(&picture, &FeatureConfig { max_features, ..Default::default() });
+        assert_eq!(limited(count).unwrap().len() as u32, count);
+        assert!(matches!(limited(count - 1), Err(crate::Error::Parameter { name: "max_features", .. })));
+    }
+
+    #[test]
+    fn a_config_out_of_range_is_refused() {
+        assert!(detect(&blobs(40, 40), &FeatureConfig { octaves: 6, ..Default::default() }).is_err());
+    }
+}

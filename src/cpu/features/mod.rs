@@ -1,0 +1,12 @@
+//! The twins of the interest points.
+
+pub mod descriptor;
+pub mod detector;
+pub mod haar;
+pub mod hessian;
+pub mod integral;
+pub mod integral_columns;
+pub mod integral_rows;
+pub mod nonmax;
+pub mod orientation;
+pub mod workgroups;

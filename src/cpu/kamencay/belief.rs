@@ -1,0 +1,109 @@
+//! Belief propagation, from the definition.
+
+use rayon::prelude::*;
+
+use crate::kamencay::{Links, Smoothness, kernels::Turn};
+
+/// The neighbours in the order of a node's messages: above, below, to the left and to the right.
+const NEIGHBOURS: [(i64, i64); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
+
+/// A grid of nodes with the data costs of each, all its disparities after another.
+#[derive(Clone, Copy)]
+pub struct Grid<'g> {
+    /// Nodes in a row and rows.
+    pub size: (u32, u32),
+    /// The data costs.
+    pub costs: &'g [u16],
+    /// The weights of its links.
+    pub links: &'g Links,
+}
+
+impl Grid<'_> {
+    /// Disparities of a node.
+    fn count(&self) -> usize {
+        self.costs.len() / (self.size.0 as usize * self.size.1 as usize)
+    }
+
+    /// The neighbour in a direction, an index into [`NEIGHBOURS`].
+    fn neighbour(&self, (x, y): (u32, u32), direction: usize) -> Option<(u32, u32)> {
+        let (dx, dy) = NEIGHBOURS[direction];
+        let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
+        let inside = (0..self.size.0.into()).contains(&x) && (0..self.size.1.into()).contains(&y);
+        inside.then_some((x as u32, y as u32))
+    }
+
+    /// What the neighbour in a direction sends to a node.
+    fn received<'m>(
+        &self,
+        messages: &'m [u8],
+        at: (u32, u32),
+        direction: usize,
+        from_parents: bool,
+    ) -> Option<&'m [u8]> {
+        let (x, y) = self.neighbour(at, direction)?;
+        let (width, x, y) = if from_parents { (self.size.0.div_ceil(2), x / 2, y / 2) } else { (self.size.0, x, y) };
+        // Directions come in pairs of opposites.
+        let place = 4 * (y as usize * width as usize + x as usize) + (direction ^ 1);
+        Some(&messages[place * self.count()..][..self.count()])
+    }
+
+    /// The data costs of a node and all messages to it, but the one from a direction.
+    pub(super) fn belief(&self, messages: &[u8], at: (u32, u32), but: Option<usize>, from_parents: bool) -> Vec<u32> {
+        let count = self.count();
+        let node = (at.1 * self.size.0 + at.0) as usize;
+        let mut sum: Vec<u32> = self.costs[node * count..][..count].iter().map(|&cost| cost.into()).collect();
+        for direction in (0..4).filter(|&direction| Some(direction) != but) {
+            if let Some(message) = self.received(messages, at, direction, from_parents) {
+                sum.iter_mut().zip(message).for_each(|(sum, &part)| *sum += u32::from(part));
+            }
+        }
+        sum
+    }
+
+    fn weight(&self, (x, y): (u32, u32), direction: usize) -> u32 {
+        match direction {
+            0 => self.links.below(x, y - 1),
+            1 => self.links.below(x, y),
+            2 => self.links.right(x - 1, y),
+            _ => self.links.right(x, y),
+        }
+    }
+}
+
+/// What the neighbour has to pay for each of its disparities, where it costs `h` to have one here: the least cost of
+/// having another and of the difference, less the least of all.
+fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
+    let least = h.iter().copied().min().unwrap_or(0);
+    // Further away the difference costs the limit at least; where it costs nothing the least is everywhere.
+    let reach = limit.checked_div(slope).unwrap_or(0) as usize;
+    (0..h.len()).map(move |d| {
+        let near = d.saturating_sub(reach)..=(d + reach).min(h.len() - 1);
+        let way = near.map(|e| h[e] + slope * e.abs_diff(d) as u32).min();
+        (way.map_or(limit, |way| way - least)).min(limit) as u8
+    })
+}
+
+/// Half of the nodes of `grid` send a message to each of their neighbours: four a node, upwards, downwards, to the left
+/// and to the right, 0 where there is nobody. `parents` are the messages in the grid of half the size.
+pub fn belief(grid: Grid<'_>, messages: &mut [u8], parents: &[u8], smoothness: &Smoothness, turn: Turn) {
+    let (width, count) = (grid.size.0 as usize, grid.count());
+    let before = messages.to_vec();
+    let received = if turn.from_parents { parents } else { &before };
+    messages.par_chunks_mut(4 * count).enumerate().for_each(|(node, sent)| {
+        let at = ((node % width) as u32, (node / width) as u32);
+        if (at.0 + at.1) % 2 != turn.parity {
+            return;
+        }
+        for (direction, sent) in sent.chunks_mut(count).enumerate() {
+            if grid.neighbour(at, direction).is_none() {
+                sent.fill(0);
+                continue;
+            }
+            let h = grid.belief(received, at, Some(direction), turn.from_parents);
+            let weight = grid.weight(at, direction);
+            let part = |cost: u32| cost * weight / 16;
+            let values = message(&h, part(smoothness.slope), part(smoothness.limit));
+            sent.iter_mut().zip(values).for_each(|(sent, value)| *sent = value);
+        }
+    });
+}

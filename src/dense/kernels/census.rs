@@ -1,0 +1,74 @@
+//! The census transform, with the luma beside it. `shaders/dense/census.wgsl`.
+
+use super::{pad::PadParams, walk::rows_a_thread};
+use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        stride: u32,
+    }
+}
+
+/// The census kernel.
+pub struct Census {
+    kernel: Kernel,
+    rows: u32,
+}
+
+impl Census {
+    /// What the kernel is made of, with so many rows to a thread.
+    pub fn stage(rows: u32) -> Stage {
+        Stage {
+            name: "census",
+            source: include_str!("../../../shaders/dense/census.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("ROWS", rows.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>) -> Self {
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(rows)), rows }
+    }
+
+    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
+    /// word on. Rows outside the picture are those of its edge.
+    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32) -> PadParams {
+        PadParams {
+            width,
+            height,
+            first_word: -1,
+            first_row: first_row - 2,
+            rows: rows + 4,
+            stride: Self::stride(width),
+            offset: 0,
+        }
+    }
+
+    fn stride(width: u32) -> u32 {
+        width.div_ceil(4) + 2
+    }
+
+    /// Transforms the rows that stand in `padded` as [`Self::padding`] says: a word a pixel, the 24 bits of its window above
+    /// its luma.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, rows): (u32, u32),
+        padded: &wgpu::Buffer,
+        census: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = Params { width, rows, stride: Self::stride(width) };
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
+    }
+}

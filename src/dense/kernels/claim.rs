@@ -1,0 +1,65 @@
+//! What the other view sees, told from one view's winners. `shaders/dense/claim.wgsl`.
+
+use super::volume_band::VolumeBand;
+use crate::{
+    dense::config::{SUM_INDEX_BITS, View},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [64, 4];
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        min_disparity: i32,
+        direction: i32,
+        key_offset: u32,
+    }
+}
+
+/// The kernel that lets each pixel claim its partner.
+pub struct Claim(Kernel);
+
+impl Claim {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "claim",
+            source: include_str!("../../../shaders/dense/claim.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("INDEX_BITS", SUM_INDEX_BITS.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Lets the pixels of a band of `view`, whose keys stand from word `key_offset` of `matches` on, claim
+    /// their partners in `claims`, which are 0 before.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        band: &VolumeBand,
+        view: View,
+        key_offset: u32,
+        matches: &wgpu::Buffer,
+        claims: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = Params {
+            width: band.width,
+            rows: band.rows,
+            min_disparity: band.range.min,
+            direction: view.direction(),
+            key_offset,
+        };
+        let groups = [band.width.div_ceil(WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&uniform_buffer(device, "claim", &params), matches, claims], groups)
+    }
+}

@@ -1,0 +1,78 @@
+//! The matching cost of each pixel and disparity. `shaders/dense/cost.wgsl`.
+
+use super::volume_band::VolumeBand;
+use crate::{
+    dense::config::{Cost, MAX_COST, View, WEIGHT_BITS},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [8, 8];
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        rows: u32,
+        first_row: u32,
+        min_disparity: i32,
+        words: u32,
+    }
+}
+
+/// The kernel of the matching cost, for one view as the reference.
+pub struct CostVolume(Kernel);
+
+impl CostVolume {
+    /// What the kernel is made of.
+    pub fn stage(cost: &Cost, view: View) -> Stage {
+        // To the left the pixels that a step brings come in front, to the right behind.
+        let (direction, front, kept, new) = match view {
+            View::Left => (-1, 4, 0, 0),
+            View::Right => (1, 1, 4, 9),
+        };
+        Stage {
+            name: "cost",
+            source: include_str!("../../../shaders/dense/cost.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("DIRECTION", direction),
+                ("FRONT", front),
+                ("KEPT", kept),
+                ("NEW", new),
+                ("CENSUS_WEIGHT", cost.census.into()),
+                ("DIFFERENCE_WEIGHT", cost.difference.weight.into()),
+                ("DIFFERENCE_LIMIT", cost.difference.limit.into()),
+                ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
+                ("GRADIENT_LIMIT", cost.gradient.limit.into()),
+                ("WEIGHT_BITS", WEIGHT_BITS.into()),
+                ("MAX_COST", MAX_COST.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>, cost: &Cost, view: View) -> Self {
+        Self(Kernel::new(device, &Self::stage(cost, view)))
+    }
+
+    /// Compares the pixels of a band of `reference` with those of `other`, both as
+    /// [`super::Census`] leaves them.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        band: &VolumeBand,
+        [reference, other]: [&wgpu::Buffer; 2],
+        volume: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = Params {
+            width: band.width,
+            rows: band.rows,
+            first_row: band.first_row,
+            min_disparity: band.range.min,
+            words: band.words(),
+        };
+        let groups = [band.width.div_ceil(8 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&uniform_buffer(device, "cost", &params), reference, other, volume], groups)
+    }
+}

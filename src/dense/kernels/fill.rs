@@ -1,0 +1,82 @@
+//! Filling holes along their rows. `shaders/dense/fill.wgsl`.
+
+use crate::{
+    disparity::{DisparityRange, NONE, SCALE},
+    gpu::{
+        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
+        uniform_buffer,
+    },
+};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// The slope of a surface that is continued into a hole, and how far it is followed.
+pub mod surface {
+    /// Disparities that it is drawn from at most, and at least.
+    pub const RUN: i32 = 32;
+    /// With fewer, the last disparity is continued.
+    pub const SHORTEST: i32 = 12;
+    /// The steepest slope that is continued, in 1/256 px a pixel.
+    pub const STEEPEST: i32 = 32;
+    /// The largest change that a slope makes, in 1/256 px.
+    pub const FARTHEST: i32 = 1024;
+}
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        least: i32,
+        most: i32,
+    }
+}
+
+/// The kernel that fills holes.
+pub struct Fill(Kernel);
+
+impl Fill {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "fill",
+            source: concat!(
+                include_str!("../../../shaders/shared/words.wgsl"),
+                include_str!("../../../shaders/dense/fill.wgsl")
+            ),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RUN", surface::RUN.into()),
+                ("SHORTEST", surface::SHORTEST.into()),
+                ("STEEPEST", surface::STEEPEST.into()),
+                ("FARTHEST", surface::FARTHEST.into()),
+                ("SCALE", SCALE.into()),
+                ("NONE", NONE.into()),
+                ("ROW_BITS", ROW_BITS.into()),
+                ("NOTHING", i32::MAX.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Copies `disparities` to `filled`, with the holes of each row filled by disparities of `range`.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        range: DisparityRange,
+        disparities: &WordTexture,
+        filled: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = Params { width, height, least: range.min * SCALE, most: range.last() * SCALE };
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
+        let params = uniform_buffer(device, "fill", &params);
+        let bound: [&dyn Bindable; 3] = [&params, &disparities.view, filled];
+        self.0.dispatch(device, &bound, groups)
+    }
+}

@@ -1,0 +1,98 @@
+//! The kernels of dense matching, one per stage, and the layouts of the memory that they share.
+
+mod answer;
+mod block_match;
+mod box_mean;
+mod cell_ranges;
+mod cells;
+mod census;
+mod claim;
+mod consistency;
+mod cost;
+mod fill;
+mod halve;
+mod map_texture;
+mod pad;
+mod path;
+mod residual;
+mod select;
+mod support;
+mod volume_band;
+mod walk;
+mod weighted_median;
+
+pub use answer::Wanted;
+pub use block_match::{BlockMatch, Layout, OtherMap, Tile};
+pub use box_mean::BoxMean;
+pub use cell_ranges::{BLOCK, CellRanges, LEAST, MARGIN};
+pub use cells::{CELL, CellBand, Ranges};
+pub(crate) use cells::{HALF_GRAIN, REACH, halved_config};
+pub use census::Census;
+pub use claim::Claim;
+pub use consistency::{Consistency, Others};
+pub use cost::CostVolume;
+pub use fill::{Fill, surface};
+pub use halve::Halve;
+pub use map_texture::{MapRows, MapTexel, MapTexture};
+pub use pad::{Pad, PadParams};
+pub use path::Path;
+pub use residual::{MAX_RESIDUAL, Residual, Views};
+pub use select::{Places, Select, Selection};
+pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
+pub use volume_band::VolumeBand;
+pub use walk::{ROWS_HARDWARE, ROWS_SOFTWARE};
+pub use weighted_median::WeightedMedian;
+
+use super::config::{Aggregation, Cost, DenseConfig, Difference, Interpolation, Penalties, Refinement, Search, View};
+use crate::{disparity::DisparityRange, gpu::Stage};
+
+/// Every stage of the dense half, for checks that need no GPU, with all constants that make another kernel of it: block
+/// matching for each window, either view and what it may be asked for, and what has tiles or rows both with those for
+/// lavapipe and with those for all other devices.
+pub fn stages() -> Vec<Stage> {
+    let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
+    stages.push(Claim::stage());
+    stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
+    let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
+    for window in (3..=31).step_by(2) {
+        for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
+            for view in [View::Left, View::Right] {
+                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Matches, tile));
+                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Winners, tile));
+            }
+        }
+    }
+    let coarse_to_fine = Aggregation::Window { side: 7, search: Search::CoarseToFine };
+    let coarse_to_fine = DenseConfig { aggregation: coarse_to_fine, ..blocks(7) };
+    stages.extend(View::BOTH.map(|view| BlockMatch::stage(&coarse_to_fine, view, Wanted::Matches, Tile::HARDWARE)));
+    let interpolations = [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular];
+    stages.extend(interpolations.map(|interpolation| {
+        let config = DenseConfig { interpolation, ..blocks(3) };
+        BlockMatch::stage(&config, View::Left, Wanted::Matches, Tile::HARDWARE)
+    }));
+    let part = Difference { weight: 1, limit: 1 };
+    let cost = Cost { census: 1, difference: part, gradient: part };
+    stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+    stages.extend([3, 31].map(BoxMean::stage));
+    let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
+    stages.push(Path::stage(&penalties, 2));
+    // Where there are no paths, no penalties are left in the code, and nothing is summed up.
+    for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
+        for interpolation in interpolations {
+            stages.extend([(Wanted::Matches, true), (Wanted::Matches, false), (Wanted::Winners, false)].map(
+                |(wanted, keys)| {
+                    let selection = Selection { stored, interpolation, wanted, keys, uniqueness: 0 };
+                    Select::stage(&penalties, 2, selection)
+                },
+            ));
+        }
+    }
+    stages.extend([Residual::stage(), Fill::stage()]);
+    let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
+    stages.extend(MapTexel::ALL.map(MapTexture::stage));
+    for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
+        stages.extend([Census::stage(rows), Support::stage(5, rows)]);
+        stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
+    }
+    stages
+}

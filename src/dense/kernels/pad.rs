@@ -1,0 +1,85 @@
+//! Padding: a picture with its edges continued, laid out for block matching. `shaders/dense/pad.wgsl`.
+
+use crate::{
+    dense::config::Brightness,
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [64, 4];
+
+/// Where a padded plane lies: in the picture, and in the buffer. All words and rows are those of
+/// the picture, and may lie outside of it.
+#[derive(Clone, Copy, Debug)]
+pub struct PadParams {
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// The first padded word: of four pixels, counted from the picture's first.
+    pub first_word: i32,
+    /// Row of the first padded row.
+    pub first_row: i32,
+    /// Padded rows.
+    pub rows: u32,
+    /// Words of a padded row, four pixels each.
+    pub stride: u32,
+    /// Word of the buffer at which the plane begins.
+    pub offset: u32,
+}
+
+shader_struct! {
+    /// [`PadParams`] as the shader declares them.
+    struct Params {
+        width: u32,
+        height: u32,
+        first_word: i32,
+        first_row: i32,
+        rows: u32,
+        stride: u32,
+        offset: u32,
+    }
+}
+
+/// The padding kernel.
+pub struct Pad(Kernel);
+
+impl Pad {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "pad",
+            source: concat!(
+                include_str!("../../../shaders/shared/brightness.wgsl"),
+                include_str!("../../../shaders/dense/pad.wgsl")
+            ),
+            bindings: &[
+                Binding::Uniform(Params::SHAPE),
+                Binding::Uniform(Brightness::SHAPE),
+                Binding::Read,
+                Binding::Write,
+            ],
+            constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Pads packed `luma` into `padded`, as `params` say, with the change of `brightness` that a uniform buffer holds
+    /// when it runs.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        params: PadParams,
+        brightness: &wgpu::Buffer,
+        luma: &wgpu::Buffer,
+        padded: &wgpu::Buffer,
+    ) -> Dispatch {
+        let PadParams { width, height, first_word, first_row, rows, stride, offset } = params;
+        let params = Params { width, height, first_word, first_row, rows, stride, offset };
+        let groups = [stride.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&uniform_buffer(device, "pad", &params), brightness, luma, padded], groups)
+    }
+}

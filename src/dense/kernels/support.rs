@@ -1,0 +1,79 @@
+//! Disparities that their neighbours share. `shaders/dense/support.wgsl`.
+
+use super::walk::rows_a_thread;
+use crate::{
+    disparity::{NONE, SCALE},
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// Half the window without its centre.
+pub const SUPPORT_RADIUS: u32 = 3;
+
+/// By how much disparities may differ that support each other.
+pub const SUPPORT_TOLERANCE: i32 = SCALE;
+
+/// What differs from every disparity by more than the tolerance.
+const FAR: i64 = 1 << 30;
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        confidence_offset: u32,
+    }
+}
+
+/// The kernel that takes speckles away.
+pub struct Support {
+    kernel: Kernel,
+    rows: u32,
+}
+
+impl Support {
+    /// What the kernel is made of, where `least` pixels of the window must agree, with so many rows to a thread.
+    pub fn stage(least: u32, rows: u32) -> Stage {
+        let side = 2 * SUPPORT_RADIUS + 1;
+        Stage {
+            name: "support",
+            source: include_str!("../../../shaders/dense/support.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RADIUS", SUPPORT_RADIUS.into()),
+                ("SIDE", side.into()),
+                ("SPAN", (side + 3).into()),
+                ("KEPT", (side - 1).into()),
+                ("ROWS", rows.into()),
+                ("TOLERANCE", SUPPORT_TOLERANCE.into()),
+                ("LEAST", least.into()),
+                ("NONE", NONE.into()),
+                ("FAR", FAR),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>, least: u32) -> Self {
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(least, rows)), rows }
+    }
+
+    /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
+    /// each row in words of its own) to `supported` without what too few neighbours share. The `residuals` are those of
+    /// [`super::Residual`].
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        confidence_offset: u32,
+        [matches, residuals]: [&wgpu::Buffer; 2],
+        supported: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&params, matches, residuals, supported], groups)
+    }
+}

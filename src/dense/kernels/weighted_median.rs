@@ -1,0 +1,77 @@
+//! The weighted median of a map. `shaders/dense/weighted_median.wgsl`.
+
+use super::walk::rows_a_thread;
+use crate::{
+    dense::config::Median,
+    disparity::NONE,
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+};
+
+const WORKGROUP: [u32; 2] = [16, 4];
+
+/// More than any disparity.
+const FARTHEST: i64 = 1 << 30;
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        luma_start: u32,
+    }
+}
+
+/// The kernel of a weighted median.
+pub struct WeightedMedian {
+    kernel: Kernel,
+    rows: u32,
+}
+
+impl WeightedMedian {
+    /// What the kernel is made of, with so many rows to a thread.
+    pub fn stage(median: Median, rows: u32) -> Stage {
+        let side = 2 * median.radius + 1;
+        Stage {
+            name: "weighted_median",
+            source: include_str!("../../../shaders/dense/weighted_median.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RADIUS", median.radius.into()),
+                ("SIDE", side.into()),
+                ("KEPT", (side - 1).into()),
+                ("SPAN", (side + 3).into()),
+                ("HALVING_BITS", median.halving_bits.into()),
+                ("HOLES_ONLY", median.holes_only.into()),
+                ("ROWS", rows.into()),
+                ("FARTHEST", FARTHEST),
+                ("NONE", NONE.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>, median: Median) -> Self {
+        let rows = rows_a_thread(device);
+        Self { kernel: Kernel::new(device, &Self::stage(median, rows)), rows }
+    }
+
+    /// Filters `disparities` into `filtered`, by the packed `luma` of their view, in which their first row is row
+    /// `first_row`; `before` is the map before its holes were filled.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        (luma, first_row): (&wgpu::Buffer, u32),
+        [disparities, before]: [&wgpu::Buffer; 2],
+        filtered: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = uniform_buffer(
+            device,
+            "weighted median",
+            &Params { width, height, luma_start: first_row * width.div_ceil(4) },
+        );
+        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
+        self.kernel.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
+    }
+}

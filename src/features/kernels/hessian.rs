@@ -1,0 +1,215 @@
+//! The determinant of the Hessian, by box filters of growing size over the integral image (Bay et
+//! al. 2008, section 3.2). `shaders/features/hessian.wgsl`.
+
+use crate::{
+    error::Result,
+    features::FeatureConfig,
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
+};
+
+/// Layers of an octave.
+pub const LAYERS: u32 = 4;
+
+/// Filter sides in pixels: four layers in each of five octaves (Bay et al. 2008, figure 8).
+pub const FILTER_SIZES: [[u32; LAYERS as usize]; 5] =
+    [[9, 15, 21, 27], [15, 27, 39, 51], [27, 51, 75, 99], [51, 99, 147, 195], [99, 195, 291, 387]];
+
+/// The determinant that OpenSURF would call 1: it works on grey values 0 to 1, the kernels on
+/// 1/256 grey level, and both factors of a determinant carry that scale.
+pub const DETERMINANT_SCALE: f64 = (256.0 * 255.0) * (256.0 * 255.0);
+
+/// Bay et al.'s 0.9, by which Dxy is weighted so that box filters balance as Gaussians do.
+const XY_WEIGHT: f64 = 0.9;
+
+const WORKGROUP: [u32; 2] = [8, 8];
+
+/// Points in a row, and rows, that a thread takes where the grid has a point for every pixel.
+const WALK: [u32; 2] = [8, 4];
+
+/// Layers whose filters are also those of the finer octave.
+const SHARED_LAYERS: u32 = 2;
+
+/// The points at which an octave's filters are centred: every `step` pixels from pixel 0 on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    /// Distance of neighbouring points in pixels.
+    pub step: u32,
+    /// Columns of points.
+    pub width: u32,
+    /// Rows of points.
+    pub height: u32,
+}
+
+impl Grid {
+    /// The grid of `octave` in a picture, where that of octave 0 has the given step.
+    pub fn new(width: u32, height: u32, step: u32, octave: u32) -> Self {
+        let step = step << octave;
+        Self { step, width: width.div_ceil(step), height: height.div_ceil(step) }
+    }
+}
+
+shader_struct! {
+    struct Layer {
+        lobe: u32,
+        scale_xx: f32,
+        scale_xy: f32,
+        padding: u32,
+    }
+}
+
+impl Layer {
+    fn new(size: u32) -> Self {
+        let scale = 256.0 / f64::from(size * size);
+        Self { lobe: size / 3, scale_xx: scale as f32, scale_xy: (XY_WEIGHT * scale) as f32, padding: 0 }
+    }
+}
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        step: u32,
+        grid_width: u32,
+        grid_height: u32,
+        finer_width: u32,
+        finer_height: u32,
+        shared_layers: u32,
+        layers: [Layer; LAYERS as usize],
+    }
+}
+
+/// The stage, for a grid with a point for every pixel (`dense`) or for any other.
+pub fn stage(dense: bool) -> Stage {
+    Stage {
+        name: "hessian",
+        source: include_str!("../../../shaders/features/hessian.wgsl"),
+        bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
+        constants: vec![
+            ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+            ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+            ("DENSE", dense.into()),
+            ("WALK", WALK[0].into()),
+        ],
+    }
+}
+
+struct Octave {
+    dispatch: Dispatch,
+    responses: wgpu::Buffer,
+}
+
+/// The responses of all octaves for pictures of one size.
+pub struct Hessian {
+    octaves: Vec<Octave>,
+}
+
+impl Hessian {
+    /// Reads the `integral` image.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`] where the device cannot bind an octave's responses.
+    pub fn new(
+        device: &Context<'_>,
+        integral: &wgpu::Buffer,
+        width: u32,
+        height: u32,
+        config: &FeatureConfig,
+    ) -> Result<Self> {
+        let mut kernels = [None, None];
+        let mut octaves: Vec<Octave> = Vec::new();
+        for octave in 0..config.octaves {
+            let sizes = FILTER_SIZES[octave as usize];
+            let grid = Grid::new(width, height, config.step, octave);
+            let dense = grid.step == 1;
+            let kernel = kernels[usize::from(dense)].get_or_insert_with(|| Kernel::new(device, &stage(dense)));
+            // The first octave shares nothing, and anything can be bound in place of a finer one.
+            let finer_grid = octave.checked_sub(1).map(|finer| Grid::new(width, height, config.step, finer));
+            let finer = octaves.last().map_or(integral, |finer| &finer.responses);
+            let params = Params {
+                width,
+                height,
+                step: grid.step,
+                grid_width: grid.width,
+                grid_height: grid.height,
+                finer_width: finer_grid.map_or(0, |grid| grid.width),
+                finer_height: finer_grid.map_or(0, |grid| grid.height),
+                shared_layers: finer_grid.map_or(0, |_| SHARED_LAYERS),
+                layers: sizes.map(Layer::new),
+            };
+            let params = uniform_buffer(device, "octave", &params);
+            let bytes = 4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height);
+            let responses = storage_buffer(device, "responses of an octave", bytes)?;
+            let threads = if dense {
+                [walkers(grid.width, WALK[0], sizes), walkers(grid.height, WALK[1], sizes)]
+            } else {
+                [grid.width, grid.height]
+            };
+            let groups = [threads[0].div_ceil(WORKGROUP[0]), threads[1].div_ceil(WORKGROUP[1]), LAYERS];
+            let dispatch = kernel.dispatch(device, &[&params, integral, finer, &responses], groups);
+            octaves.push(Octave { dispatch, responses });
+        }
+        Ok(Self { octaves })
+    }
+
+    /// Records one pass for each octave.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for octave in &self.octaves {
+            octave.dispatch.record(encoder);
+        }
+    }
+
+    /// An octave's responses: [`LAYERS`] planes of its [`Grid`], each value
+    /// `determinant << 1 | (trace > 0)`, or 0 where the filter does not fit in the picture.
+    pub fn responses(&self, octave: u32) -> &wgpu::Buffer {
+        &self.octaves[octave as usize].responses
+    }
+
+    /// Bytes of all responses.
+    pub(in crate::features) fn memory(&self) -> u64 {
+        self.octaves.iter().map(|octave| octave.responses.size()).sum()
+    }
+}
+
+/// Threads along one side where each takes `each` points, a lobe apart: one for every point of the
+/// first lobe of so many, and so on.
+fn walkers(points: u32, each: u32, sizes: [u32; LAYERS as usize]) -> u32 {
+    let threads = |size: u32| {
+        let lobe = size / 3;
+        points / (each * lobe) * lobe + (points % (each * lobe)).min(lobe)
+    };
+    sizes.into_iter().map(threads).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_covers_the_picture_from_pixel_0() {
+        assert_eq!(Grid::new(741, 497, 1, 0), Grid { step: 1, width: 741, height: 497 });
+        assert_eq!(Grid::new(741, 497, 2, 3), Grid { step: 16, width: 47, height: 32 });
+        assert_eq!(Grid::new(1, 1, 2, 4), Grid { step: 32, width: 1, height: 1 });
+    }
+
+    #[test]
+    fn walkers_reach_every_point() {
+        for (points, each) in (1..300).flat_map(|points| WALK.map(|each| (points, each))) {
+            let threads = walkers(points, each, FILTER_SIZES[0]);
+            for lobe in FILTER_SIZES[0].map(|size| size / 3) {
+                let first = |thread| thread / lobe * each * lobe + thread % lobe;
+                let mut reached: Vec<_> =
+                    (0..threads).flat_map(|thread| (0..each).map(move |n| first(thread) + n * lobe)).collect();
+                reached.sort_unstable();
+                reached.dedup();
+                assert!((0..points).all(|p| reached.binary_search(&p).is_ok()), "{points} points, lobe {lobe}");
+            }
+        }
+    }
+
+    #[test]
+    fn neighbouring_octaves_share_two_filters() {
+        for pair in FILTER_SIZES.windows(2) {
+            assert_eq!(pair[1][..SHARED_LAYERS as usize], [pair[0][1], pair[0][3]]);
+        }
+    }
+}

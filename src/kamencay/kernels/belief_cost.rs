@@ -1,0 +1,94 @@
+//! The data cost of belief propagation. `shaders/kamencay/belief_cost.wgsl`.
+
+use crate::{
+    dense::config::Difference,
+    disparity::DisparityRange,
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    kamencay::grid::{FAR, Strip},
+};
+
+const WORKGROUP: [u32; 2] = [8, 8];
+
+/// The largest data cost of a pixel.
+pub const MAX_DATA_COST: u32 = 255;
+
+/// The sum of absolute differences over a window: the mean of its pixels' differences, rounded down and at most
+/// [`MAX_DATA_COST`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WindowCost {
+    /// Half the side of the window without its centre, 0 to 7.
+    pub radius: u32,
+    /// Of the colours, the mean of the three channels; the weight in 1/16.
+    pub color: Difference,
+    /// Of the lumas' gradients along the row, each the difference of the two neighbours and at most 127.
+    pub gradient: Difference,
+}
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        first_row: u32,
+        rows: u32,
+        min_disparity: i32,
+        disparities: u32,
+        fours: u32,
+    }
+}
+
+/// The kernel of the data cost.
+pub struct BeliefCost(Kernel);
+
+impl BeliefCost {
+    /// What the kernel is made of.
+    pub fn stage(cost: &WindowCost) -> Stage {
+        let side = 2 * cost.radius + 1;
+        Stage {
+            name: "belief_cost",
+            source: include_str!("../../../shaders/kamencay/belief_cost.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("RADIUS", cost.radius.into()),
+                ("SIDE", side.into()),
+                ("SPAN", (side + 3).into()),
+                ("COLOUR_WEIGHT", cost.color.weight.into()),
+                ("COLOUR_LIMIT", cost.color.limit.into()),
+                ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
+                ("GRADIENT_LIMIT", cost.gradient.limit.into()),
+                ("MAX_COST", MAX_DATA_COST.into()),
+                ("FAR", FAR.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>, cost: &WindowCost) -> Self {
+        Self(Kernel::new(device, &Self::stage(cost)))
+    }
+
+    /// Compares the pixels of a strip of `left` with those of `right`, views of `size` as
+    /// [`super::described`] leaves them.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        strip: Strip,
+        range: DisparityRange,
+        [left, right]: [&wgpu::Buffer; 2],
+        costs: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = Params {
+            width,
+            height,
+            first_row: strip.first_row,
+            rows: strip.rows,
+            min_disparity: range.min,
+            disparities: range.count,
+            fours: range.count.div_ceil(4),
+        };
+        let groups = [width.div_ceil(WORKGROUP[0]), strip.rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&uniform_buffer(device, "belief cost", &params), left, right, costs], groups)
+    }
+}

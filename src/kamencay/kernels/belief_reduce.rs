@@ -1,0 +1,54 @@
+//! The data costs of a coarser grid. `shaders/kamencay/belief_reduce.wgsl`.
+
+use crate::{
+    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    kamencay::grid::FAR,
+};
+
+const WORKGROUP: [u32; 2] = [8, 8];
+
+shader_struct! {
+    struct Params {
+        width: u32,
+        height: u32,
+        words: u32,
+    }
+}
+
+/// The kernel that halves a grid.
+pub struct BeliefReduce(Kernel);
+
+impl BeliefReduce {
+    /// What the kernel is made of.
+    pub fn stage() -> Stage {
+        Stage {
+            name: "belief_reduce",
+            source: include_str!("../../../shaders/kamencay/belief_reduce.wgsl"),
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            constants: vec![
+                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+                ("FAR", FAR.into()),
+            ],
+        }
+    }
+
+    /// Compiles it.
+    pub fn new(device: &Context<'_>) -> Self {
+        Self(Kernel::new(device, &Self::stage()))
+    }
+
+    /// Adds up the costs of a `fine` grid of `size` with so many `fours` of disparities a node.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        (width, height): (u32, u32),
+        fours: u32,
+        fine: &wgpu::Buffer,
+        coarse: &wgpu::Buffer,
+    ) -> Dispatch {
+        let params = uniform_buffer(device, "belief reduce", &Params { width, height, words: 2 * fours });
+        let groups = [width.div_ceil(2).div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(device, &[&params, fine, coarse], groups)
+    }
+}

@@ -1,0 +1,12 @@
+//! The kernels that make packed luma.
+
+#[expect(clippy::module_inception, reason = "a kernel has the name of its stage")]
+pub mod luma;
+pub mod luma_texture;
+
+use crate::gpu::Stage;
+
+/// Every stage that makes luma.
+pub fn stages() -> Vec<Stage> {
+    vec![luma::stage(), luma_texture::stage()]
+}

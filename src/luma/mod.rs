@@ -1,0 +1,14 @@
+//! Luma on the device: one byte per pixel, packed four to a word, and what becomes packed luma.
+//!
+//! Pixel `x` of a row is byte `x % 4`, counted from the lowest, of the row's word `x / 4`; a row
+//! has `ceil(width / 4)` words, and what lies beyond the width is 0.
+
+mod input;
+pub mod kernels;
+mod packed;
+
+pub use input::{Input, Source};
+pub(crate) use input::{check_buffer, check_texture, try_recording};
+pub use kernels::luma_texture::TexelFormat;
+pub use packed::{MAX_SIDE, pack, packed_bytes, unpack};
+pub(crate) use packed::{check_packed, check_size, upload};

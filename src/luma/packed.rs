@@ -1,0 +1,83 @@
+//! Packed luma: one byte per pixel, four pixels per `u32`.
+
+use crate::{
+    error::{Error, Result},
+    gpu::{Gpu, guarded, storage_buffer},
+    image::Luma,
+};
+
+/// Bytes of a packed picture.
+pub fn packed_bytes(width: u32, height: u32) -> u64 {
+    4 * u64::from(width.div_ceil(4)) * u64::from(height)
+}
+
+/// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
+pub const MAX_SIDE: u32 = 1 << 19;
+
+fn refuse(width: u32, height: u32, expected: String) -> Result<()> {
+    Err(Error::Parameter { name: "the picture", value: format!("{width}x{height} pixels"), expected })
+}
+
+/// Refuses sizes that no kernel could work on.
+pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
+    if width.min(height) == 0 || width.max(height) > MAX_SIDE {
+        return refuse(width, height, format!("its sides must be 1 to {MAX_SIDE}"));
+    }
+    Ok(())
+}
+
+/// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
+/// may read.
+pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Result<()> {
+    check_size(width, height)?;
+    let bytes = packed_bytes(width, height);
+    if luma.size() < bytes {
+        let given = luma.size();
+        return refuse(width, height, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
+    }
+    if !luma.usage().contains(wgpu::BufferUsages::STORAGE) {
+        let value = format!("a buffer with the usages {:?}", luma.usage());
+        return Err(Error::Parameter { name: "packed luma", value, expected: "it needs STORAGE".into() });
+    }
+    Ok(())
+}
+
+/// Packs a picture as the kernels read it.
+pub fn pack(luma: &Luma) -> Vec<u32> {
+    let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u32::from(pixel));
+    (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
+}
+
+/// The picture, packed, in a buffer of its own on the device.
+///
+/// # Errors
+/// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
+pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
+    let (width, height) = luma.size();
+    let allocate = || storage_buffer(&gpu.device, "luma", packed_bytes(width, height));
+    let buffer = guarded(&gpu.device, "the picture", allocate).await?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
+    Ok(buffer)
+}
+
+/// The picture that `words` hold, as [`pack`] packs it.
+///
+/// # Panics
+/// If a side is 0 or there are too few words.
+pub fn unpack(width: u32, height: u32, words: &[u32]) -> Luma {
+    let stride = width.div_ceil(4) as usize;
+    Luma::from_fn(width, height, |x, y| words[y as usize * stride + x as usize / 4].to_le_bytes()[x as usize % 4])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_fill_words_from_the_lowest_byte_and_rows_start_new_ones() {
+        let luma = Luma::new(5, 2, vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
+        assert_eq!(pack(&luma), [0x0403_0201, 0x05, 0x0908_0706, 0x0a]);
+        assert_eq!(packed_bytes(5, 2), 16);
+        assert_eq!(unpack(5, 2, &pack(&luma)), luma);
+    }
+}

@@ -1,0 +1,350 @@
+//! Points of one view found in another of which nothing is known: it may be turned, larger or smaller, blurred, noisy, or
+//! of another size.
+//!
+//! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
+//! from either view -> confirmed by their neighbours. Pictures of one size share a detector.
+//!
+//! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
+//! were found to correspond after the views were turned alike.
+
+mod agreement;
+mod align;
+mod detecting;
+
+use glam::{DAffine2, DVec2};
+use rayon::prelude::*;
+
+use crate::{
+    error::Result,
+    features::{Feature, FeatureConfig},
+    filter::gaussian,
+    image::Luma,
+    matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
+    pair::Backend,
+};
+use detecting::Detecting;
+
+/// How points are found and matched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WideBaselineConfig {
+    /// How interest points are found and described.
+    pub features: FeatureConfig,
+    /// How they are matched. Its `max_dy` is set to 1.5 px where rows turn out to correspond.
+    pub matching: MatchConfig,
+    /// Turn, scale and smooth the views so that they become alike. Without it they are matched as they are, in any row.
+    pub adapt: bool,
+}
+
+impl Default for WideBaselineConfig {
+    /// Weaker points than for seeds: of more matches the best ones are better.
+    fn default() -> Self {
+        let features = FeatureConfig { threshold: 0.000_03, ..FeatureConfig::default() };
+        Self { features, matching: MatchConfig::default(), adapt: true }
+    }
+}
+
+impl WideBaselineConfig {
+    /// Refuses what no step could work with.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] with the accepted range.
+    pub fn validate(&self) -> Result<()> {
+        self.features.validate()?;
+        self.matching.validate()
+    }
+}
+
+/// A point of the first view and where the second shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WideBaselineMatch {
+    /// Place in the first view, in pixels.
+    pub first: DVec2,
+    /// Place in the second view, in pixels.
+    pub second: DVec2,
+    /// 0 to 1.
+    pub confidence: f32,
+    /// The indices of the features that were matched.
+    pub points: [usize; 2],
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Sparse {
+    /// Interest points of both views, in their pixels. Scales and directions of the second are those of the picture in
+    /// which they were found.
+    pub features: [Vec<Feature>; 2],
+    /// Matches, the most confident first.
+    pub matches: Vec<WideBaselineMatch>,
+    /// From the second view's pixels to those of the picture that was made of it to be like the first.
+    pub alignment: DAffine2,
+    /// Whether rows correspond after that.
+    pub rectified: bool,
+    /// Standard deviations, in pixels, of the Gaussians that both pictures were smoothed by.
+    pub smoothing: [f64; 2],
+}
+
+/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy:
+/// on one of them, as long as more smoothing brings no fewer matches, and the first one on both. 0, for none, leads.
+const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+/// Smoothing must bring so many times the matches to be better than none: it takes away details.
+const CLEARLY_MORE: f64 = 1.25;
+/// Rows of features in corresponding rows differ by so much at most, in pixels.
+const MAX_DY: f32 = 1.5;
+/// What a point may be off after it was sought in the other view and back, in pixels.
+const MAX_RETURN: f32 = 1.0;
+/// Neighbours confirm a match up to this part of the first view's larger side.
+const NEIGHBOURHOOD: f32 = 1.0 / 12.0;
+/// The least share of its neighbours that agree with a match.
+const LEAST_AGREEMENT: f32 = 0.375;
+
+/// A picture and its features.
+struct View {
+    luma: Luma,
+    features: Vec<Feature>,
+    /// Standard deviation, in pixels, of the Gaussian that it was smoothed by.
+    sigma: f64,
+}
+
+impl View {
+    /// A picture as it is.
+    async fn new(detecting: &mut Detecting<'_>, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = detecting.features(&luma, config).await?;
+        Ok(Self { luma, features, sigma: 0.0 })
+    }
+}
+
+/// A view, and the same smoothed by as many of [`SIGMAS`] as were asked for.
+struct Smoothed(Vec<View>);
+
+impl Smoothed {
+    /// The view by the Gaussian at `index` of [`SIGMAS`].
+    async fn by(&mut self, index: usize, detecting: &mut Detecting<'_>, config: &FeatureConfig) -> Result<&View> {
+        while self.0.len() <= index {
+            let sigma = SIGMAS[self.0.len()];
+            let luma = gaussian(&self.0[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
+            self.0.push(View { sigma, ..View::new(detecting, luma, config).await? });
+        }
+        Ok(&self.0[index])
+    }
+}
+
+/// A match's place and the indices of its features.
+type Indexed = (Seed, [usize; 2]);
+
+/// Finds the points of `first` in `second`.
+///
+/// # Errors
+/// [`crate::Error::Parameter`]; and as [`Backend::features`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &WideBaselineConfig) -> Result<Sparse> {
+    backend.wait(match_views_async(backend, first, second, config))
+}
+
+/// As [`match_views`], without blocking for longer than the work on the host takes.
+///
+/// # Errors
+/// As [`match_views`].
+pub async fn match_views_async(
+    backend: &Backend,
+    first: &Luma,
+    second: &Luma,
+    config: &WideBaselineConfig,
+) -> Result<Sparse> {
+    config.validate()?;
+    let WideBaselineConfig { features, matching, adapt } = config;
+    let mut detecting = Detecting::new(backend);
+    let first = View::new(&mut detecting, first.clone(), features).await?;
+    if !adapt {
+        let second = View::new(&mut detecting, second.clone(), features).await?;
+        let found = match_features(&first.features, &second.features, matching)?;
+        let seeds = refined(&first, &second, &found, Rows::Matched);
+        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false));
+    }
+
+    let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
+    let mut firsts = Smoothed(vec![first]);
+    // Before the second view is turned, as that has another size then.
+    firsts.by(1, &mut detecting, features).await?;
+    let align::Aligned { view: second, map, rectified } =
+        align::align(&mut detecting, &firsts.0[0], second, features, matching).await?;
+    let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
+    let matching = MatchConfig { max_dy, ..matching.clone() };
+    let mut seconds = Smoothed(vec![second]);
+    let mut found = async |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
+        let (first, second) =
+            (firsts.by(a, &mut detecting, features).await?, seconds.by(b, &mut detecting, features).await?);
+        let found = match_features(&first.features, &second.features, &matching)?;
+        let mut seeds = refined(first, second, &found, rows);
+        seeds.retain(|(seed, _)| returns(first, second, seed, rows));
+        Ok(confirmed(seeds, reach))
+    };
+    let mut chosen = [0, 0];
+    let mut seeds = found(chosen).await?;
+    let plain = seeds.len();
+    let mut needed = CLEARLY_MORE * plain as f64;
+    let mut more_in = async |pair: [usize; 2]| -> Result<usize> {
+        let other = found(pair).await?;
+        let count = other.len();
+        if count as f64 > needed {
+            needed = count as f64;
+            (chosen, seeds) = (pair, other);
+        }
+        Ok(count)
+    };
+    for only in [|index| [index, 0], |index| [0, index]] {
+        let mut before = plain;
+        for index in 1..SIGMAS.len() {
+            let count = more_in(only(index)).await?;
+            if count < before {
+                break;
+            }
+            before = count;
+        }
+    }
+    more_in([1, 1]).await?;
+    let views = [firsts.0.swap_remove(chosen[0]), seconds.0.swap_remove(chosen[1])];
+    Ok(finished(views, seeds, map, rectified))
+}
+
+/// The matches that have a clear place, with the indices of their features.
+fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<Indexed> {
+    let refine_one = |found: &Match| {
+        let seed = Seed::from_match(&first.features, &second.features, found);
+        let seed = locate((&first.luma, &second.luma), &seed, rows, window(first, second))?;
+        Some((seed, [found.left, found.right]))
+    };
+    matches.par_iter().filter_map(refine_one).collect()
+}
+
+/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, both
+/// show nothing finer than that Gaussian, and it takes a larger window to see as much.
+fn window(first: &View, second: &View) -> i64 {
+    matching::HALF + (first.sigma - second.sigma).abs().round() as i64
+}
+
+/// Whether the window around the place in the second view is found again where it comes from. At the edge of a surface,
+/// or where one view shows what the other hides, it is not.
+fn returns(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
+    let there =
+        Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };
+    let back = locate((&second.luma, &first.luma), &there, rows, window(first, second));
+    // Both disparities, whose signs differ: places are on whole pixels, each of its own view.
+    back.is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
+}
+
+/// Those that enough neighbours agree with, as confident as these agree.
+fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
+    let places: Vec<Seed> = seeds.iter().map(|(seed, _)| *seed).collect();
+    let each = seeds.into_iter().zip(agreement::agreement(&places, reach));
+    each.filter(|(_, share)| *share >= LEAST_AGREEMENT)
+        .map(|((seed, points), share)| (Seed { confidence: seed.confidence * share, ..seed }, points))
+        .collect()
+}
+
+/// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
+fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> Sparse {
+    let smoothing = [first.sigma, second.sigma];
+    let back = map.inverse();
+    let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
+    let growth = back.matrix2.determinant().abs().sqrt() as f32;
+    let mut matches: Vec<WideBaselineMatch> = seeds
+        .into_iter()
+        .map(|(seed, points)| WideBaselineMatch {
+            first: DVec2::new(seed.x.into(), seed.y.into()),
+            second: place(seed.right_x(), seed.right_y()),
+            confidence: seed.confidence,
+            points,
+        })
+        .collect();
+    matches.sort_by(|a, b| b.confidence.total_cmp(&a.confidence).then(a.points.cmp(&b.points)));
+    let moved = |feature: Feature| {
+        let at = place(feature.x, feature.y);
+        Feature { x: at.x as f32, y: at.y as f32, scale: growth * feature.scale, ..feature }
+    };
+    let features = [first.features, second.features.into_iter().map(moved).collect()];
+    Sparse { features, matches, alignment: map, rectified, smoothing }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        eval::{Judged, PointMatch, Truth, conditions::Changed},
+        gpu::DeviceChoice,
+        image::Plane,
+        io::Picture,
+    };
+
+    /// Blobs of several sizes, everywhere others.
+    fn picture() -> Picture {
+        let mut state = 5u32;
+        let mut grey = vec![0.0f64; 200 * 160];
+        for _ in 0..700 {
+            let mut random = |end: u32| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (state >> 8) % end
+            };
+            let (x, y, radius) = (random(200) as i32, random(160) as i32, 2 + random(6) as i32);
+            let value = f64::from(random(200)) - 100.0;
+            for j in (y - radius).max(0)..(y + radius).min(160) {
+                for i in (x - radius).max(0)..(x + radius).min(200) {
+                    if (i - x).pow(2) + (j - y).pow(2) < radius * radius {
+                        grey[(j * 200 + i) as usize] += value;
+                    }
+                }
+            }
+        }
+        Picture::new(200, 160, grey.iter().map(|v| [(128.0 + v).clamp(0.0, 255.0) as u8; 4]).collect()).unwrap()
+    }
+
+    /// Matches of the picture with itself, changed, and the share that is right within 1.5 px.
+    fn matched(condition: &str, adapt: bool) -> (Sparse, f64) {
+        let picture = picture();
+        let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
+        let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
+        let config = WideBaselineConfig { adapt, ..WideBaselineConfig::default() };
+        let found = match_views(&backend, &picture.luma(), &changed.picture.luma(), &config).unwrap();
+        let truth = Truth::stereo(Plane::filled(200, 160, 0.0), None).unwrap().changed(&changed);
+        let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
+        let judged = Judged::new(&matches, &truth, 1.5).unwrap();
+        (found, judged.precision())
+    }
+
+    #[test]
+    fn turned_views_are_turned_back() {
+        for condition in ["rotation=90", "rotation=-37", "scale=1.4", "scale=0.7"] {
+            let (found, precision) = matched(condition, true);
+            assert!(found.rectified && found.matches.len() > 40 && precision > 0.97, "{condition}: {precision}");
+        }
+        let (found, _) = matched("rotation=90", false);
+        assert!(found.matches.len() < 10);
+    }
+
+    #[test]
+    fn what_is_blurred_is_compared_with_what_is_as_blurred() {
+        let (found, precision) = matched("blur=2.5", true);
+        assert!(found.smoothing[0] > 0.0 && found.smoothing[1] == 0.0, "{:?}", found.smoothing);
+        assert!(precision > 0.97, "{precision}");
+        let (plain, _) = matched("blur=2.5", false);
+        assert!(found.matches.len() > 2 * plain.matches.len());
+        let (found, precision) = matched("blur=3.5", true);
+        assert!(found.smoothing == [3.0, 0.0] && precision > 0.97, "{:?}: {precision}", found.smoothing);
+    }
+
+    #[test]
+    fn alike_views_stay_as_they_are() {
+        let (found, precision) = matched("gain=0.8", true);
+        assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
+        assert!(found.rectified && precision > 0.97 && found.matches.len() > 100);
+        assert!(found.matches.is_sorted_by(|a, b| a.confidence >= b.confidence));
+    }
+
+    #[test]
+    fn nothing_is_found_in_nothing() {
+        let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
+        let (flat, tiny) = (Luma::filled(60, 50, 7), Luma::filled(1, 1, 0));
+        for (first, second) in [(&flat, &flat), (&flat, &tiny), (&tiny, &flat)] {
+            assert!(match_views(&backend, first, second, &WideBaselineConfig::default()).unwrap().matches.is_empty());
+        }
+    }
+}

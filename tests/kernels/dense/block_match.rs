@@ -1,0 +1,159 @@
+//! Block matching.
+
+use hsad::{
+    cpu::dense::CellPlane,
+    dense::{
+        Aggregation, DenseConfig, Interpolation, Search, View,
+        kernels::{CELL, Tile},
+    },
+    disparity::{DisparityRange, SCALE},
+    image::{Luma, Plane},
+    verify::blocks::BlockMatchTrial,
+};
+
+use crate::common::*;
+
+/// A pair with a step in it, its right view noisier than its left.
+fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
+    let right = picture(width, height, seed);
+    let noise = picture(width, height, seed + 1);
+    let left = Luma::from_fn(width, height, |x, y| {
+        let disparity = if y < height / 2 { 3 } else { 9 };
+        let value = right.get_clamped(i64::from(x) - disparity, i64::from(y));
+        value.saturating_add(noise.get(x, y) % 16)
+    });
+    (left, right)
+}
+
+fn config(window: u32, min: i32, count: u32) -> DenseConfig {
+    DenseConfig::new(DisparityRange::new(min, count).unwrap()).with_window(window)
+}
+
+fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) {
+    compare_tiled(what, views, view, config, None, Tile::HARDWARE);
+}
+
+/// Without a check of the other view, and with one.
+fn compare_tiled(
+    what: &str,
+    (left, right): (&Luma, &Luma),
+    view: View,
+    config: &DenseConfig,
+    ranges: Option<&CellPlane>,
+    tile: Tile,
+) {
+    for consistency in [None, Some(300)] {
+        let (left, right, ranges) = (left.clone(), right.clone(), ranges.cloned());
+        let config = DenseConfig { consistency, ..config.clone() };
+        let what = format!("{what}, {consistency:?}");
+        assert_twin(&what, &BlockMatchTrial { left, right, view, config, ranges, tile });
+    }
+}
+
+#[test]
+fn the_twin_matches_the_same_at_any_size() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height, 11);
+        for view in [View::Left, View::Right] {
+            compare(&format!("{width}x{height} {view:?}"), (&left, &right), view, &config(7, 0, 17));
+        }
+    }
+}
+
+#[test]
+fn tiles_leave_no_trace() {
+    let (left, right) = pair(97, 33, 51);
+    for tile in [Tile::SOFTWARE, Tile { quads: 3, height: 1, across: 3, down: 5 }] {
+        compare_tiled(&format!("{tile:?}"), (&left, &right), View::Right, &config(7, 0, 17), None, tile);
+    }
+}
+
+#[test]
+fn the_twin_searches_the_same_cells() {
+    let (left, right) = pair(130, 131, 61);
+    // From nothing to everything, and from one end or the other.
+    let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
+    let (columns, rows) = (130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL));
+    let cells = Plane::from_fn(columns, rows, |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
+    for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::HARDWARE), (View::Left, Tile::SOFTWARE)] {
+        for min in [0, -7, 2] {
+            let what = format!("{view:?} {tile:?} from {min}");
+            compare_tiled(&what, (&left, &right), view, &config(5, min, 30), Some(&cells), tile);
+        }
+    }
+}
+
+#[test]
+fn the_other_view_is_asked_at_half_the_size() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height, 71);
+        for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
+            for min in [0, -9] {
+                let aggregation = Aggregation::Window { side: 7, search: Search::CoarseToFine };
+                let config = DenseConfig { aggregation, ..config(7, min, 21) };
+                let what = format!("{width}x{height} {view:?} from {min}");
+                compare_tiled(&what, (&left, &right), view, &config, None, tile);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_twin_matches_the_same_with_any_window() {
+    let (left, right) = pair(97, 33, 21);
+    // The widest takes its compiler half a minute, so not all of them.
+    for window in [3, 5, 9, 11, 13, 17] {
+        compare(&format!("window {window}"), (&left, &right), View::Left, &config(window, -3, 30));
+    }
+}
+
+#[test]
+fn the_twin_matches_the_same_in_any_range() {
+    let (left, right) = pair(97, 33, 31);
+    for (min, count) in [(0, 1), (0, 2), (5, 3), (-20, 41), (-96, 193), (-500, 1000), (90, 100), (-97 - 40, 45)] {
+        for view in [View::Left, View::Right] {
+            compare(&format!("{count} from {min}, {view:?}"), (&left, &right), view, &config(3, min, count));
+        }
+    }
+}
+
+#[test]
+fn the_twin_decides_the_same_with_any_check() {
+    let (left, right) = pair(130, 131, 41);
+    for interpolation in [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular] {
+        for uniqueness in [0, 1, 15, 100] {
+            let config = DenseConfig { interpolation, uniqueness, ..config(5, -2, 23) };
+            compare(&format!("{interpolation:?}, {uniqueness} %"), (&left, &right), View::Left, &config);
+        }
+    }
+}
+
+#[test]
+fn black_white_and_noise() {
+    let black = Luma::filled(40, 30, 0);
+    let white = Luma::filled(40, 30, 255);
+    let noise = |seed| Luma::from_fn(40, 30, |x, y| picture(1, 1, seed + 40 * y + x).get(0, 0));
+    for (left, right) in [(&black, &black), (&black, &white), (&white, &black), (&noise(1), &noise(5000))] {
+        for window in [3, 15] {
+            let config = DenseConfig { uniqueness: 5, ..config(window, -8, 17) };
+            compare("extremes", (left, right), View::Left, &config);
+        }
+    }
+}
+
+#[test]
+fn by_hand() {
+    // A bright column in the dark, at 5 in the left view and at 3 in the right: disparity 2. A 3x3
+    // window sees it from the columns 4, 5 and 6; no other window of the left view sees anything,
+    // and a window without it costs nothing at any disparity that does not see it either.
+    let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
+    let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
+    let (left, right) = (view(5), view(3));
+    let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, ranges: None, tile: Tile::HARDWARE });
+    let d = |whole: i32| whole * SCALE;
+    // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
+    // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
+    let expected = vec![d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
+    // The disparities, the confidences, and the winners.
+    assert_eq!(left[2], expected.into());
+}

@@ -1,0 +1,80 @@
+//! The mean cost over a square window.
+
+use std::ops::Range;
+
+use hsad::{
+    cpu::dense::box_mean,
+    dense::kernels::{BoxMean, VolumeBand},
+    disparity::DisparityRange,
+    gpu::Context,
+};
+
+use crate::common::*;
+
+/// The means of the rows `wanted`, from the costs of the rows `known`.
+fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Range<u32>, count: u32) -> Vec<u8> {
+    let device = &Context::from(&gpu().device);
+    let range = DisparityRange::new(0, count).unwrap();
+    let band = VolumeBand { width, first_row: 0, rows: known.end - known.start, range };
+    let row = 4 * band.row_words() as usize;
+    let costs = &costs[row * known.start as usize..row * known.end as usize];
+    let costs = upload(&bytemuck::pod_collect_to_vec::<u8, u32>(costs));
+    let means = upload(&vec![u32::MAX; (band.row_words() * band.rows) as usize]);
+    let rows = wanted.start - known.start..wanted.end - known.start;
+    let dispatches = BoxMean::new(device, side).prepare(device, &band, rows.clone(), &costs, &means);
+    bench().run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
+    bytemuck::cast_slice(&download::<u32>(&costs))[..row * rows.len()].to_vec()
+}
+
+fn costs(width: u32, height: u32, count: u32) -> Vec<u8> {
+    picture(width * count.next_multiple_of(4), height, 78).data().to_vec()
+}
+
+#[test]
+fn the_twin_averages_the_same() {
+    for (width, height) in SIZES {
+        for (side, count) in [(3, 17), (7, 4), (31, 33)] {
+            let costs = costs(width, height, count);
+            let expected = box_mean(&costs, (width, height), side);
+            let actual = on_device(&costs, width, side, 0..height, 0..height, count);
+            assert_same(&format!("{width}x{height}, {count} disparities, side {side}"), &actual, &expected);
+        }
+    }
+}
+
+/// Every side, with the largest sums.
+#[test]
+fn no_quotient_is_off() {
+    for side in (1..=31).step_by(2) {
+        let costs: Vec<u8> = costs(67, 5, 8).iter().map(|&cost| if cost > 90 { 255 } else { cost }).collect();
+        let expected = box_mean(&costs, (67, 5), side);
+        assert_same(&format!("side {side}"), &on_device(&costs, 67, side, 0..5, 0..5, 8), &expected);
+    }
+}
+
+#[test]
+fn a_band_needs_no_more_than_half_a_window_around_it() {
+    let (width, height, side) = (37, 40, 7);
+    let costs = costs(width, height, 8);
+    let expected = box_mean(&costs, (width, height), side);
+    for wanted in [0..1_u32, 2..9, 20..21, 30..40, 0..40] {
+        let known = wanted.start.saturating_sub(3)..(wanted.end + 3).min(height);
+        let actual = on_device(&costs, width, side, known, wanted.clone(), 8);
+        let row = 8 * width as usize;
+        let expected = &expected[row * wanted.start as usize..row * wanted.end as usize];
+        assert_same(&format!("rows {wanted:?}"), &actual, expected);
+    }
+}
+
+#[test]
+fn by_hand() {
+    // Four disparities of 3x2 pixels: ramps along the row and along the column, a lone pixel, a constant.
+    let pixel = |x: u8, y: u8| [10 * x, 30 * y, if (x, y) == (2, 0) { 90 } else { 0 }, 255];
+    let costs: Vec<u8> = (0..2).flat_map(|y| (0..3).flat_map(move |x| pixel(x, y))).collect();
+    // Along the row 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column 0 0 30 is 10, 0 30 30 is 20.
+    // The lone one is in its row's mean once beside it and twice at the edge: 30, 60; and so in the columns'.
+    let expected =
+        [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]];
+    assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 4), expected.concat());
+    assert_eq!(box_mean(&costs, (3, 2), 3), expected.concat());
+}

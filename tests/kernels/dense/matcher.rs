@@ -1,0 +1,300 @@
+//! The dense half as a whole, in step with the twins.
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
+
+use hsad::{
+    config::Preset,
+    cpu::dense::compute,
+    dense::{
+        self, Aggregation, Brightness, Cost, DenseConfig, Destination, Difference, Matcher, OtherView, Paths,
+        Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
+    },
+    disparity::{DisparityRange, coverage},
+    error::Error,
+    gpu::Gpu,
+    image::Luma,
+    luma::pack,
+    verify::pipelines::DenseTrial,
+    wgpu,
+};
+
+use crate::common::*;
+
+fn pair(width: u32, height: u32) -> (Luma, Luma) {
+    let right = picture(width, height, 1);
+    let left =
+        Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
+    (left, right)
+}
+
+fn config(reference: View) -> DenseConfig {
+    let range = DisparityRange::new(-2, 30).unwrap();
+    let brightness = Brightness { gain: 280, offset: -700 };
+    DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
+}
+
+fn semi_global(reference: View, window: u32, paths: Paths, other_view: OtherView) -> DenseConfig {
+    let part = |weight, limit| Difference { weight, limit };
+    let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
+    let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
+    DenseConfig {
+        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }),
+        refinement: Some(Refinement {
+            support: 9,
+            medians_before: 1,
+            fill: true,
+            median_of_filled: true,
+            medians_after: 1,
+        }),
+        ..config(reference)
+    }
+}
+
+fn coarse_to_fine(reference: View) -> DenseConfig {
+    DenseConfig { aggregation: Aggregation::Window { side: 5, search: Search::CoarseToFine }, ..config(reference) }
+}
+
+#[test]
+fn the_twins_end_with_the_same_bytes() {
+    for (width, height) in SIZES {
+        let (left, right) = pair(width, height);
+        for (reference, config) in [
+            (View::Left, config(View::Left)),
+            (View::Right, config(View::Right)),
+            (View::Left, coarse_to_fine(View::Left)),
+            (View::Right, coarse_to_fine(View::Right)),
+            (View::Left, semi_global(View::Left, 1, Paths::Three, OtherView::Claimed)),
+            (View::Right, semi_global(View::Right, 1, Paths::Four, OtherView::Searched)),
+            (View::Left, semi_global(View::Left, 5, Paths::None, OtherView::Searched)),
+            (View::Right, semi_global(View::Right, 3, Paths::Three, OtherView::Claimed)),
+        ] {
+            let (left, right) = (left.clone(), right.clone());
+            let what = format!("{width}x{height} {reference:?}");
+            assert_twin(&what, &DenseTrial { left, right, config, band_rows: u32::MAX });
+        }
+    }
+}
+
+/// The pair where the matcher reads it.
+fn write(matcher: &Matcher, left: &Luma, right: &Luma) {
+    for (view, luma) in [left, right].into_iter().zip(matcher.luma()) {
+        bench().write(luma, &pack(view));
+    }
+}
+
+#[test]
+fn bands_leave_no_trace() {
+    let (left, right) = pair(130, 131);
+    for config in [
+        config(View::Left),
+        coarse_to_fine(View::Left),
+        semi_global(View::Right, 1, Paths::Three, OtherView::Claimed),
+        semi_global(View::Left, 1, Paths::Eight, OtherView::Searched),
+        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
+        semi_global(View::Left, 3, Paths::Four, OtherView::Claimed),
+    ] {
+        in_bands(&left, &right, &config);
+    }
+}
+
+fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
+    let whole = dense::compute(gpu(), left, right, config).unwrap();
+    assert!(coverage(&whole.disparity) > 0.3);
+    for rows in [1, 7, 64, 130] {
+        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, rows).unwrap();
+        write(&banded, left, right);
+        // Whole cells, where each has a range of its own.
+        let in_cells = *config == coarse_to_fine(View::Left);
+        let rows_of_band = if in_cells { (rows / CELL * CELL).max(CELL) } else { rows };
+        assert_eq!(banded.bands(), 131_usize.div_ceil(rows_of_band as usize));
+        let banded = banded.run(gpu()).unwrap();
+        assert_same(&format!("bands of {rows}"), banded.disparity.data(), whole.disparity.data());
+        assert_same(&format!("bands of {rows}"), banded.confidence.data(), whole.confidence.data());
+    }
+}
+
+#[test]
+fn twice_in_one_encoder_and_after_garbage() {
+    let (left, right) = pair(97, 33);
+    let expected = dense::compute(gpu(), &left, &right, &config(View::Left)).unwrap();
+    let device = &gpu().device;
+    let matcher = Matcher::new(device, (97, 33), &config(View::Left)).unwrap();
+    write(&matcher, &left, &right);
+    let maps = [0; 2].map(|_| [0; 2].map(|_| upload(&vec![7_u32; 97 * 33])));
+    let outputs = maps.each_ref().map(|[disparities, confidences]| {
+        matcher.outputs(device, Destination::Buffer(disparities), Some(confidences)).unwrap()
+    });
+    bench().run(|encoder| {
+        matcher.record(encoder, &outputs[0]);
+        matcher.record(encoder, &outputs[1]);
+    });
+    for [disparities, confidences] in &maps {
+        assert_same("disparities", &download::<i32>(disparities), expected.disparity.data());
+        let (packed, rest) = (pack(&expected.confidence), vec![7; 97 * 33 - 25 * 33]);
+        assert_same("confidences", &download::<u32>(confidences), &[packed, rest].concat());
+    }
+}
+
+/// An executor may move the future to another thread, and all it needs is someone who polls the device.
+#[test]
+fn awaited_while_another_thread_polls_the_device() {
+    fn sent<F: Future + Send>(future: F) -> F {
+        future
+    }
+    let (left, right) = pair(97, 33);
+    let done = AtomicBool::new(false);
+    let awaited = thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                gpu().device.poll(wgpu::PollType::Poll).unwrap();
+                thread::sleep(Duration::from_millis(1));
+            }
+        });
+        let awaited = pollster::block_on(sent(dense::compute_async(gpu(), &left, &right, &config(View::Left))));
+        done.store(true, Ordering::Relaxed);
+        awaited.unwrap()
+    });
+    assert_same(
+        "disparities",
+        awaited.disparity.data(),
+        compute(&left, &right, &config(View::Left)).unwrap().disparity.data(),
+    );
+}
+
+#[test]
+fn several_threads_wait_for_one_device() {
+    let (left, right) = pair(97, 33);
+    let expected = compute(&left, &right, &config(View::Left)).unwrap();
+    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left)).unwrap();
+    write(&matcher, &left, &right);
+    thread::scope(|scope| {
+        let threads = [0; 4].map(|_| scope.spawn(|| [0; 5].map(|_| matcher.run(gpu()).unwrap())));
+        for maps in threads.map(|thread| thread.join().unwrap()) {
+            maps.iter().for_each(|map| assert_same("disparities", map.disparity.data(), expected.disparity.data()));
+        }
+    });
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_both_alike() {
+    let (left, right) = pair(40, 30);
+    let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
+    let even = config(View::Left).with_window(8);
+    let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
+    let even_costs = semi_global(View::Left, 4, Paths::None, OtherView::Claimed);
+    let wide_costs = semi_global(View::Left, 33, Paths::Three, OtherView::Claimed);
+    for config in [far, even, unsure, even_costs, wide_costs] {
+        let device = dense::compute(gpu(), &left, &right, &config).unwrap_err();
+        let twin = compute(&left, &right, &config).unwrap_err();
+        assert!(matches!(device, Error::Parameter { .. }), "{device}");
+        assert_eq!(device.to_string(), twin.to_string());
+    }
+    let small = Luma::filled(39, 30, 0);
+    assert!(matches!(dense::compute(gpu(), &left, &small, &config(View::Left)), Err(Error::SizesDiffer { .. })));
+}
+
+/// The same adapter with the smallest limits that WebGPU knows.
+fn strict() -> Gpu {
+    with_limits(wgpu::Limits::downlevel_defaults())
+}
+
+fn with_limits(required_limits: wgpu::Limits) -> Gpu {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+    Gpu { device, queue, info: adapter.get_info() }
+}
+
+/// A device that binds less than a pair's maps and transforms need: the result is the same.
+#[test]
+fn no_buffer_needs_to_hold_a_whole_view() {
+    let (left, right) = pair(400, 300);
+    let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
+    let small = with_limits(small);
+    for config in [
+        semi_global(View::Left, 1, Paths::Three, OtherView::Claimed),
+        semi_global(View::Right, 1, Paths::Four, OtherView::Searched),
+        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
+        semi_global(View::Right, 3, Paths::Three, OtherView::Claimed),
+        coarse_to_fine(View::Right),
+        DenseConfig {
+            refinement: semi_global(View::Left, 1, Paths::Four, OtherView::Claimed).refinement,
+            ..config(View::Left)
+        },
+    ] {
+        let expected = dense::compute(gpu(), &left, &right, &config).unwrap();
+        let actual = dense::compute(&small, &left, &right, &config).unwrap();
+        assert_same("disparities", actual.disparity.data(), expected.disparity.data());
+        assert_same("confidences", actual.confidence.data(), expected.confidence.data());
+    }
+}
+
+/// 36 megapixels: their disparities are more than one binding of 128 MiB holds.
+#[test]
+fn a_pair_too_large_for_one_buffer() {
+    let (width, height) = (6000, 6000);
+    let tile = picture(300, 200, 17);
+    let right = Luma::from_fn(width, height, |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
+    let left = Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
+    let config = DenseConfig::new(DisparityRange::new(0, 5).unwrap()).with_window(3);
+    let dense = dense::compute(&strict(), &left, &right, &config).unwrap();
+    // The twin on cuts of it, without the rows whose windows see the cut; the second has the border
+    // between two bands in its middle.
+    let rows = 20;
+    for first in [0, height / 2 - rows / 2, height - rows] {
+        let cut = |view: &Luma| Luma::from_fn(width, rows, |x, y| view.get(x, first + y));
+        let twin = compute(&cut(&left), &cut(&right), &config).unwrap();
+        for y in 1..rows - 1 {
+            let (actual, expected) = (dense.disparity.row(first + y), twin.disparity.row(y));
+            assert_same(&format!("row {}", first + y), actual, expected);
+        }
+    }
+}
+
+#[test]
+fn no_preset_trusts_pairs_that_show_nothing() {
+    let noise = |seed| Luma::from_fn(41, 30, |x, y| picture(1, 1, seed + 41 * y + x).get(0, 0));
+    let pairs = [
+        ("black", Luma::filled(41, 30, 0), Luma::filled(41, 30, 0)),
+        ("grey and white", Luma::filled(41, 30, 90), Luma::filled(41, 30, 255)),
+        ("noise", noise(1), noise(5000)),
+    ];
+    for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
+        // One disparity, some of them negative, more than the picture has columns.
+        for (min, count) in [(3, 1), (-9, 17), (0, 500)] {
+            let config = preset.config().dense(DisparityRange::new(min, count).unwrap(), Brightness::SAME);
+            for (name, left, right) in &pairs {
+                let what = format!("{preset:?}, {name}, {count} from {min}");
+                let actual = dense::compute(gpu(), left, right, &config).unwrap();
+                let expected = compute(left, right, &config).unwrap();
+                assert_same(&what, actual.disparity.data(), expected.disparity.data());
+                assert_same(&what, actual.confidence.data(), expected.confidence.data());
+                // With one disparity there is nothing to choose; and some columns of blocks have one only.
+                assert!(count == 1 || actual.measured() < 0.2, "{what}: {}", actual.measured());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_profile_has_a_time_for_each_kernel_and_the_same_map() {
+    let (left, right) = (picture(60, 50, 31), picture(60, 50, 32));
+    let config = coarse_to_fine(View::Left);
+    let matcher = Matcher::new(&gpu().device, (60, 50), &config).unwrap();
+    write(&matcher, &left, &right);
+    if !gpu().device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        assert!(matches!(matcher.profile(gpu()), Err(Error::Unsupported(_))));
+        return;
+    }
+    let (dense, times) = matcher.profile(gpu()).unwrap();
+    assert_eq!(dense, matcher.run(gpu()).unwrap());
+    let names: Vec<_> = times.iter().map(|(name, _)| *name).collect();
+    let first = ["halve", "halve", "pad", "pad", "block_match", "block_match", "cell_ranges"];
+    assert_eq!((&names[..7], names.last()), (&first[..], Some(&"block_match")));
+    assert!(times.iter().all(|(_, time)| !time.is_zero()), "{times:?}");
+}

@@ -1,0 +1,19 @@
+//! The kernels of dense matching.
+
+mod block_match;
+mod box_mean;
+mod cell_ranges;
+mod census;
+mod claim;
+mod consistency;
+mod cost;
+mod fill;
+mod halve;
+mod map_texture;
+mod matcher;
+mod pad;
+mod path;
+mod residual;
+mod select;
+mod support;
+mod weighted_median;

@@ -1,0 +1,295 @@
+//! Every shader against its Rust side, without any GPU: parsed, validated, its bindings and structs compared, and
+//! translated to what drivers are given.
+
+mod translations;
+
+use std::path::Path;
+
+use hsad::{
+    features::keypoints::Keypoint,
+    gpu::{Binding, Limit, Member, REQUIRED_LIMITS, ShaderType, Shape, Stage},
+    wgpu::{Limits, TextureFormat},
+};
+use naga::{
+    AddressSpace, Module, ScalarKind, StorageAccess, TypeInner,
+    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
+};
+
+/// A stage's module and what its validation tells, or what is wrong with it.
+fn valid(stage: &Stage) -> Result<(Module, ModuleInfo), String> {
+    let text = stage.wgsl();
+    let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|error| error.emit_to_string(&text))?;
+    Ok((module, info))
+}
+
+/// The values that a type consists of, each with its path of members, its place in bytes and its type.
+fn values_of(module: &Module, ty: naga::Handle<naga::Type>) -> Vec<(String, u64, String)> {
+    let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
+        (ScalarKind::Uint, 4) => "u32".into(),
+        (ScalarKind::Sint, 4) => "i32".into(),
+        (ScalarKind::Float, 4) => "f32".into(),
+        _ => format!("{scalar:?}"),
+    };
+    match &module.types[ty].inner {
+        TypeInner::Scalar(kind) => vec![(String::new(), 0, scalar(*kind))],
+        TypeInner::Vector { size, scalar: kind } => {
+            (0..*size as u64).map(|i| (format!("[{i}]"), i * u64::from(kind.width), scalar(*kind))).collect()
+        }
+        TypeInner::Array { base, size: naga::ArraySize::Constant(count), stride } => {
+            let of_one = values_of(module, *base);
+            (0..count.get().into())
+                .flat_map(|i| of_one.iter().map(move |one| (i, one)))
+                .map(|(i, (path, at, kind))| (format!("[{i}]{path}"), i * u64::from(*stride) + at, kind.clone()))
+                .collect()
+        }
+        TypeInner::Struct { members, .. } => members
+            .iter()
+            .flat_map(|member| {
+                let name = member.name.as_deref().unwrap_or("?");
+                values_of(module, member.ty)
+                    .into_iter()
+                    .map(move |(path, at, kind)| (format!(".{name}{path}"), u64::from(member.offset) + at, kind))
+            })
+            .collect(),
+        other => vec![(String::new(), 0, format!("{other:?}"))],
+    }
+}
+
+/// The same of a type of Rust.
+fn values_of_rust(shape: &Shape) -> Vec<(String, u64, String)> {
+    match *shape {
+        Shape::Scalar(name) => vec![(String::new(), 0, name.into())],
+        Shape::Array(count, base) => {
+            let of_one = values_of_rust(base);
+            (0..count)
+                .flat_map(|i| of_one.iter().map(move |one| (i, one)))
+                .map(|(i, (path, at, kind))| (format!("[{i}]{path}"), i * size_of_rust(base) + at, kind.clone()))
+                .collect()
+        }
+        Shape::Struct(_, members) => members
+            .iter()
+            .flat_map(|member| {
+                let values = values_of_rust(&member.shape).into_iter();
+                values.map(|(path, at, kind)| (format!(".{}{path}", member.name), member.offset + at, kind))
+            })
+            .collect(),
+    }
+}
+
+fn size_of_rust(shape: &Shape) -> u64 {
+    match *shape {
+        Shape::Scalar(_) => 4,
+        Shape::Array(count, base) => count * size_of_rust(base),
+        Shape::Struct(size, _) => size,
+    }
+}
+
+/// In what a type of a shader differs from one of Rust.
+fn difference(module: &Module, ty: naga::Handle<naga::Type>, shape: &Shape) -> Option<String> {
+    let (wgsl, rust) = (values_of(module, ty), values_of_rust(shape));
+    let size = u64::from(module.types[ty].inner.size(module.to_ctx()));
+    if size != size_of_rust(shape) {
+        return Some(format!("it has {size} bytes, Rust's {}", size_of_rust(shape)));
+    }
+    let first = (0..wgsl.len().max(rust.len())).find(|&i| wgsl.get(i) != rust.get(i))?;
+    Some(format!("value {first} is {:?}, Rust's {:?}", wgsl.get(first), rust.get(first)))
+}
+
+/// Whether it is a texture of one `u32` a texel that is only read.
+fn is_word_texture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
+    let class = naga::ImageClass::Storage { format: naga::StorageFormat::R32Uint, access: StorageAccess::LOAD };
+    module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
+}
+
+/// Whether it is a texture of floats to be read, as far as a module tells.
+fn is_picture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
+    let class = naga::ImageClass::Sampled { kind: ScalarKind::Float, multi: false };
+    module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
+}
+
+/// Whether it is a texture of this format that is only written.
+fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) -> bool {
+    let format = match format {
+        TextureFormat::R32Sint => naga::StorageFormat::R32Sint,
+        TextureFormat::R32Float => naga::StorageFormat::R32Float,
+        _ => return false,
+    };
+    let class = naga::ImageClass::Storage { format, access: StorageAccess::STORE };
+    module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
+}
+
+/// What of `stage`'s shader is not as its Rust side says; empty where they agree.
+fn disagreements(stage: &Stage) -> Vec<String> {
+    let (module, _) = match valid(stage) {
+        Ok(valid) => valid,
+        Err(error) => return vec![error],
+    };
+    let mut found = Vec::new();
+    let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+    if entries != ["main"] {
+        found.push(format!("entry points {entries:?}, not main alone"));
+    }
+    let storage = stage.bindings.iter().filter(|b| matches!(b, Binding::Read | Binding::Write)).count();
+    if storage > 4 {
+        found.push(format!("{storage} storage buffers, where a device need not offer more than 4"));
+    }
+    let mut bindings: Vec<_> = module
+        .global_variables
+        .iter()
+        .filter_map(|(_, variable)| Some((variable.binding.as_ref()?, variable)))
+        .map(|(at, variable)| ((at.group, at.binding), variable))
+        .collect();
+    bindings.sort_by_key(|(at, _)| *at);
+    let places: Vec<_> = bindings.iter().map(|(at, _)| *at).collect();
+    let expected: Vec<_> = (0..stage.bindings.len() as u32).map(|i| (0, i)).collect();
+    if places != expected {
+        found.push(format!("the shader binds {places:?}, Rust {expected:?}"));
+        return found;
+    }
+    for (((_, place), variable), binding) in bindings.into_iter().zip(stage.bindings) {
+        let difference = match (variable.space, binding) {
+            (AddressSpace::Uniform, Binding::Uniform(shape)) => difference(&module, variable.ty, shape),
+            (AddressSpace::Storage { access }, Binding::Read) if !access.contains(StorageAccess::STORE) => None,
+            (AddressSpace::Storage { access }, Binding::Write) if access.contains(StorageAccess::STORE) => None,
+            (AddressSpace::Handle, Binding::Words) if is_word_texture(&module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Picture) if is_picture(&module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Map(format)) if is_map(&module, variable.ty, *format) => None,
+            (space, binding) => Some(format!("it is in {space:?}, in Rust it is {binding:?}")),
+        };
+        found.extend(difference.map(|difference| format!("binding {place}: {difference}")));
+    }
+    // What a struct of a buffer's elements is called, and what Rust has for it.
+    for (name, shape) in [("Keypoint", Keypoint::SHAPE)] {
+        if let Some((ty, _)) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)) {
+            found.extend(difference(&module, ty, &shape).map(|difference| format!("{name}: {difference}")));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_shader_is_valid_and_binds_what_rust_binds() {
+    let stages = hsad::stages();
+    assert!(stages.len() >= 9);
+    for stage in stages {
+        let found = disagreements(&stage);
+        assert!(found.is_empty(), "{}: {}", stage.name, found.join("\n"));
+    }
+}
+
+/// A stage has one name and one room in four places: its shader, its Rust side, its twin and its test.
+#[test]
+fn stages_are_named_the_same_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut shaders = Vec::new();
+    for room in ["luma", "features", "dense", "kamencay"] {
+        for entry in std::fs::read_dir(root.join("shaders").join(room)).expect("a room of shaders") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            for place in [format!("src/{room}/kernels"), format!("src/cpu/{room}"), format!("tests/kernels/{room}")] {
+                assert!(root.join(&place).join(&name).with_extension("rs").is_file(), "{place} has no {name}.rs");
+            }
+            shaders.push(name);
+        }
+    }
+    let mut names: Vec<_> = hsad::stages().iter().map(|stage| stage.name.to_owned()).collect();
+    shaders.sort();
+    names.sort();
+    names.dedup();
+    assert_eq!(names, shaders);
+}
+
+#[test]
+fn workgroups_fit_the_smallest_limits() {
+    let limits = Limits::downlevel_defaults();
+    for stage in hsad::stages() {
+        let module = naga::front::wgsl::parse_str(&stage.wgsl()).expect("checked by another test");
+        let [x, y, z] = module.entry_points[0].workgroup_size;
+        assert!(x * y * z <= limits.max_compute_invocations_per_workgroup, "{}: {x}x{y}x{z}", stage.name);
+        let memory: u32 = module
+            .global_variables
+            .iter()
+            .filter(|(_, variable)| variable.space == AddressSpace::WorkGroup)
+            .map(|(_, variable)| module.types[variable.ty].inner.size(module.to_ctx()))
+            .sum();
+        assert!(memory < limits.max_compute_workgroup_storage_size, "{}: {memory} bytes", stage.name);
+    }
+}
+
+/// What is asked of a device is what the shaders need, no more and no less.
+#[test]
+fn required_limits_are_those_that_some_shader_needs() {
+    let mut needed = std::collections::BTreeMap::new();
+    let mut need = |name: &'static str, value: u64| {
+        let most = needed.entry(name).or_insert(0);
+        *most = value.max(*most);
+    };
+    // What stands in the host's code: one bind group, rows of words in textures, as many workgroups as there can be.
+    need("max_bind_groups", 1);
+    need("max_texture_dimension_2d", 2048);
+    need("max_compute_workgroups_per_dimension", 65_535);
+    for stage in hsad::stages() {
+        let module = naga::front::wgsl::parse_str(&stage.wgsl()).expect("checked by another test");
+        let [x, y, z] = module.entry_points[0].workgroup_size;
+        need("max_compute_workgroup_size_x", x.into());
+        need("max_compute_workgroup_size_y", y.into());
+        need("max_compute_workgroup_size_z", z.into());
+        need("max_compute_invocations_per_workgroup", (x * y * z).into());
+        let shared = module.global_variables.iter().filter(|(_, variable)| variable.space == AddressSpace::WorkGroup);
+        let shared = shared.map(|(_, variable)| u64::from(module.types[variable.ty].inner.size(module.to_ctx()))).sum();
+        need("max_compute_workgroup_storage_size", shared);
+        let count = |kind: fn(&Binding) -> bool| stage.bindings.iter().filter(|&binding| kind(binding)).count() as u64;
+        need("max_bindings_per_bind_group", stage.bindings.len() as u64);
+        need("max_uniform_buffers_per_shader_stage", count(|b| matches!(b, Binding::Uniform(_))));
+        need("max_storage_buffers_per_shader_stage", count(|b| matches!(b, Binding::Read | Binding::Write)));
+        need("max_sampled_textures_per_shader_stage", count(|b| matches!(b, Binding::Picture)));
+        need("max_storage_textures_per_shader_stage", count(|b| matches!(b, Binding::Words | Binding::Map(_))));
+        let uniforms = stage.bindings.iter().filter_map(|binding| match binding {
+            Binding::Uniform(shape) => Some(size_of_rust(shape)),
+            _ => None,
+        });
+        need("max_uniform_buffer_binding_size", uniforms.max().unwrap_or(0));
+    }
+    let required: std::collections::BTreeMap<_, _> =
+        REQUIRED_LIMITS.iter().map(|&Limit { name, least, .. }| (name, least)).collect();
+    assert_eq!(needed, required);
+    let (defaults, least) = (Limits::downlevel_defaults(), |limit: &Limit| limit.least);
+    assert!(REQUIRED_LIMITS.iter().all(|limit| (limit.of)(&defaults) >= least(limit)));
+}
+
+/// The comparison itself must be able to fail.
+#[test]
+fn a_changed_copy_disagrees() {
+    let good = hsad::luma::kernels::luma::stage();
+    let changed = |change: &dyn Fn(&mut Stage)| {
+        let mut stage = good.clone();
+        change(&mut stage);
+        disagreements(&stage)
+    };
+    assert!(changed(&|_| ()).is_empty());
+    let uniforms = |members| [Binding::Uniform(Shape::Struct(8, members)), Binding::Read, Binding::Write];
+    let member = |name, offset, ty| Member { name, offset, shape: Shape::Scalar(ty) };
+    for (what, members) in [
+        ("f32", [member("width", 0, "u32"), member("height", 4, "f32")]),
+        ("depth", [member("width", 0, "u32"), member("depth", 4, "u32")]),
+        (".height", [member("height", 0, "u32"), member("width", 4, "u32")]),
+        ("8", [member("width", 0, "u32"), member("height", 8, "u32")]),
+    ] {
+        let bindings = uniforms(Vec::from(members).leak());
+        let found = changed(&|s| s.bindings = Vec::from(bindings).leak());
+        assert!(found.len() == 1 && found[0].contains(what), "{what}: {found:?}");
+    }
+    let larger = changed(&|s| s.bindings = &[Binding::Uniform(Shape::Struct(12, &[])), Binding::Read, Binding::Write]);
+    assert!(larger[0].contains("it has 8 bytes, Rust's 12"), "{larger:?}");
+    let [params, ..] = *good.bindings else { unreachable!("it has three") };
+    let bound = |rest: &[Binding]| [&[params], rest].concat().leak();
+    assert_eq!(changed(&|s| s.bindings = bound(&[Binding::Write, Binding::Write])).len(), 1);
+    assert_eq!(changed(&|s| s.bindings = bound(&[Binding::Read])).len(), 1);
+    assert_eq!(changed(&|s| s.source = "fn other() {}").len(), 2);
+    assert_eq!(changed(&|s| s.source = "not a shader").len(), 1);
+    let five = &[Binding::Read, Binding::Read, Binding::Read, Binding::Read, Binding::Write];
+    assert_eq!(changed(&|s| s.bindings = five).len(), 2);
+}

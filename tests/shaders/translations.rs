@@ -1,0 +1,150 @@
+//! Every shader in every language that a driver may be given it in, by way of naga.
+//!
+//! Where `spirv-val` and `glslangValidator` are installed, they check what they know of it: Debian's packages
+//! spirv-tools and glslang-tools, which test.sh asks for, since the tests that miss them pass. MSL and HLSL have no checker
+//! here.
+
+use std::{
+    fs, iter,
+    num::NonZero,
+    path::Path,
+    process::{Command, Stdio},
+    sync::Mutex,
+    thread,
+};
+
+use hsad::gpu::Stage;
+use naga::{
+    Module, ShaderStage,
+    back::{glsl, hlsl, msl, spv},
+    proc::BoundsCheckPolicies,
+    valid::ModuleInfo,
+};
+
+use crate::valid;
+
+/// A language, and how a module becomes a text or binary of it.
+struct Target {
+    name: &'static str,
+    translate: fn(&Module, &ModuleInfo) -> Result<Vec<u8>, String>,
+    /// What the results are checked with, where it is installed: a program, its arguments, a file's extension.
+    checker: Option<(&'static str, &'static [&'static str], &'static str)>,
+}
+
+const TARGETS: [Target; 5] = [
+    Target {
+        name: "SPIR-V 1.0, for Vulkan",
+        translate: spirv,
+        checker: Some(("spirv-val", &["--target-env", "vulkan1.1"], "spv")),
+    },
+    Target { name: "MSL 2.1, for Metal", translate: metal, checker: None },
+    Target { name: "HLSL of shader model 5.1, for DirectX 12", translate: directx, checker: None },
+    Target {
+        // With 4.30 naga chooses between integers in a way that needs an extension.
+        name: "GLSL 4.50, for OpenGL",
+        translate: |module, info| opengl(module, info, glsl::Version::Desktop(450)),
+        checker: Some(("glslangValidator", &["-S", "comp"], "comp")),
+    },
+    Target {
+        name: "GLSL ES 3.10, for OpenGL ES",
+        translate: |module, info| opengl(module, info, glsl::Version::new_gles(310)),
+        checker: Some(("glslangValidator", &["-S", "comp"], "comp")),
+    },
+];
+
+fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
+    let entry = spv::PipelineOptions { shader_stage: ShaderStage::Compute, entry_point: "main".into() };
+    let words = spv::write_vec(module, info, &spv::Options::default(), Some(&entry)).map_err(|e| e.to_string())?;
+    Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
+}
+
+fn metal(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
+    let options = msl::Options { lang_version: (2, 1), ..Default::default() };
+    let (text, translated) =
+        msl::write_string(module, info, &options, &msl::PipelineOptions::default()).map_err(|e| e.to_string())?;
+    // What cannot be bound is told for each entry point.
+    translated.entry_point_names.into_iter().try_for_each(|name| name.map(|_| ())).map_err(|e| e.to_string())?;
+    Ok(text.into_bytes())
+}
+
+fn directx(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
+    let (options, entry) = (hlsl::Options::default(), hlsl::PipelineOptions::default());
+    let mut text = String::new();
+    let written = hlsl::Writer::new(&mut text, &options, &entry).write(module, info, None);
+    let written = written.map_err(|e| e.to_string())?;
+    written.entry_point_names.into_iter().try_for_each(|name| name.map(|_| ())).map_err(|e| e.to_string())?;
+    Ok(text.into_bytes())
+}
+
+fn opengl(module: &Module, info: &ModuleInfo, version: glsl::Version) -> Result<Vec<u8>, String> {
+    let options = glsl::Options { version, ..Default::default() };
+    let entry =
+        glsl::PipelineOptions { shader_stage: ShaderStage::Compute, entry_point: "main".into(), multiview: None };
+    let mut text = String::new();
+    glsl::Writer::new(&mut text, module, info, &options, &entry, BoundsCheckPolicies::default())
+        .and_then(|mut writer| writer.write())
+        .map_err(|e| e.to_string())?;
+    Ok(text.into_bytes())
+}
+
+/// What a target has to say against a module; nothing where it can be translated.
+fn objection((module, info): &(Module, ModuleInfo), target: &Target, folder: &Path) -> Option<String> {
+    let translated = match (target.translate)(module, info) {
+        Err(error) => return Some(error),
+        Ok(translated) if translated.is_empty() => return Some("nothing came out".into()),
+        Ok(translated) => translated,
+    };
+    let (program, arguments, extension) = target.checker.filter(|(program, ..)| is_installed(program))?;
+    let file = folder.join("module").with_extension(extension);
+    fs::write(&file, translated).expect("a file in a temporary folder");
+    let output = Command::new(program).args(arguments).arg(&file).output().expect("it is installed");
+    (!output.status.success()).then(|| {
+        let said = [output.stdout, output.stderr].concat();
+        format!("{program}: {}", String::from_utf8_lossy(&said))
+    })
+}
+
+fn is_installed(program: &str) -> bool {
+    let quiet = || Stdio::null();
+    Command::new(program).arg("--version").stdout(quiet()).stderr(quiet()).status().is_ok()
+}
+
+#[test]
+fn every_shader_can_be_told_in_every_language() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let stages = hsad::stages();
+    let check = |(index, stage): (usize, &Stage)| {
+        let module = valid(stage).expect("checked by another test");
+        let folder = folder.path().join(index.to_string());
+        fs::create_dir(&folder).expect("a folder in a temporary folder");
+        for target in &TARGETS {
+            let objection = objection(&module, target, &folder);
+            assert!(objection.is_none(), "{} in {}: {}", stage.name, target.name, objection.unwrap_or_default());
+        }
+    };
+    // Large modules take seconds, so all processors share them.
+    let left = Mutex::new(stages.iter().enumerate());
+    let next = || left.lock().expect("no panic while it is held").next();
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, NonZero::get) {
+            scope.spawn(|| iter::from_fn(next).for_each(check));
+        }
+    });
+}
+
+/// The check itself must be able to fail.
+#[test]
+fn what_a_language_lacks_is_seen() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let module = valid(&hsad::luma::kernels::luma::stage()).expect("checked by another test");
+    let refuse = |target: &Target| Target { translate: |_, _| Err("no such thing".into()), ..*target };
+    for target in &TARGETS {
+        assert_eq!(objection(&module, target, folder.path()), None);
+        assert_eq!(objection(&module, &refuse(target), folder.path()).as_deref(), Some("no such thing"));
+        let nothing = Target { translate: |_, _| Ok(Vec::new()), ..*target };
+        assert_eq!(objection(&module, &nothing, folder.path()).as_deref(), Some("nothing came out"));
+        let garbage = Target { translate: |_, _| Ok(b"garbage".to_vec()), ..*target };
+        let checked = target.checker.is_some_and(|(program, ..)| is_installed(program));
+        assert_eq!(objection(&module, &garbage, folder.path()).is_some(), checked, "{}", target.name);
+    }
+}

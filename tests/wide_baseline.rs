@@ -1,0 +1,62 @@
+//! Points of one view found in another that is turned, blurred, noisy or hidden in part, on a real pair with truth.
+#![cfg(feature = "cli")]
+
+use std::path::Path;
+
+use glam::DAffine2;
+use hsad::{
+    dense::View,
+    eval::{
+        Judged, PointMatch, Truth,
+        conditions::{Changed, Condition},
+        curves::accuracy_of_first,
+        scene::SceneFiles,
+    },
+    gpu::DeviceChoice,
+    pair::Backend,
+    wide_baseline::{WideBaselineConfig, match_views},
+};
+
+/// 97 % of the 100 most confident, the accuracy that the paper claims.
+#[test]
+fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
+    let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
+    for (name, conditions, least) in [
+        ("Art", &["gain=0.6", "rotation=45", "scale=0.8", "blur=2", "noise=10", "occlusion=0.3"][..], 100),
+        // A sixth of the view is left, and what is found there tells nothing about the rows of the rest.
+        ("Art", &["occlusion=0.6"], 25),
+        ("Cones", &["blur=3", "clutter=0.5"], 100),
+    ] {
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo")).join(name);
+        if !folder.is_dir() {
+            eprintln!("skipped: {} is absent", folder.display());
+            continue;
+        }
+        let scene = SceneFiles::find(&folder).unwrap()[0].read(View::Left).unwrap();
+        let known = Truth::stereo(scene.truth, scene.non_occluded.as_ref()).unwrap();
+        for condition in conditions {
+            let changed = Changed::by(&[condition.parse::<Condition>().unwrap()], &scene.right, 1);
+            let truth = known.clone().changed(&changed);
+            let views = (&scene.left.luma(), &changed.picture.luma());
+            let found = match_views(&backend, views.0, views.1, &WideBaselineConfig::default()).unwrap();
+            let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
+            let right = Judged::new(&matches, &truth, 1.5).unwrap().right;
+            let accuracy = accuracy_of_first(&right, 100);
+            assert!(right.len() >= least && accuracy >= 0.97, "{name}, {condition}: {accuracy} of {}", right.len());
+        }
+    }
+}
+
+/// One detector sees all pictures of a size; what it saw before leaves no trace.
+#[test]
+fn points_are_those_of_a_detector_of_their_own() {
+    let scene = SceneFiles::find(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/planes"))).unwrap();
+    let scene = scene[0].read(View::Left).unwrap();
+    let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
+    let (config, views) = (WideBaselineConfig::default(), [scene.left.luma(), scene.right.luma()]);
+    let found = match_views(&backend, &views[0], &views[1], &config).unwrap();
+    assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
+    for (features, view) in found.features.iter().zip(&views) {
+        assert!(features.len() > 500 && *features == backend.features(view, &config.features).unwrap());
+    }
+}
