@@ -6,6 +6,7 @@ use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
+    backend::Backend,
     config::{Config, Method, Preset},
     dense::{Aggregation, Interpolation, OtherView, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},
@@ -14,7 +15,6 @@ use hsad::{
     io::Calibration,
     kamencay::KamencayParameters,
     matching::MatchConfig,
-    pair::Backend,
     verify::self_test,
 };
 

@@ -1,12 +1,12 @@
 //! `report.json`: everything about a run, for programs.
 
 use hsad::{
+    backend::Backend,
     config::{Config, Method},
     dense::{Aggregation, Difference, Interpolation, OtherView, Paths, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     kamencay::KamencayParameters,
-    pair::Backend,
     pipeline::RangeSource,
     seeding::{Brightness, Rectification, Verdict},
 };

@@ -67,10 +67,10 @@ impl Trial for PadTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, params) = (bench.device(), self.params);
+        let (gpu, params) = (bench.gpu, self.params);
         let plane = bench.output(params.offset + params.rows * params.stride)?;
-        let brightness = uniform_buffer(device, "brightness", &self.brightness);
-        let pad = Pad::new(device).prepare(device, params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
+        let brightness = uniform_buffer(gpu, "brightness", &self.brightness);
+        let pad = Pad::new(gpu).prepare(params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
         bench.run(|encoder| pad.record(encoder));
         Ok(vec![Array::exact("padded plane", bench.download::<u32>(&plane)?)])
     }
@@ -102,7 +102,7 @@ pub struct BlockMatchTrial {
 
 impl BlockMatchTrial {
     fn matched(&self, bench: &Bench<'_>, wanted: Wanted) -> Result<Vec<u32>> {
-        let (device, (width, height)) = (bench.device(), self.left.size());
+        let (gpu, (width, height)) = (bench.gpu, self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
         let [left, right] = layout.padding();
@@ -111,7 +111,7 @@ impl BlockMatchTrial {
         planes.extend(&right_plane[right.offset as usize..]);
         let texture = bench.upload_words(&planes)?;
         let ranges = match &self.ranges {
-            None => Ranges::whole(device, self.config.searched(width)?),
+            None => Ranges::whole(gpu, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
         let others = match (self.config.consistency, wanted) {
@@ -127,8 +127,8 @@ impl BlockMatchTrial {
         });
         let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
         let matches = bench.output(width * height + confidences)?;
-        let kernel = BlockMatch::new(device, &self.config, self.view, wanted, self.tile);
-        let dispatch = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
+        let kernel = BlockMatch::new(gpu, &self.config, self.view, wanted, self.tile);
+        let dispatch = kernel.prepare(&layout, &texture, &ranges, others, (&matches, width * height));
         bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)
     }

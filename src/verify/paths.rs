@@ -60,8 +60,8 @@ impl Trial for CensusTrial {
         let size = self.0.size();
         let plane = pad(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
         let transformed = bench.output(size.0 * size.1)?;
-        let kernel = Census::new(bench.device());
-        let dispatch = kernel.prepare(bench.device(), size, &bench.upload(&plane)?, &transformed);
+        let kernel = Census::new(bench.gpu);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
     }
@@ -103,10 +103,10 @@ impl Trial for BoxMeanTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, rows)) = (bench.device(), self.size);
+        let (gpu, (width, rows)) = (bench.gpu, self.size);
         let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
         let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
-        let dispatches = BoxMean::new(device, self.side).prepare(device, &band, 0..rows, &costs, &means);
+        let dispatches = BoxMean::new(gpu, self.side).prepare(&band, 0..rows, &costs, &means);
         bench.run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
         Ok(vec![Array::exact("means", bytes(&bench.download::<u32>(&costs)?))])
     }
@@ -160,8 +160,8 @@ impl Trial for CostTrial {
             VolumeBand { width: reference.width(), first_row: rows.start, rows: rows.len() as u32, range: *range };
         let volume = bench.output(band.row_words() * band.rows)?;
         let views = [&bench.upload(reference.data())?, &bench.upload(other.data())?];
-        let kernel = CostVolume::new(bench.device(), &self.cost, self.view);
-        let dispatch = kernel.prepare(bench.device(), &band, views, &volume);
+        let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
+        let dispatch = kernel.prepare(&band, views, &volume);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
     }
@@ -225,7 +225,7 @@ impl Trial for PathTrial {
         let Self { reference, direction, .. } = self;
         let (width, height) = reference.size();
         let count = self.costs.len() as u32 / (width * height);
-        let kernel = Path::new(bench.device(), &self.penalties, count / 4);
+        let kernel = Path::new(bench.gpu, &self.penalties, count / 4);
         let view = bench.upload(reference.data())?;
         let costs = words(&self.costs);
         let mut path = vec![0; costs.len()];
@@ -248,8 +248,7 @@ impl Trial for PathTrial {
             let band_words = row * first_row as usize..row * (first_row + rows) as usize;
             let costs = bench.upload(&costs[band_words.clone()])?;
             let goes_on = carried.is_some() && direction.dy != 0;
-            let dispatch =
-                kernel.prepare(bench.device(), &band, *direction, &view, &costs, &paths, row as u32, goes_on);
+            let dispatch = kernel.prepare(&band, *direction, &view, &costs, &paths, row as u32, goes_on);
             bench.run(|encoder| dispatch.record(encoder));
             let followed = bench.download::<u32>(&paths)?;
             path[band_words].copy_from_slice(&followed[row..row * (rows as usize + 1)]);
@@ -329,7 +328,7 @@ impl Trial for SelectTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, rows)) = (bench.device(), self.reference.size());
+        let (gpu, (width, rows)) = (bench.gpu, self.reference.size());
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
         let (pixels, confidence_words) = (width * rows, width.div_ceil(4) * rows);
         let places = Places {
@@ -345,12 +344,12 @@ impl Trial for SelectTrial {
             keys: true,
             uniqueness: self.uniqueness,
         };
-        let kernel = Select::new(device, &self.penalties, band.words(), selection);
+        let kernel = Select::new(gpu, &self.penalties, band.words(), selection);
         // The kernel expects zeros here.
         let matches = bench.upload(&vec![0_u32; (2 * pixels + confidence_words) as usize])?;
         let (reference, costs) = (bench.upload(self.reference.data())?, bench.upload(&words(&self.costs))?);
         let volumes = bench.upload(&words(&self.stored.concat()))?;
-        let dispatch = kernel.prepare(device, &band, self.last, places, &reference, &costs, &volumes, &matches);
+        let dispatch = kernel.prepare(&band, self.last, places, &reference, &costs, &volumes, &matches);
         bench.run(|encoder| dispatch.record(encoder));
         let matches = bench.download::<u32>(&matches)?;
         let (disparities, rest) = matches.split_at(pixels as usize);
@@ -417,9 +416,9 @@ impl Trial for ClaimTrial {
         // The kernel expects zeros here.
         let claims = bench.upload(&vec![0_u32; (width * rows) as usize])?;
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
-        let kernel = Claim::new(bench.device());
+        let kernel = Claim::new(bench.gpu);
         let matches = bench.upload(&matches)?;
-        let dispatch = kernel.prepare(bench.device(), &band, self.view, self.key_offset, &matches, &claims);
+        let dispatch = kernel.prepare(&band, self.view, self.key_offset, &matches, &claims);
         bench.run(|encoder| dispatch.record(encoder));
         let disparity = |claim: u32| match claim {
             0 => NONE,

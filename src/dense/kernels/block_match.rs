@@ -9,10 +9,7 @@ use crate::{
     dense::config::{DenseConfig, View},
     disparity::{DisparityRange, SCALE},
     error::Result,
-    gpu::{
-        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, is_lavapipe,
-        shader_struct, uniform_buffer,
-    },
+    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
 };
 
 /// The pixels that one thread matches, and the tiles that a workgroup does.
@@ -42,8 +39,8 @@ impl Tile {
     pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
 
     /// The tile for `device`.
-    pub fn of(device: &wgpu::Device) -> Self {
-        if is_lavapipe(device) { Self::SOFTWARE } else { Self::HARDWARE }
+    pub fn of(gpu: &Gpu) -> Self {
+        if gpu.is_lavapipe() { Self::SOFTWARE } else { Self::HARDWARE }
     }
 }
 
@@ -67,6 +64,7 @@ shader_struct! {
 }
 
 /// The block-matching kernel for one view, one window and one interpolation.
+#[derive(Debug)]
 pub struct BlockMatch {
     kernel: Kernel,
     view: View,
@@ -125,8 +123,8 @@ impl BlockMatch {
     }
 
     /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
-    pub fn new(device: &Context<'_>, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
-        let kernel = Kernel::new(device, &Self::stage(config, view, wanted, tile));
+    pub fn new(gpu: &Gpu, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(config, view, wanted, tile));
         let grain = if config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
         Self { kernel, view, uniqueness: config.uniqueness, grain, tile }
     }
@@ -137,7 +135,6 @@ impl BlockMatch {
     /// contradict is none.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
@@ -163,11 +160,9 @@ impl BlockMatch {
         };
         let Tile { quads, height, across, down } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
-        let params = uniform_buffer(device, "block_match", &params);
         // Where there are none, something has to be bound.
         let others = others.map_or(planes, |others| others.words);
-        let bound: [&dyn Bindable; 5] = [&params, &planes.view, &ranges.buffer, &others.view, matches];
-        self.kernel.dispatch(device, &bound, groups)
+        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &others.view, matches], groups)
     }
 }
 

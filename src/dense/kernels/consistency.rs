@@ -3,7 +3,7 @@
 use crate::{
     dense::config::{SUM_INDEX_BITS, View},
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
@@ -29,6 +29,7 @@ pub enum Others {
 }
 
 /// The left-right consistency kernel.
+#[derive(Debug)]
 pub struct Consistency {
     kernel: Kernel,
     others: Others,
@@ -57,8 +58,8 @@ impl Consistency {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, others: Others) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(others)), others }
+    pub fn new(gpu: &Gpu, others: Others) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(others)), others }
     }
 
     /// Takes away from `matches` of `view` (`width` x `rows` disparities, and from word
@@ -67,7 +68,6 @@ impl Consistency {
     #[expect(clippy::too_many_arguments, reason = "four sizes and two buffers, each of one kind")]
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, rows): (u32, u32),
         confidence_offset: u32,
         view: View,
@@ -81,8 +81,7 @@ impl Consistency {
         };
         let direction = view.direction();
         let params = Params { width, rows, direction, max_difference, confidence_offset, min_disparity };
-        let params = uniform_buffer(device, "consistency", &params);
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, others, matches], groups)
+        self.kernel.dispatch(&params, &[others, matches], groups)
     }
 }

@@ -15,10 +15,10 @@ mod map_texture;
 mod pad;
 mod path;
 mod residual;
+mod rows_per_thread;
 mod select;
 mod support;
 mod volume_band;
-mod walk;
 mod weighted_median;
 
 pub use answer::Wanted;
@@ -37,10 +37,10 @@ pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
 pub use path::Path;
 pub use residual::{MAX_RESIDUAL, Residual, Views};
+pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use select::{Places, Select, Selection};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use volume_band::VolumeBand;
-pub use walk::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use weighted_median::WeightedMedian;
 
 use super::config::{Aggregation, Cost, DenseConfig, Difference, Interpolation, Penalties, Refinement, Search, View};

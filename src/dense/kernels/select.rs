@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     dense::config::{Direction, Interpolation, Penalties, SUM_INDEX_BITS},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage},
 };
 
 /// What is selected, and from what.
@@ -39,6 +39,7 @@ pub struct Places {
 }
 
 /// The kernel that follows the last path, sums the costs of all of them up, and decides.
+#[derive(Debug)]
 pub struct Select {
     kernel: Kernel,
     selection: Selection,
@@ -64,8 +65,8 @@ impl Select {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, penalties: &Penalties, words: u32, selection: Selection) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(penalties, words, selection)), selection }
+    pub fn new(gpu: &Gpu, penalties: &Penalties, words: u32, selection: Selection) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(penalties, words, selection)), selection }
     }
 
     /// Follows the last path, in `direction`, through a band of `costs`, as [`super::Path::prepare`] does, and decides. Its
@@ -74,7 +75,6 @@ impl Select {
     #[expect(clippy::too_many_arguments, reason = "four buffers, each of one kind")]
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         band: &VolumeBand,
         direction: Direction,
         places: Places,
@@ -92,7 +92,6 @@ impl Select {
             key_offset,
             ..Params::new(band, direction, 0, false)
         };
-        let uniforms = uniform_buffer(device, "select", &params);
-        self.kernel.dispatch(device, &[&uniforms, reference, costs, paths, matches], params.groups())
+        self.kernel.dispatch(&params, &[reference, costs, paths, matches], params.groups())
     }
 }

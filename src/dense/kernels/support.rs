@@ -1,9 +1,9 @@
 //! Disparities that their neighbours share. `shaders/dense/support.wgsl`.
 
-use super::walk::rows_a_thread;
+use super::rows_per_thread::rows_per_thread;
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -26,6 +26,7 @@ shader_struct! {
 }
 
 /// The kernel that takes speckles away.
+#[derive(Debug)]
 pub struct Support {
     kernel: Kernel,
     rows: u32,
@@ -56,9 +57,9 @@ impl Support {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, least: u32) -> Self {
-        let rows = rows_a_thread(device);
-        Self { kernel: Kernel::new(device, &Self::stage(least, rows)), rows }
+    pub fn new(gpu: &Gpu, least: u32) -> Self {
+        let rows = rows_per_thread(gpu);
+        Self { kernel: Kernel::new(gpu, &Self::stage(least, rows)), rows }
     }
 
     /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
@@ -66,14 +67,13 @@ impl Support {
     /// [`super::Residual`].
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         confidence_offset: u32,
         [matches, residuals]: [&wgpu::Buffer; 2],
         supported: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
+        let params = Params { width, height, confidence_offset };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, matches, residuals, supported], groups)
+        self.kernel.dispatch(&params, &[matches, residuals, supported], groups)
     }
 }
