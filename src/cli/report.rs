@@ -3,7 +3,7 @@
 use hsad::{
     backend::Backend,
     config::{Config, Method},
-    dense::{Aggregation, Difference, Interpolation, OtherView, Paths, Refinement, Search, SemiGlobal, View},
+    dense::{Aggregation, CrossCheck, Difference, Interpolation, Paths, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     kamencay::KamencayParameters,
@@ -167,7 +167,7 @@ fn part(Difference { weight, limit }: Difference) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }) = aggregation else {
+    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }) = aggregation else {
         return "window".into();
     };
     // Where there are no paths, nothing is penalised.
@@ -175,7 +175,7 @@ fn aggregation_of(aggregation: &Aggregation) -> Value {
     json!({
         "cost_window": window,
         "paths": paths.directions().len(),
-        "other_view": match other_view { OtherView::Searched => "searched", OtherView::Claimed => "claimed" },
+        "other_view": match cross_check { CrossCheck::Searched => "searched", CrossCheck::Claimed => "claimed" },
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),

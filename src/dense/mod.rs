@@ -17,7 +17,7 @@ mod plan;
 mod readback;
 
 pub use config::{
-    Aggregation, Brightness, Cost, DenseConfig, Difference, Direction, Interpolation, MAX_COST, Median, OtherView,
+    Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Difference, Direction, Interpolation, MAX_COST, Median,
     Paths, Penalties, Refinement, Search, SemiGlobal, View, WEIGHT_BITS,
 };
 pub use inputs::Inputs;

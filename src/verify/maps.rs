@@ -12,8 +12,8 @@ use crate::{
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            Consistency, Fill, MAX_RESIDUAL, MapRows, MapTexel, MapTexture, Others, Residual, Support, Views,
-            WeightedMedian,
+            CheckedAgainst, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture,
+            Residual, Support, Views, WeightedMedian,
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -112,12 +112,14 @@ impl Trial for ConsistencyTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.dense.disparity.size());
-        let pixels = size.0 * size.1;
+        let layout = MapLayout { width: size.0, rows: size.1 };
         let (others, matches) = (bench.upload(&self.words())?, bench.upload(&matches(&self.dense))?);
-        let kernel = Consistency::new(gpu, self.claims_from.map_or(Others::Disparities, Others::Claims));
-        let dispatch = kernel.prepare(size, pixels, self.view, self.max_difference, &others, &matches);
+        let kernel =
+            Consistency::new(gpu, self.claims_from.map_or(CheckedAgainst::Disparities, CheckedAgainst::Claims));
+        let dispatch =
+            kernel.prepare(MapBuffer { buffer: &matches, layout }, size.1, self.view, self.max_difference, &others);
         bench.run(|encoder| dispatch.record(encoder));
-        Ok(arrays(&bench.download(&matches)?, pixels as usize))
+        Ok(arrays(&bench.download(&matches)?, layout.pixels() as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -222,13 +224,13 @@ impl Trial for SupportTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.dense.disparity.size());
-        let pixels = size.0 * size.1;
+        let layout = MapLayout { width: size.0, rows: size.1 };
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
         let residuals = bench.upload_luma(&self.residuals)?;
-        let dispatch = Support::new(gpu, self.least).prepare(size, pixels, [&from, &residuals], &to);
+        let dispatch = Support::new(gpu, self.least).prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
         bench.run(|encoder| dispatch.record(encoder));
-        Ok(arrays(&bench.download(&to)?, pixels as usize))
+        Ok(arrays(&bench.download(&to)?, layout.pixels() as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {

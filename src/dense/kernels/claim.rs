@@ -1,6 +1,6 @@
 //! What the other view sees, told from one view's winners. `shaders/dense/claim.wgsl`.
 
-use super::volume_band::VolumeBand;
+use super::{map_buffer::MapBuffer, volume_band::VolumeBand};
 use crate::{
     dense::config::{SUM_INDEX_BITS, View},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -42,24 +42,17 @@ impl Claim {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Lets the pixels of a band of `view`, whose keys stand from word `key_offset` of `matches` on, claim
-    /// their partners in `claims`, which are 0 before.
-    pub fn prepare(
-        &self,
-        band: &VolumeBand,
-        view: View,
-        key_offset: u32,
-        matches: &wgpu::Buffer,
-        claims: &wgpu::Buffer,
-    ) -> Dispatch {
+    /// Lets the pixels of a band of `view`, whose keys stand behind `matches`, claim their partners in `claims`, which are 0
+    /// before.
+    pub fn prepare(&self, band: &VolumeBand, view: View, matches: MapBuffer<'_>, claims: &wgpu::Buffer) -> Dispatch {
         let params = Params {
             width: band.width,
             rows: band.rows,
             min_disparity: band.range.min,
             direction: view.direction(),
-            key_offset,
+            key_offset: matches.layout.key_offset(),
         };
         let groups = [band.width.div_ceil(WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(&params, &[matches, claims], groups)
+        self.0.dispatch(&params, &[matches.buffer, claims], groups)
     }
 }

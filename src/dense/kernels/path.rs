@@ -1,6 +1,6 @@
 //! A path of semi-global matching. `shaders/dense/path.wgsl`.
 
-use super::volume_band::VolumeBand;
+use super::{line_buffers::LineBuffers, volume_band::VolumeBand};
 use crate::{
     dense::config::{Direction, Penalties},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -89,16 +89,13 @@ impl Path {
         Self(Kernel::new(gpu, &Self::stage(penalties, words)))
     }
 
-    /// Follows all lines of a direction through a band of `costs`. The path's costs stand from word `start` of `paths` on;
-    /// with `goes_on` the row before it in the path's direction holds where lines come from.
-    #[expect(clippy::too_many_arguments, reason = "three buffers, each of one kind, and places in them")]
+    /// Follows all lines of a direction through a band. The path's costs stand from word `start` of the paths on; with
+    /// `goes_on` the row before it in the path's direction holds where lines come from.
     pub fn prepare(
         &self,
         band: &VolumeBand,
         direction: Direction,
-        reference: &wgpu::Buffer,
-        costs: &wgpu::Buffer,
-        paths: &wgpu::Buffer,
+        LineBuffers { reference, costs, paths }: LineBuffers<'_>,
         start: u32,
         goes_on: bool,
     ) -> Dispatch {

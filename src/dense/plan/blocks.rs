@@ -4,11 +4,16 @@
 //! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band
 //! finds the ranges of its cells and the other view's winners first, at half the size: see [`super::coarse`].
 
-use super::{BandLimits, Plan, coarse_to_fine::Coarse, match_words, other_view::OtherView, refine::plan_refinement};
+use super::{
+    BandLimits, Plan,
+    coarse_to_fine::Coarse,
+    other_winners::OtherWinners,
+    refine::{Unrefined, plan_refinement},
+};
 use crate::{
     dense::{
         config::{DenseConfig, Search, View},
-        kernels::{BlockMatch, CELL, Layout, Pad, Ranges, Tile, Views, Wanted},
+        kernels::{BlockMatch, CELL, Layout, MapBuffer, MapLayout, Pad, Ranges, ResultKind, Tile, Views},
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
@@ -36,16 +41,17 @@ pub(in crate::dense) fn plan(
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
     let view = config.reference;
     let pad = Pad::new(gpu);
-    let block_match = BlockMatch::new(gpu, config, view, Wanted::Matches, tile);
+    let block_match = BlockMatch::new(gpu, config, view, ResultKind::Matches, tile);
 
     let mut plan = Plan::new(gpu, config, height.div_ceil(band_rows) as usize);
     let whole = config.refinement.map(|_| plan.collect(size)).transpose()?;
-    let (match_words, confidence_offset) = match_words(width, band_rows);
+    let map = MapLayout { width, rows: band_rows };
     let planes = plan.words("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
-    let matches = plan.buffer("matches", match_words)?;
+    let matches = plan.buffer("matches", map.words())?;
+    let matches = MapBuffer { buffer: &matches, layout: map };
     let whole_range = Ranges::whole(gpu, config.searched(width)?);
-    let (coarse, other_view) = match search {
-        Search::Whole => (None, OtherView::new(gpu, &mut plan, config, confidence_offset.into())?),
+    let (coarse, other_winners) = match search {
+        Search::Whole => (None, OtherWinners::new(gpu, &mut plan, config, map)?),
         Search::CoarseToFine => (Some(Coarse::new(gpu, &mut plan, size, config, [left, right], band_rows)?), None),
     };
 
@@ -60,17 +66,17 @@ pub(in crate::dense) fn plan(
             plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
-        let others = match &other_view {
+        let others = match &other_winners {
             None => others,
             Some(view) => Some(view.plan(&mut plan, (&layout, &planes.1), ranges, 0)),
         };
-        plan.run(block_match.prepare(&layout, &planes.1, ranges, others, (&matches, confidence_offset)));
-        plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
+        plan.run(block_match.prepare(&layout, &planes.1, ranges, others, matches));
+        plan.hand_out(matches, first_row, rows);
     }
-    if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
+    if let (Some(map), Some(refinement)) = (&whole, &config.refinement) {
         let views = Views { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
-        plan_refinement(gpu, &mut plan, size, refinement, range, views, &whole, limits)?;
+        plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }
@@ -92,9 +98,10 @@ fn band_rows_within(
     let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
         let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tile)?.words());
-        let matches = 4 * match_words(width, rows).0;
+        let map = MapLayout { width, rows };
+        let matches = 4 * map.words();
         // Those of the other view, which stand in a texture.
-        let winners = if config.consistency.is_some() { 4 * in_rows(match_words(width, rows).1.into()) } else { 0 };
+        let winners = if config.consistency.is_some() { 4 * in_rows(map.pixels().into()) } else { 0 };
         let over = [(planes, limit.min(texture_limit)), (matches, limit), (winners, limit.min(texture_limit))]
             .into_iter()
             .find(|(needed, limit)| needed > limit);

@@ -3,12 +3,13 @@
 //! halving, once -> and in each band of rows: padding -> the other view's winners -> block matching of the reference view
 //! -> the ranges of its cells.
 
-use super::{Plan, match_words, other_view::OtherView};
+use super::{Plan, other_winners::OtherWinners};
 use crate::{
     dense::{
         config::{DenseConfig, View},
         kernels::{
-            BlockMatch, CELL, CellBand, CellRanges, Halve, Layout, OtherMap, Pad, REACH, Ranges, Tile, halved_config,
+            BlockMatch, CELL, CellBand, CellRanges, ConfirmingMap, Halve, Layout, MapBuffer, MapLayout, Pad, REACH,
+            Ranges, Tile, halved_config,
         },
     },
     disparity::DisparityRange,
@@ -28,7 +29,7 @@ pub(super) struct Coarse {
     halves: [wgpu::Buffer; 2],
     planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
-    other_view: Option<OtherView>,
+    other_winners: Option<OtherWinners>,
     /// What is searched at half the size, and in the cells.
     whole: Ranges,
     ranges: Ranges,
@@ -59,10 +60,10 @@ impl Coarse {
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.1);
         let tile = Tile::of(gpu);
         let planes = plan.words("padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
-        let map = plan.buffer("map of half the size", match_words(half_size.0, most_rows).0)?;
+        let map_layout = MapLayout { width: half_size.0, rows: most_rows };
+        let map = plan.buffer("map of half the size", map_layout.words())?;
         let words = CellBand::new(size, (0, band_rows), range).words();
         let ranges = Ranges::of_cells(plan.buffer("ranges of cells", words)?, width);
-        let most_pixels = u64::from(half_size.0) * u64::from(most_rows);
         Ok(Self {
             size,
             tile,
@@ -73,7 +74,7 @@ impl Coarse {
             halves: [left?, right?],
             planes,
             map,
-            other_view: OtherView::new(gpu, plan, config, most_pixels)?,
+            other_winners: OtherWinners::new(gpu, plan, config, map_layout)?,
             ranges,
         })
     }
@@ -86,7 +87,7 @@ impl Coarse {
         pad: &Pad,
         block_match: &BlockMatch,
         rows: (u32, u32),
-    ) -> Result<(&Ranges, Option<OtherMap<'_>>)> {
+    ) -> Result<(&Ranges, Option<ConfirmingMap<'_>>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, self.tile)?;
@@ -95,11 +96,11 @@ impl Coarse {
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
         let others = self
-            .other_view
+            .other_winners
             .as_ref()
-            .map(|other_view| other_view.plan(plan, (&layout, &self.planes.1), &self.whole, band.map_start));
-        let confidence_offset = match_words(band.map_width, band.map_rows).1;
-        plan.run(block_match.prepare(&layout, &self.planes.1, &self.whole, None, (&self.map, confidence_offset)));
+            .map(|other| other.plan(plan, (&layout, &self.planes.1), &self.whole, band.map_start));
+        let map = MapBuffer { buffer: &self.map, layout: MapLayout { width: band.map_width, rows: band.map_rows } };
+        plan.run(block_match.prepare(&layout, &self.planes.1, &self.whole, None, map));
         plan.run(self.cell_ranges.prepare(&band, &self.map, &self.ranges.buffer));
         Ok((&self.ranges, others))
     }

@@ -2,13 +2,14 @@
 
 pub(super) mod blocks;
 mod coarse_to_fine;
-mod other_view;
+mod other_winners;
 mod refine;
 pub(super) mod semi_global;
 mod word_copy;
 
 use super::{
     config::{Brightness, DenseConfig, View},
+    kernels::MapBuffer,
     outputs::Outputs,
 };
 use crate::{
@@ -44,7 +45,7 @@ pub(super) enum Step {
 /// The disparities and the confidences of a whole view, as the caller gets them. Only copied, since they may be
 /// more than a kernel can bind.
 #[derive(Clone, Debug)]
-pub(super) struct Whole {
+pub(super) struct WholeMap {
     pub(super) disparities: wgpu::Buffer,
     pub(super) confidences: wgpu::Buffer,
 }
@@ -55,7 +56,7 @@ pub(super) struct Plan {
     gpu: Gpu,
     steps: Vec<Step>,
     /// Where the answers of all bands come together, if something is done with them then.
-    whole: Option<Whole>,
+    whole: Option<WholeMap>,
     /// How the brightness of the left and of the right view is changed.
     brightness: [wgpu::Buffer; 2],
     pub(super) bytes: u64,
@@ -111,7 +112,7 @@ impl Plan {
     }
 
     /// Brings the answers of all bands together in one map of `size` before anyone gets them.
-    pub(super) fn collect(&mut self, (width, height): (u32, u32)) -> Result<Whole> {
+    pub(super) fn collect(&mut self, (width, height): (u32, u32)) -> Result<WholeMap> {
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
             self.bytes += bytes;
@@ -119,24 +120,26 @@ impl Plan {
         };
         let disparities = whole("all disparities", width)?;
         let confidences = whole("all confidences", width.div_ceil(4))?;
-        let whole = Whole { disparities, confidences };
+        let whole = WholeMap { disparities, confidences };
         self.whole = Some(whole.clone());
         Ok(whole)
     }
 
-    /// The answers for a band of rows that stand in `matches`, on their way to the caller or to the whole map.
-    pub(super) fn hand_out(&mut self, matches: &wgpu::Buffer, confidence_offset: u32, width: u32, rows: (u32, u32)) {
-        let (first_row, count) = (u64::from(rows.0), u64::from(rows.1));
+    /// Copies the map of `rows` rows of a band, which begins in `first_row`, to the caller or to the whole map.
+    pub(super) fn hand_out(&mut self, matches: MapBuffer<'_>, first_row: u32, rows: u32) {
+        let (width, buffer) = (matches.layout.width, matches.buffer);
         let [disparities, confidences] = match &self.whole {
             None => [CopyTarget::Disparities, CopyTarget::Confidences],
-            Some(Whole { disparities, confidences }) => {
+            Some(WholeMap { disparities, confidences }) => {
                 [disparities, confidences].map(|b| CopyTarget::Buffer(b.clone()))
             }
         };
-        let parts = [(disparities, 0, width), (confidences, confidence_offset, width.div_ceil(4))];
-        for (to, from_word, row) in parts {
-            let (from, from_word, row) = (matches.clone(), from_word.into(), u64::from(row));
-            self.copy(WordCopy { from, from_word, to, to_word: row * first_row, words: row * count });
+        let confidence_offset = u64::from(matches.layout.confidence_offset());
+        for (to, from_word, row_words) in
+            [(disparities, 0, u64::from(width)), (confidences, confidence_offset, u64::from(width.div_ceil(4)))]
+        {
+            let (to_word, words) = (row_words * u64::from(first_row), row_words * u64::from(rows));
+            self.copy(WordCopy { from: buffer.clone(), from_word, to, to_word, words });
         }
     }
 
@@ -178,10 +181,4 @@ impl Plan {
             }
         }
     }
-}
-
-/// Words of a band's disparities and confidences, and where among them the latter begin.
-pub(super) fn match_words(width: u32, rows: u32) -> (u64, u32) {
-    let pixels = width * rows;
-    (u64::from(pixels) + u64::from(rows) * u64::from(width.div_ceil(4)), pixels)
 }

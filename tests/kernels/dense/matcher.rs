@@ -6,7 +6,7 @@ use hsad::{
     config::Preset,
     cpu::dense::compute,
     dense::{
-        self, Aggregation, Brightness, Cost, DenseConfig, Destination, Difference, Matcher, OtherView, Paths,
+        self, Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Destination, Difference, Matcher, Paths,
         Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
     },
     disparity::{DisparityRange, coverage},
@@ -33,12 +33,12 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
 }
 
-fn semi_global(reference: View, window: u32, paths: Paths, other_view: OtherView) -> DenseConfig {
+fn semi_global(reference: View, window: u32, paths: Paths, cross_check: CrossCheck) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
-        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }),
+        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }),
         refinement: Some(Refinement {
             support: 9,
             medians_before: 1,
@@ -63,10 +63,10 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Right, config(View::Right)),
             (View::Left, coarse_to_fine(View::Left)),
             (View::Right, coarse_to_fine(View::Right)),
-            (View::Left, semi_global(View::Left, 1, Paths::Three, OtherView::Claimed)),
-            (View::Right, semi_global(View::Right, 1, Paths::Four, OtherView::Searched)),
-            (View::Left, semi_global(View::Left, 5, Paths::None, OtherView::Searched)),
-            (View::Right, semi_global(View::Right, 3, Paths::Three, OtherView::Claimed)),
+            (View::Left, semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed)),
+            (View::Right, semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched)),
+            (View::Left, semi_global(View::Left, 5, Paths::None, CrossCheck::Searched)),
+            (View::Right, semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed)),
         ] {
             let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
@@ -88,10 +88,10 @@ fn bands_leave_no_trace() {
     for config in [
         config(View::Left),
         coarse_to_fine(View::Left),
-        semi_global(View::Right, 1, Paths::Three, OtherView::Claimed),
-        semi_global(View::Left, 1, Paths::Eight, OtherView::Searched),
-        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
-        semi_global(View::Left, 3, Paths::Four, OtherView::Claimed),
+        semi_global(View::Right, 1, Paths::Three, CrossCheck::Claimed),
+        semi_global(View::Left, 1, Paths::Eight, CrossCheck::Searched),
+        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
+        semi_global(View::Left, 3, Paths::Four, CrossCheck::Claimed),
     ] {
         in_bands(&left, &right, &config);
     }
@@ -174,8 +174,8 @@ fn what_cannot_be_is_refused_by_both_alike() {
     let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
     let even = config(View::Left).with_window(8);
     let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
-    let even_costs = semi_global(View::Left, 4, Paths::None, OtherView::Claimed);
-    let wide_costs = semi_global(View::Left, 33, Paths::Three, OtherView::Claimed);
+    let even_costs = semi_global(View::Left, 4, Paths::None, CrossCheck::Claimed);
+    let wide_costs = semi_global(View::Left, 33, Paths::Three, CrossCheck::Claimed);
     for config in [far, even, unsure, even_costs, wide_costs] {
         let device = block_on(dense::compute(gpu(), &left, &right, &config)).unwrap_err();
         let twin = compute(&left, &right, &config).unwrap_err();
@@ -209,13 +209,13 @@ fn no_buffer_needs_to_hold_a_whole_view() {
     let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
     let small = with_limits(small);
     for config in [
-        semi_global(View::Left, 1, Paths::Three, OtherView::Claimed),
-        semi_global(View::Right, 1, Paths::Four, OtherView::Searched),
-        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
-        semi_global(View::Right, 3, Paths::Three, OtherView::Claimed),
+        semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed),
+        semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched),
+        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
+        semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed),
         coarse_to_fine(View::Right),
         DenseConfig {
-            refinement: semi_global(View::Left, 1, Paths::Four, OtherView::Claimed).refinement,
+            refinement: semi_global(View::Left, 1, Paths::Four, CrossCheck::Claimed).refinement,
             ..config(View::Left)
         },
     ] {

@@ -4,29 +4,31 @@ use super::Plan;
 use crate::{
     dense::{
         config::DenseConfig,
-        kernels::{BlockMatch, Layout, OtherMap, Ranges, Tile, Wanted},
+        kernels::{BlockMatch, ConfirmingMap, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile},
     },
     error::Result,
     gpu::{Gpu, WordTexture},
 };
 
 /// The kernel that finds them, and the memory that they stand in.
-pub(super) struct OtherView {
+pub(super) struct OtherWinners {
     find_winners: BlockMatch,
     winners: (wgpu::Buffer, WordTexture),
+    layout: MapLayout,
     max_difference: u32,
 }
 
-impl OtherView {
-    /// Allocates memory for the winners of so many pixels; none where `config` does not ask for them.
-    pub(super) fn new(gpu: &Gpu, plan: &mut Plan, config: &DenseConfig, pixels: u64) -> Result<Option<Self>> {
+impl OtherWinners {
+    /// Allocates memory for the winners of the pixels of a map; none where `config` does not ask for them.
+    pub(super) fn new(gpu: &Gpu, plan: &mut Plan, config: &DenseConfig, layout: MapLayout) -> Result<Option<Self>> {
         let Some(max_difference) = config.consistency else {
             return Ok(None);
         };
         let (view, tile) = (config.reference.other(), Tile::of(gpu));
         Ok(Some(Self {
-            find_winners: BlockMatch::new(gpu, config, view, Wanted::Winners, tile),
-            winners: plan.words("winners of the other view", pixels)?,
+            find_winners: BlockMatch::new(gpu, config, view, ResultKind::Winners, tile),
+            winners: plan.words("winners of the other view", layout.pixels().into())?,
+            layout,
             max_difference,
         }))
     }
@@ -38,10 +40,10 @@ impl OtherView {
         (layout, planes): (&Layout, &WordTexture),
         ranges: &Ranges,
         first_row: i32,
-    ) -> OtherMap<'_> {
+    ) -> ConfirmingMap<'_> {
         let (buffer, words) = &self.winners;
-        plan.run(self.find_winners.prepare(layout, planes, ranges, None, (buffer, 0)));
+        plan.run(self.find_winners.prepare(layout, planes, ranges, None, MapBuffer { buffer, layout: self.layout }));
         plan.fill_texture(buffer, words);
-        OtherMap { words, width: layout.width(), first_row, max_difference: self.max_difference }
+        ConfirmingMap { words, width: layout.width(), first_row, max_difference: self.max_difference }
     }
 }
