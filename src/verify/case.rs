@@ -1,41 +1,19 @@
 //! One kernel at one size with inputs that follow from a seed: run, compared, timed.
 
-use std::{
-    fmt,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use super::{
     array::{Array, Comparison},
     bench::Bench,
     dice::{Dice, Size},
-    goldens,
+    golden_hash,
+    trial::{Subject, Trial},
+    trials::subjects,
 };
 use crate::{
     error::{Error, Result},
     gpu::DeviceChoice,
 };
-
-/// A kernel, or several in a row, with everything they are given.
-pub trait Trial {
-    /// What is given beside arrays, for people.
-    fn parameters(&self) -> String;
-
-    /// The arrays that are given.
-    fn input(&self) -> Vec<Array>;
-
-    /// What the device leaves.
-    ///
-    /// # Errors
-    /// What the device says.
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>>;
-
-    /// What the CPU twins leave.
-    ///
-    /// # Errors
-    /// As the device should, too.
-    fn twin(&self) -> Result<Vec<Array>>;
-}
 
 /// Compares what a device leaves with what the twins leave.
 ///
@@ -50,33 +28,6 @@ pub fn compare(trial: &dyn Trial, bench: &Bench<'_>) -> Result<Vec<Comparison>> 
 fn comparisons(actual: &[Array], expected: &[Array]) -> Vec<Comparison> {
     assert_eq!(actual.len(), expected.len(), "device and twin are written to leave as many arrays");
     actual.iter().zip(expected).map(|(actual, expected)| Comparison::new(actual, expected)).collect()
-}
-
-/// What is verified: a kernel by its stage's name, or a whole half of the pipeline.
-pub struct Subject {
-    /// Its name.
-    pub name: &'static str,
-    /// Whether it is made of several kernels.
-    pub is_pipeline: bool,
-    draw: fn(Size, &mut Dice) -> Box<dyn Trial>,
-}
-
-impl fmt::Debug for Subject {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Subject").field("name", &self.name).finish_non_exhaustive()
-    }
-}
-
-impl Subject {
-    /// The kernel whose trials `draw` draws for a picture of a size.
-    pub const fn kernel(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
-        Self { name, is_pipeline: false, draw }
-    }
-
-    /// The same of several kernels in a row.
-    pub const fn pipeline(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
-        Self { name, is_pipeline: true, draw }
-    }
 }
 
 /// The longest side of a case's picture.
@@ -106,8 +57,8 @@ impl Case {
                 expected: format!("each side must be 1 to {MAX_SIDE} px"),
             });
         }
-        let subject = super::subjects().find(|subject| subject.name == name).ok_or_else(|| {
-            let names: Vec<_> = super::subjects().map(|subject| subject.name).collect();
+        let subject = subjects().find(|subject| subject.name == name).ok_or_else(|| {
+            let names: Vec<_> = subjects().map(|subject| subject.name).collect();
             Error::Parameter {
                 name: "only",
                 value: format!("'{name}'"),
@@ -166,7 +117,8 @@ impl Case {
             outcome.comparisons = comparisons(&outcome.actual, &outcome.expected);
             outcome.faults.extend(outcome.comparisons.iter().filter_map(|comparison| comparison.fault.clone()));
         }
-        if let (Some(golden), Some(hash)) = (goldens::stored(self), goldens::hash(&outcome.expected)) {
+        let golden = golden_hash::stored(&golden_hash::key(self.subject.name, self.size, self.seed));
+        if let (Some(golden), Some(hash)) = (golden, golden_hash::hash(&outcome.expected)) {
             outcome.golden = golden == hash;
             if !outcome.golden {
                 outcome.faults.push(format!("the twin's hash is {hash:016x}, and {golden:016x} is stored"));

@@ -6,22 +6,19 @@
 
 mod array;
 mod bench;
-pub mod blocks;
 mod case;
-pub mod cells;
 mod dice;
+mod golden_hash;
 pub mod goldens;
-pub mod integral;
-pub mod kamencay;
-pub mod maps;
-pub mod paths;
-pub mod pipelines;
-pub mod points;
+mod trial;
+pub mod trials;
 
 pub use array::{Array, Comparison, Outliers, Tolerance, Values};
 pub use bench::Bench;
-pub use case::{Case, MAX_SIDE, Outcome, Subject, Trial, compare};
+pub use case::{Case, MAX_SIDE, Outcome, compare};
 pub use dice::{Dice, Size, smooth_noise};
+pub use trial::{Subject, Trial};
+pub use trials::subjects;
 
 use crate::{
     error::{Error, Result},
@@ -44,13 +41,6 @@ pub enum Extent {
     Quick,
     /// Everything at all [`SIZES`].
     Full,
-}
-
-/// Everything that is verified, kernels first.
-pub fn subjects() -> impl Iterator<Item = &'static Subject> {
-    let groups =
-        [integral::SUBJECTS, points::SUBJECTS, blocks::SUBJECTS, cells::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];
-    groups.into_iter().chain([kamencay::SUBJECTS, pipelines::SUBJECTS]).flatten()
 }
 
 /// The cases that are verified if none is named.

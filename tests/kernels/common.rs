@@ -7,7 +7,7 @@ use hsad::{
     gpu::{DeviceChoice, Gpu},
     image::Luma,
     io::Picture,
-    verify::{Array, Bench, Comparison, Trial, Values, compare, points::NonmaxTrial},
+    verify::{Array, Bench, Comparison, Trial, Values, compare, trials::NonmaxTrial},
     wgpu,
 };
 

@@ -8,7 +8,7 @@ use hsad::{
     },
     disparity::{DisparityRange, SCALE},
     image::{Luma, Plane},
-    verify::blocks::BlockMatchTrial,
+    verify::trials::BlockMatchTrial,
 };
 
 use crate::common::*;

@@ -3,7 +3,7 @@
 use hsad::{
     disparity::{DisparityRange, NONE, SCALE},
     image::Plane,
-    verify::{Values, cells::CellRangesTrial},
+    verify::{Values, trials::CellRangesTrial},
 };
 
 use crate::common::*;

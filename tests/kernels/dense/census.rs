@@ -2,7 +2,7 @@
 
 use hsad::{
     image::Luma,
-    verify::{Values, paths::CensusTrial},
+    verify::{Values, trials::CensusTrial},
 };
 
 use crate::common::*;

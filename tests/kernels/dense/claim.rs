@@ -4,7 +4,7 @@ use hsad::{
     dense::View,
     disparity::{DisparityRange, NONE, SCALE},
     image::Plane,
-    verify::paths::ClaimTrial,
+    verify::trials::ClaimTrial,
 };
 
 use crate::common::*;

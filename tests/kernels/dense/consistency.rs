@@ -5,7 +5,7 @@ use hsad::{
     disparity::{DisparityMap, NONE, SCALE},
     image::Plane,
     luma::pack,
-    verify::maps::ConsistencyTrial,
+    verify::trials::ConsistencyTrial,
 };
 
 use crate::common::*;

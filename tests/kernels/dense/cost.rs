@@ -5,7 +5,7 @@ use hsad::{
     dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::Plane,
-    verify::{Values, paths::CostTrial},
+    verify::{Values, trials::CostTrial},
 };
 
 use crate::common::*;

@@ -3,7 +3,7 @@
 use hsad::{
     disparity::{DisparityRange, NONE},
     image::Plane,
-    verify::{Values, maps::FillTrial},
+    verify::{Values, trials::FillTrial},
 };
 
 use crate::common::*;

@@ -1,6 +1,6 @@
 //! Half the size.
 
-use hsad::{image::Luma, verify::cells::HalveTrial};
+use hsad::{image::Luma, verify::trials::HalveTrial};
 
 use crate::common::*;
 

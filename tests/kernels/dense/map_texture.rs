@@ -2,7 +2,7 @@ use hsad::{
     dense::kernels::MapTexel,
     disparity::{DisparityMap, NONE, NONE_IN_PIXELS, SCALE},
     image::Plane,
-    verify::maps::MapTextureTrial,
+    verify::trials::MapTextureTrial,
 };
 
 use crate::common::{SIZES, assert_twin, leaves, picture};

@@ -14,7 +14,7 @@ use hsad::{
     gpu::Gpu,
     image::Luma,
     luma::pack,
-    verify::pipelines::DenseTrial,
+    verify::trials::DenseTrial,
     wgpu,
 };
 

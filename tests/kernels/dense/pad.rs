@@ -3,7 +3,7 @@
 use hsad::{
     dense::{Brightness, kernels::PadParams},
     image::Luma,
-    verify::blocks::PadTrial,
+    verify::trials::PadTrial,
 };
 
 use crate::common::*;

@@ -3,7 +3,7 @@
 use hsad::{
     dense::{Direction, Penalties},
     image::Plane,
-    verify::paths::PathTrial,
+    verify::trials::PathTrial,
 };
 
 use crate::common::*;

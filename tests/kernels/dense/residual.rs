@@ -5,7 +5,7 @@ use hsad::{
     disparity::NONE,
     image::Plane,
     luma::pack,
-    verify::maps::ResidualTrial,
+    verify::trials::ResidualTrial,
 };
 
 use crate::common::*;

@@ -4,7 +4,7 @@ use hsad::{
     dense::{Direction, Interpolation, Penalties},
     disparity::{DisparityRange, SCALE},
     image::Plane,
-    verify::paths::SelectTrial,
+    verify::trials::SelectTrial,
 };
 
 use crate::common::*;

@@ -5,7 +5,7 @@ use hsad::{
     disparity::{DisparityMap, NONE},
     image::Plane,
     luma::pack,
-    verify::maps::SupportTrial,
+    verify::trials::SupportTrial,
 };
 
 use crate::common::*;

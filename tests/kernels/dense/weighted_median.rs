@@ -4,7 +4,7 @@ use hsad::{
     dense::Median,
     disparity::{DisparityMap, NONE},
     image::Plane,
-    verify::{Values, maps::MedianTrial},
+    verify::{Values, trials::MedianTrial},
 };
 
 use crate::common::*;

@@ -4,7 +4,7 @@ use hsad::{
     cpu::features::{haar::Place, integral::IntegralImage, orientation::orientation},
     features::{DESCRIPTOR_LENGTH, keypoints::Keypoint},
     image::Luma,
-    verify::{Values, points::DescriptorTrial},
+    verify::{Values, trials::DescriptorTrial},
 };
 
 use crate::common::{assert_twin, keypoint, keypoints_of, leaves, picture, pictures};

@@ -5,7 +5,7 @@ use hsad::{
     features::{Detector, Feature, FeatureConfig, detect},
     image::Luma,
     luma::pack,
-    verify::points::FeaturesTrial,
+    verify::trials::FeaturesTrial,
 };
 
 use crate::common::{SIZES, assert_twin, bench, block_on, gpu, picture, pictures};

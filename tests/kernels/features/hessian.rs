@@ -1,6 +1,6 @@
 use hsad::{
     image::Luma,
-    verify::{Values, points::HessianTrial},
+    verify::{Values, trials::HessianTrial},
 };
 
 use crate::common::{assert_same, assert_twin, leaves, pictures};

@@ -2,7 +2,7 @@ use hsad::{
     cpu::features::{integral::IntegralImage, integral_rows::integral_rows},
     features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
     image::{Luma, Plane},
-    verify::integral::ColumnsTrial,
+    verify::trials::ColumnsTrial,
 };
 
 use crate::common::{assert_same, assert_twin, bench, download, gpu, leaves, pictures};

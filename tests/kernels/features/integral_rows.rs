@@ -1,4 +1,4 @@
-use hsad::{image::Luma, verify::integral::RowsTrial};
+use hsad::{image::Luma, verify::trials::RowsTrial};
 
 use crate::common::{assert_twin, leaves, pictures};
 

@@ -7,7 +7,7 @@ use hsad::{
         },
         keypoints::Keypoint,
     },
-    verify::points::NonmaxTrial,
+    verify::trials::NonmaxTrial,
 };
 
 use crate::common::{assert_twin, bench, keypoint, pictures};

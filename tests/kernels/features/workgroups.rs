@@ -1,4 +1,4 @@
-use hsad::verify::points::WorkgroupsTrial;
+use hsad::verify::trials::WorkgroupsTrial;
 
 use crate::common::{assert_twin, leaves};
 

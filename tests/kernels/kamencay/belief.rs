@@ -4,7 +4,7 @@ use hsad::{
     dense::Brightness,
     image::Plane,
     kamencay::{LinkWeights, Links, Segmentation, Segments, Smoothness, Strip, described, kernels::Turn},
-    verify::{Values, kamencay::BeliefTrial},
+    verify::{Values, trials::BeliefTrial},
 };
 
 use crate::{common::*, kamencay::compute::colours};

@@ -5,7 +5,7 @@ use hsad::{
     disparity::DisparityRange,
     image::Plane,
     kamencay::{Strip, WindowCost, described},
-    verify::{Values, kamencay::BeliefCostTrial},
+    verify::{Values, trials::BeliefCostTrial},
 };
 
 use crate::{common::*, kamencay::compute::colours};

@@ -1,6 +1,6 @@
 //! The data costs of a coarser grid.
 
-use hsad::verify::kamencay::BeliefReduceTrial;
+use hsad::verify::trials::BeliefReduceTrial;
 
 use crate::common::*;
 

@@ -2,7 +2,7 @@
 
 use hsad::{
     kamencay::kernels::Winner,
-    verify::{Values, kamencay::BeliefSelectTrial},
+    verify::{Values, trials::BeliefSelectTrial},
 };
 
 use super::belief::noise;

@@ -3,7 +3,7 @@
 use hsad::{
     image::Plane,
     kamencay::ModeSeeking,
-    verify::{Values, kamencay::MeanShiftTrial},
+    verify::{Values, trials::MeanShiftTrial},
 };
 
 use crate::{common::*, kamencay::compute::colours};

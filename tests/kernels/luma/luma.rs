@@ -1,4 +1,4 @@
-use hsad::{image::Plane, verify::integral::LumaTrial};
+use hsad::{image::Plane, verify::trials::LumaTrial};
 
 use crate::common::{SIZES, assert_twin, leaves, photographs, picture};
 

@@ -2,7 +2,7 @@ use hsad::{
     cpu::luma::Texels,
     image::Plane,
     luma::{TexelFormat, pack},
-    verify::{Dice, integral::LumaTextureTrial},
+    verify::{Dice, trials::LumaTextureTrial},
     wgpu::TextureFormat,
 };
 

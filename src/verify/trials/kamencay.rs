@@ -1,11 +1,5 @@
 //! The hybrid method: mean shift, belief propagation, and all of it together.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    case::{Subject, Trial},
-    dice::{Dice, Size, smooth_noise},
-};
 use crate::{
     cpu::kamencay::{Grid, belief, belief_cost, belief_reduce, belief_select, compute_within, mean_shift},
     dense::{Brightness, Dense, Difference},
@@ -18,6 +12,12 @@ use crate::{
         self, FAR, KamencayConfig, KamencayParameters, LinkWeights, Links, MAX_MESSAGE_BYTES, ModeSeeking, OVERLAP,
         Segmentation, Segments, Smoothness, Strip, WindowCost, described,
         kernels::{Belief, BeliefCost, BeliefReduce, BeliefSelect, GridBuffers, MeanShift, Turn, Winner},
+    },
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size, smooth_noise},
+        trial::{Subject, Trial},
     },
 };
 

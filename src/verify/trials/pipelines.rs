@@ -1,11 +1,5 @@
 //! The dense half of each preset, from two views to a map.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    case::{Subject, Trial},
-    dice::{Dice, Size, smooth_noise},
-};
 use crate::{
     config::Preset,
     cpu::dense::compute,
@@ -15,6 +9,12 @@ use crate::{
     gpu::block_on,
     image::Luma,
     luma::pack,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size, smooth_noise},
+        trial::{Subject, Trial},
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -1,12 +1,6 @@
 //! What is searched where, coarse to fine: half the size, and the ranges of cells.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    blocks::cell_words,
-    case::{Subject, Trial},
-    dice::{Dice, Size},
-};
+use super::blocks::cell_words;
 use crate::{
     cpu::dense::{cell_ranges, halve},
     dense::kernels::{CellBand, CellRanges, Halve},
@@ -14,6 +8,12 @@ use crate::{
     error::Result,
     image::{Luma, Plane},
     luma::pack,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size},
+        trial::{Subject, Trial},
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -1,12 +1,6 @@
 //! What becomes of a map of disparities: consistency, residuals, support, filling, medians.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    blocks::signed,
-    case::{Subject, Trial},
-    dice::{Dice, Size},
-};
+use super::blocks::signed;
 use crate::{
     cpu::dense::{consistency, fill, map_texture, residual, support, weighted_median},
     dense::{
@@ -21,6 +15,12 @@ use crate::{
     gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size},
+        trial::{Subject, Trial},
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -1,11 +1,5 @@
 //! Padding and block matching.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    case::{Subject, Trial},
-    dice::{Dice, Size},
-};
 use crate::{
     cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
@@ -20,6 +14,12 @@ use crate::{
     gpu::uniform_buffer,
     image::{Luma, Plane},
     luma::pack,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size},
+        trial::{Subject, Trial},
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -1,12 +1,6 @@
 //! Semi-global matching: census, matching cost, paths, selection, and what one view's winners tell of the other.
 
-use super::{
-    array::Array,
-    bench::Bench,
-    blocks::signed,
-    case::{Subject, Trial},
-    dice::{Dice, Size, smooth_noise},
-};
+use super::blocks::signed;
 use crate::{
     cpu::dense::{box_mean, census, claim, cost, pad, path, path_winners, select},
     dense::{
@@ -20,6 +14,12 @@ use crate::{
     error::Result,
     image::{Luma, Plane},
     luma::pack,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size, smooth_noise},
+        trial::{Subject, Trial},
+    },
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -1,0 +1,61 @@
+//! The hash of what a twin leaves.
+//!
+//! Only exact arrays are hashed. The floats of orientations and descriptors come from functions (`exp`, `atan2`,
+//! `powf`) that differ in their last digits from platform to platform.
+
+use super::array::{Array, Tolerance};
+
+/// The hashes of all cases, one line each.
+pub(super) const STORED: &str = include_str!("goldens.txt");
+
+/// The hash of the exact arrays among `arrays`: FNV-1a with 64 bits over each one's name, its number of values in 64
+/// bits and its values, all with the lowest byte first. Nothing where none is exact.
+pub fn hash(arrays: &[Array]) -> Option<u64> {
+    let exact: Vec<&Array> = arrays.iter().filter(|array| array.tolerance == Tolerance::Exact).collect();
+    let bytes = exact.iter().flat_map(|Array { name, values, .. }| {
+        let length = (values.len() as u64).to_le_bytes();
+        name.bytes().chain(length).chain(values.to_le_bytes())
+    });
+    (!exact.is_empty()).then(|| fnv1a(bytes))
+}
+
+/// Fowler, Noll, Vo, Eastlake: 'The FNV non-cryptographic hash algorithm' (draft-eastlake-fnv).
+fn fnv1a(bytes: impl Iterator<Item = u8>) -> u64 {
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// A case's line in the file, without the hash.
+pub(super) fn key(name: &str, (width, height): (u32, u32), seed: u32) -> String {
+    format!("{name} {width}x{height} {seed}")
+}
+
+/// The hash that is stored under a key.
+pub(super) fn stored(key: &str) -> Option<u64> {
+    let hash = STORED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' '))?;
+    u64::from_str_radix(hash, 16).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_hashes() {
+        // The draft's test vectors.
+        for (text, expected) in
+            [("", 0xcbf2_9ce4_8422_2325), ("a", 0xaf63_dc4c_8601_ec8c), ("foobar", 0x8594_4171_f739_67e8)]
+        {
+            assert_eq!(fnv1a(text.bytes()), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn floats_with_a_tolerance_are_not_hashed() {
+        let exact = Array::exact("words", vec![1_u32, 2]);
+        let tolerance = Tolerance::Within { difference: 0.1, angles: false, group: 1, length: None, outliers: None };
+        let floats = Array { name: "floats", values: vec![1.5_f32].into(), tolerance };
+        assert_eq!(hash(std::slice::from_ref(&floats)), None);
+        assert_eq!(hash(&[exact.clone(), floats]), hash(std::slice::from_ref(&exact)));
+        assert_ne!(hash(&[exact]), hash(&[Array::exact("words", vec![1_u32, 3])]));
+    }
+}

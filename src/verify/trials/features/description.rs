@@ -1,0 +1,311 @@
+//! Orientations, descriptors, and interest points from a picture to their descriptors.
+
+use std::f32::consts::TAU;
+
+use super::tolerances::{ORIENTATIONS, ORIENTATIONS_ANYWHERE, PLACES, descriptors, descriptors_anywhere};
+use crate::{
+    cpu::features::{
+        descriptor::descriptor,
+        detector,
+        haar::Place,
+        integral::IntegralImage,
+        orientation::{is_decided, orientation},
+    },
+    error::Result,
+    features::{
+        Feature, FeatureConfig, detect,
+        kernels::{descriptor::Descriptor, orientation::Orientation, workgroups::Workgroups},
+        keypoints::{Keypoint, KeypointList},
+    },
+    gpu::block_on,
+    image::Luma,
+    verify::{
+        array::Array,
+        bench::Bench,
+        dice::{Dice, Size},
+        trial::{Subject, Trial},
+    },
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("orientation", |size, dice| Box::new(OrientationTrial::draw(size, dice))),
+    Subject::kernel("descriptor", |size, dice| Box::new(DescriptorTrial::draw(size, dice))),
+    Subject::pipeline("features", |size, dice| Box::new(FeaturesTrial::draw(size, dice))),
+];
+
+/// A list that holds `keypoints`, on the device, and the number of its workgroups.
+fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu::Buffer)> {
+    let count = keypoints.len() as u32;
+    let list = KeypointList::new(bench.gpu, count)?;
+    bench.write(list.found(), &[count]);
+    bench.write(list.keypoints(), keypoints);
+    let groups = Workgroups::groups(bench.gpu);
+    let dispatch = Workgroups::new(bench.gpu).prepare(&list, &groups);
+    bench.run(|encoder| dispatch.record(encoder));
+    Ok((list, groups))
+}
+
+/// Places anywhere in a picture and around it, of any scale and orientation.
+fn places_in((width, height): Size, dice: &mut Dice) -> Vec<Keypoint> {
+    let count = 1 + dice.below(400);
+    let mut sixty_fourths = |least: f32, length: f32| least + dice.below((64.0 * length) as u32) as f32 / 64.0;
+    let place = |_| Keypoint {
+        x: sixty_fourths(-4.0, width as f32 + 8.0),
+        y: sixty_fourths(-4.0, height as f32 + 8.0),
+        scale: sixty_fourths(1.25, 40.0),
+        orientation: sixty_fourths(0.0, TAU),
+        response: 0,
+        octave: 0,
+        index: 0,
+    };
+    (0..count).map(place).collect()
+}
+
+/// A column so far outside any picture that no neighbourhood reaches in.
+const NOTHING_THERE: f32 = -4096.0;
+
+fn keypoint_input(picture: &Luma, keypoints: &[Keypoint]) -> Vec<Array> {
+    let places = |k: &Keypoint| [k.x, k.y, k.scale, k.orientation];
+    let places: Vec<f32> = keypoints.iter().flat_map(places).collect();
+    vec![Array::exact("picture", picture.data().to_vec()), Array::exact("x, y, scale, orientation", places)]
+}
+
+fn place(keypoint: &Keypoint) -> Place {
+    Place::new(keypoint.x, keypoint.y, keypoint.scale)
+}
+
+/// Keypoints of a picture whose orientations are sought.
+#[derive(Clone, Debug)]
+pub struct OrientationTrial {
+    /// The picture.
+    pub picture: Luma,
+    /// The keypoints.
+    pub keypoints: Vec<Keypoint>,
+}
+
+impl OrientationTrial {
+    /// What the device makes of the keypoints.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn oriented(&self, bench: &Bench<'_>) -> Result<Vec<Keypoint>> {
+        // What is not written would be out of range.
+        let poisoned = |keypoint: &Keypoint| Keypoint { orientation: f32::NAN, ..*keypoint };
+        let (list, groups) = list(bench, &self.keypoints.iter().map(poisoned).collect::<Vec<_>>())?;
+        let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
+        let dispatch = Orientation::new(bench.gpu).prepare(self.picture.size(), &integral, &list, &groups);
+        bench.run(|encoder| dispatch.record(encoder));
+        bench.download(list.keypoints())
+    }
+
+    fn arrays(keypoints: &[Keypoint]) -> Vec<Array> {
+        let orientations: Vec<f32> = keypoints.iter().map(|keypoint| keypoint.orientation).collect();
+        // Nothing else of a keypoint changes.
+        let rest = |keypoint: &Keypoint| {
+            let Keypoint { x, y, scale, orientation: _, response, octave, index } = *keypoint;
+            [x.to_bits(), y.to_bits(), scale.to_bits(), response.cast_unsigned(), octave, index]
+        };
+        vec![
+            Array::exact("the rest of the keypoints", keypoints.iter().flat_map(rest).collect::<Vec<_>>()),
+            Array { name: "orientations", values: orientations.into(), tolerance: ORIENTATIONS },
+        ]
+    }
+}
+
+impl OrientationTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let (picture, mut keypoints) = (dice.picture(size), places_in(size, dice));
+        let integral = IntegralImage::new(&picture);
+        for keypoint in keypoints.iter_mut().filter(|keypoint| !is_decided(&integral, place(keypoint))) {
+            keypoint.x = NOTHING_THERE;
+        }
+        Self { picture, keypoints }
+    }
+}
+
+impl Trial for OrientationTrial {
+    fn parameters(&self) -> String {
+        format!("{} keypoints", self.keypoints.len())
+    }
+
+    fn input(&self) -> Vec<Array> {
+        keypoint_input(&self.picture, &self.keypoints)
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        Ok(Self::arrays(&self.oriented(bench)?))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let integral = IntegralImage::new(&self.picture);
+        let oriented =
+            |keypoint: &Keypoint| Keypoint { orientation: orientation(&integral, place(keypoint)), ..*keypoint };
+        Ok(Self::arrays(&self.keypoints.iter().map(oriented).collect::<Vec<_>>()))
+    }
+}
+
+/// Keypoints of a picture that are described.
+#[derive(Clone, Debug)]
+pub struct DescriptorTrial {
+    /// The picture.
+    pub picture: Luma,
+    /// The keypoints.
+    pub keypoints: Vec<Keypoint>,
+    /// Whether along the axes of the picture, or of each keypoint.
+    pub upright: bool,
+}
+
+impl DescriptorTrial {
+    fn arrays(&self, values: Vec<f32>) -> Vec<Array> {
+        vec![Array { name: "descriptors", values: values.into(), tolerance: descriptors(self.upright) }]
+    }
+}
+
+impl DescriptorTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { upright: dice.coin(), picture: dice.picture(size), keypoints: places_in(size, dice) }
+    }
+}
+
+impl Trial for DescriptorTrial {
+    fn parameters(&self) -> String {
+        format!("{} keypoints, upright {}", self.keypoints.len(), self.upright)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        keypoint_input(&self.picture, &self.keypoints)
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (list, groups) = list(bench, &self.keypoints)?;
+        let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
+        let descriptors = bench.output((Descriptor::bytes(&list) / 4) as u32)?;
+        let kernel = Descriptor::new(bench.gpu, self.upright);
+        let dispatch = kernel.prepare(self.picture.size(), &integral, &list, &groups, &descriptors);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(self.arrays(bench.download(&descriptors)?))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let integral = IntegralImage::new(&self.picture);
+        let described = |keypoint: &Keypoint| {
+            descriptor(&integral, place(keypoint), (!self.upright).then_some(keypoint.orientation))
+        };
+        Ok(self.arrays(self.keypoints.iter().flat_map(described).collect()))
+    }
+}
+
+/// A picture whose interest points are found and described.
+#[derive(Clone, Debug)]
+pub struct FeaturesTrial {
+    /// The picture.
+    pub picture: Luma,
+    /// What is looked for.
+    pub config: FeatureConfig,
+}
+
+impl FeaturesTrial {
+    /// Samples are exactly the same, places within a division's last digits, orientations and descriptors within theirs.
+    fn arrays(features: &[Feature], upright: bool) -> Vec<Array> {
+        let samples = |f: &Feature| [f.response.to_bits(), f.dark.into()];
+        let places = |f: &Feature| [f.x, f.y, f.scale];
+        let floats = |name, values: Vec<f32>, tolerance| Array { name, values: values.into(), tolerance };
+        vec![
+            Array::exact("response, dark", features.iter().flat_map(samples).collect::<Vec<_>>()),
+            floats("x, y, scale", features.iter().flat_map(places).collect(), PLACES),
+            floats("orientations", features.iter().map(|f| f.orientation).collect(), ORIENTATIONS_ANYWHERE),
+            floats("descriptors", features.iter().flat_map(|f| f.descriptor).collect(), descriptors_anywhere(upright)),
+        ]
+    }
+}
+
+impl FeaturesTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let config = FeatureConfig {
+            octaves: dice.pick(&[2, 5, 5]),
+            step: dice.pick(&[1, 1, 2]),
+            threshold: dice.pick(&[0.000_03, 0.000_4]),
+            upright: dice.coin(),
+            ..FeatureConfig::default()
+        };
+        Self { config, picture: dice.picture(size) }
+    }
+}
+
+impl Trial for FeaturesTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.config)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.picture.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        Ok(Self::arrays(&block_on(detect(bench.gpu, &self.picture, &self.config))?, self.config.upright))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(Self::arrays(&detector::detect(&self.picture, &self.config)?, self.config.upright))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verify::array::Comparison;
+
+    /// Whether device and twin would be told apart.
+    fn differ(actual: &[Array], expected: &[Array]) -> bool {
+        let differs = |(actual, expected)| Comparison::new(actual, expected).fault.is_some();
+        actual.iter().zip(expected).any(differs)
+    }
+
+    /// What last digits decide is left out of the trial, and is not most of it.
+    #[test]
+    fn most_orientations_are_decided() {
+        let trial = OrientationTrial::draw((311, 239), &mut Dice::new("orientation", 8));
+        let left = trial.keypoints.iter().filter(|keypoint| keypoint.x != NOTHING_THERE).count();
+        assert!(2 * left > trial.keypoints.len(), "{left} of {}", trial.keypoints.len());
+    }
+
+    #[test]
+    fn where_an_orientation_belongs_nothing_else_changes() {
+        let good = Keypoint { x: 30.0, y: 20.0, scale: 2.0, orientation: 1.0, response: 9, octave: 1, index: 5 };
+        let arrays = |keypoint: Keypoint| OrientationTrial::arrays(&[keypoint; 300]);
+        assert!(!differ(&arrays(Keypoint { orientation: 1.000_9, ..good }), &arrays(good)));
+        for changed in
+            [Keypoint { orientation: 1.002, ..good }, Keypoint { x: 30.000_01, ..good }, Keypoint { index: 6, ..good }]
+        {
+            assert!(differ(&arrays(changed), &arrays(good)), "{changed:?}");
+        }
+    }
+
+    #[test]
+    fn a_changed_feature_is_seen() {
+        let good = Feature {
+            x: 30.0,
+            y: 20.0,
+            scale: 2.0,
+            response: 0.01,
+            dark: true,
+            orientation: 1.0,
+            descriptor: [0.125; 64],
+        };
+        let arrays = |feature: &Feature| FeaturesTrial::arrays(&vec![feature.clone(); 100], false);
+        assert!(!differ(&arrays(&good), &arrays(&good)));
+        let mut descriptor = good.descriptor;
+        descriptor[0] = 0.13;
+        for changed in [
+            Feature { x: 30.001, ..good.clone() },
+            Feature { y: 20.001, ..good.clone() },
+            Feature { scale: 1.999, ..good.clone() },
+            Feature { response: 0.010_001, ..good.clone() },
+            Feature { dark: false, ..good.clone() },
+            Feature { orientation: 1.002, ..good.clone() },
+            Feature { descriptor, ..good.clone() },
+        ] {
+            assert!(differ(&arrays(&changed), &arrays(&good)), "{changed:?}");
+        }
+    }
+}
