@@ -6,17 +6,23 @@ mod kamencay;
 mod luma;
 mod pipelines;
 
-pub use dense::*;
-pub use features::*;
-pub use kamencay::*;
-pub use luma::*;
-pub use pipelines::*;
+pub use dense::{
+    BlockMatchTrial, BoxMeanTrial, CellRangesTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial,
+    HalveTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial, ResidualTrial, SelectTrial, SupportTrial,
+};
+pub use features::{
+    ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,
+    WorkgroupsTrial,
+};
+pub use kamencay::{BeliefCostTrial, BeliefReduceTrial, BeliefSelectTrial, BeliefTrial, KamencayTrial, MeanShiftTrial};
+pub use luma::{LumaTextureTrial, LumaTrial};
+pub use pipelines::DenseTrial;
 
 use super::trial::Subject;
 
 /// Everything that is tried, kernels first.
 pub fn subjects() -> impl Iterator<Item = &'static Subject> {
     let rooms: [&[&[Subject]]; 4] =
-        [&[luma::SUBJECTS], &FEATURE_SUBJECTS, &DENSE_SUBJECTS, &[kamencay::SUBJECTS, pipelines::SUBJECTS]];
+        [&[luma::SUBJECTS], &features::SUBJECTS, &dense::SUBJECTS, &[kamencay::SUBJECTS, pipelines::SUBJECTS]];
     rooms.into_iter().flatten().copied().flatten()
 }

@@ -5,11 +5,11 @@ mod cells;
 mod maps;
 mod paths;
 
-pub use blocks::*;
-pub use cells::*;
-pub use maps::*;
-pub use paths::*;
+pub use blocks::{BlockMatchTrial, PadTrial};
+pub use cells::{CellRangesTrial, HalveTrial};
+pub use maps::{ConsistencyTrial, FillTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
+pub use paths::{BoxMeanTrial, CensusTrial, ClaimTrial, CostTrial, PathTrial, SelectTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const DENSE_SUBJECTS: [&[Subject]; 4] = [blocks::SUBJECTS, cells::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];
+pub(super) const SUBJECTS: [&[Subject]; 4] = [blocks::SUBJECTS, cells::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];

@@ -5,10 +5,10 @@ mod detection;
 mod integral;
 mod tolerances;
 
-pub use description::*;
-pub use detection::*;
-pub use integral::*;
+pub use description::{DescriptorTrial, FeaturesTrial, OrientationTrial};
+pub use detection::{HessianTrial, NonmaxTrial, WorkgroupsTrial};
+pub use integral::{ColumnsTrial, RowsTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const FEATURE_SUBJECTS: [&[Subject]; 3] = [integral::SUBJECTS, detection::SUBJECTS, description::SUBJECTS];
+pub(super) const SUBJECTS: [&[Subject]; 3] = [integral::SUBJECTS, detection::SUBJECTS, description::SUBJECTS];
