@@ -63,27 +63,27 @@ impl Demo {
             config: Preset::Balanced.config(),
             calibration: Some(scene.calibration),
         };
-        let mut done = job.run(&self.run)?;
-        let accuracy = Accuracy::new(&done.outcome.dense.disparity, &scene)?;
+        let mut completed = job.run(&self.run)?;
+        let accuracy = Accuracy::new(&completed.outcome.dense.disparity, &scene)?;
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        let panels = products::beside_truth(&scene.left, &done.outcome.dense.disparity, &scene.truth);
+        let panels = products::beside_truth(&scene.left, &completed.outcome.dense.disparity, &scene.truth);
         let panels = figure::side_by_side(&panels.each_ref());
         output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
         output.add("left.png", |out| out.write_all(LEFT))?;
         output.add("right.png", |out| out.write_all(RIGHT))?;
-        done.add_maps(&mut output)?;
-        done.add_figures(&mut output)?;
-        let mut report = done.report();
+        completed.add_maps(&mut output)?;
+        completed.add_figures(&mut output)?;
+        let mut report = completed.report();
         report["accuracy"] = accuracy.report();
         products::add_report(&mut output, report)?;
         output.finish()?;
         drop(progress);
 
         if !self.run.quiet {
-            done.warnings.iter().for_each(terminal::warning);
-            terminal::print(&(done.summary() + &summary::files(&output) + &accuracy.summary()))?;
+            completed.warnings.iter().for_each(terminal::warning);
+            terminal::print(&(completed.summary() + &summary::files(&output) + &accuracy.summary()))?;
             let look = output.folder().join("demo.png");
             terminal::print(&format!(
                 "\nLook at {}: left picture, disparities found, true disparities.\n",

@@ -25,7 +25,7 @@ pub struct Job {
 }
 
 /// A job and what came out.
-pub struct Done {
+pub struct CompletedJob {
     pub job: Job,
     pub backend: Backend,
     pub outcome: Outcome,
@@ -37,14 +37,14 @@ pub struct Done {
 
 impl Job {
     /// Computes everything and writes nothing.
-    pub fn run(self, options: &RunOptions) -> Result<Done> {
+    pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
         let backend = options.open()?;
         let progress = Progress::new(options.quiet);
         let views = (&self.left, &self.right);
         let outcome = pipeline::run(&backend, views, &self.config, |step| progress.step(step))?;
         let warnings = warnings(views, &self.config, &outcome);
-        Ok(Done { job: self, backend, outcome, total: start.elapsed(), warnings })
+        Ok(CompletedJob { job: self, backend, outcome, total: start.elapsed(), warnings })
     }
 }
 

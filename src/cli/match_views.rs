@@ -61,21 +61,21 @@ impl Match {
         }
         let calibration = self.depth.calibration(left.size())?;
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
-        let mut done = Job { names, left, right, config, calibration }.run(&self.run)?;
+        let mut completed = Job { names, left, right, config, calibration }.run(&self.run)?;
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        done.add_maps(&mut output)?;
+        completed.add_maps(&mut output)?;
         if self.figures {
-            done.add_figures(&mut output)?;
+            completed.add_figures(&mut output)?;
         }
-        products::add_report(&mut output, done.report())?;
+        products::add_report(&mut output, completed.report())?;
         output.finish()?;
         drop(progress);
 
         if !self.run.quiet {
-            done.warnings.iter().for_each(terminal::warning);
-            terminal::print(&(done.summary() + &summary::files(&output)))?;
+            completed.warnings.iter().for_each(terminal::warning);
+            terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
         Ok(())
     }

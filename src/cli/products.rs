@@ -11,11 +11,11 @@ use hsad::{
 use serde_json::Value;
 
 use super::{
-    job::{Done, Job},
+    job::{CompletedJob, Job},
     output::Output,
 };
 
-impl Done {
+impl CompletedJob {
     /// The maps, and depth where there is a calibration.
     pub fn add_maps(&mut self, output: &mut Output) -> Result<()> {
         let dense = &self.outcome.dense;

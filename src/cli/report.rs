@@ -8,13 +8,13 @@ use hsad::{
     kamencay::KamencayParameters,
     pair::Backend,
     pipeline::RangeSource,
-    seeding::{Brightness, Rectification, Verdict},
+    seeding::{BrightnessRelation, Rectification, Verdict},
 };
 use serde_json::{Map, Value, json};
 
-use super::job::Done;
+use super::job::CompletedJob;
 
-impl Done {
+impl CompletedJob {
     /// The report, without the files.
     pub fn report(&self) -> Value {
         let Self { job, backend, outcome, total, warnings } = self;
@@ -224,7 +224,7 @@ fn rectification(found: &Rectification) -> Value {
     })
 }
 
-fn brightness(&Brightness { gain, offset, residual }: &Brightness) -> Value {
+fn brightness(&BrightnessRelation { gain, offset, residual }: &BrightnessRelation) -> Value {
     json!({ "gain": number(gain), "offset": number(offset), "residual": number(residual) })
 }
 

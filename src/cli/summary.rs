@@ -3,11 +3,11 @@
 use hsad::{disparity::coverage, pipeline::RangeSource, seeding::Verdict};
 
 use super::{
-    job::{Done, span},
+    job::{CompletedJob, span},
     output::Output,
 };
 
-impl Done {
+impl CompletedJob {
     /// A line for each fact.
     pub fn summary(&self) -> String {
         let Self { job, backend, outcome, total, .. } = self;

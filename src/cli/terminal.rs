@@ -17,12 +17,12 @@ pub fn error(error: &anyhow::Error) {
         Some(hsad::Error::NotRectified { .. }) => " with --force",
         _ => "",
     };
-    complain("error", &format!("{error}{option}"));
+    print_line("error", &format!("{error}{option}"));
 }
 
 /// One line about something that the result does not show by itself.
 pub fn warning(text: impl Display) {
-    complain("warning", &text.to_string());
+    print_line("warning", &text.to_string());
 }
 
 /// One line that belongs to no result.
@@ -31,7 +31,7 @@ pub fn note(text: &str) {
 }
 
 /// Where stderr itself is gone there is nobody left to tell.
-fn complain(kind: &str, text: &str) {
+fn print_line(kind: &str, text: &str) {
     let _ = writeln!(io::stderr(), "{kind}: {}", one_line(text));
 }
 

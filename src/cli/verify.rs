@@ -86,15 +86,15 @@ impl Verify {
 
         let start = Instant::now();
         let progress = Progress::new(self.quiet);
-        let (mut reports, mut faults, mut unkept) = (Vec::new(), 0, Vec::new());
+        let (mut reports, mut faults, mut unsaved) = (Vec::new(), 0, Vec::new());
         for case in &cases {
             progress.begin(case.subject.name);
             let outcome = case.run(&Bench::new(&gpu));
             progress.suspend(|| print(&row(&outcome)))?;
             if !outcome.passes() {
                 faults += 1;
-                let left = leave(folder.folder(), &device, &outcome, &case.command(&self.device));
-                unkept.extend(left.err());
+                let written = write_failure(folder.folder(), &device, &outcome, &case.command(&self.device));
+                unsaved.extend(written.err());
             }
             reports.push(self.report(&outcome));
             if outcome.lost {
@@ -122,7 +122,7 @@ impl Verify {
                 terminal::print(&format!("{report:#}\n"))?;
             }
         }
-        for error in unkept {
+        for error in unsaved {
             terminal::error(&anyhow!("what failed was not kept: {error}"));
         }
         if faults > 0 {
@@ -231,12 +231,12 @@ fn time(time: Duration) -> String {
 
 /// Leaves all arrays of a case in a folder of its own, with a text that says what they are, and nothing that an earlier
 /// run left there.
-fn leave(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
+fn write_failure(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
     let Outcome { case, parameters, faults, input, expected, actual, .. } = outcome;
     let (width, height) = case.size;
     let folder = folder.join(format!("{}-{width}x{height}-{}", case.subject.name, case.seed));
     let failed = |source| Error::Io { path: folder.clone(), source };
-    fs::create_dir_all(&folder).and_then(|()| remove_left(&folder)).map_err(failed)?;
+    fs::create_dir_all(&folder).and_then(|()| remove_old_arrays(&folder)).map_err(failed)?;
     let mut text = format!("{command}\n\n{device}{parameters}\n");
     faults.iter().for_each(|fault| text += &format!("{fault}\n"));
     text += "\nfile, number of values, type; all values have their lowest byte first\n";
@@ -257,8 +257,8 @@ const KINDS: [&str; 3] = ["input", "expected", "actual"];
 /// The file that says what the others are.
 const TEXT: &str = "case.txt";
 
-/// Removes what [`leave`] has left in a folder, and no other file.
-fn remove_left(folder: &Path) -> io::Result<()> {
+/// Removes what [`write_failure`] has left in a folder, and no other file.
+fn remove_old_arrays(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name();
@@ -301,13 +301,13 @@ mod tests {
         assert!(row.contains("1.000e0 (1 off)"), "{row}");
         assert!(row.ends_with("\n  FAILS: some words, two: value 1 is 3, not 2; 1 are off\n"), "{row}");
         let folder = tempfile::tempdir().unwrap();
-        let leave = || leave(folder.path(), "a device\n", &outcome, &outcome.case.command(&DeviceChoice::Best));
+        let write_failure = || write_failure(folder.path(), "a device\n", &outcome, &outcome.case.command(&DeviceChoice::Best));
         let left = folder.path().join("pad-17x13-5");
         // Of an earlier run, and of someone else.
         fs::create_dir(&left).unwrap();
         fs::write(left.join("actual-another.i32"), "old").unwrap();
         fs::write(left.join("notes.txt"), "mine").unwrap();
-        leave().unwrap();
+        write_failure().unwrap();
         let mut names: Vec<_> = fs::read_dir(&left).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         names.sort();
         let expected = ["actual-some-words-two.u32", "case.txt", "expected-some-words-two.u32", "notes.txt"];

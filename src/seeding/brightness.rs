@@ -13,7 +13,7 @@ const CONTRAST: f32 = 10.0;
 
 /// The straight line between the grey values of the two views: right = gain * left + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brightness {
+pub struct BrightnessRelation {
     /// Ratio of the contrasts, right by left.
     pub gain: f32,
     /// Difference of the grey values where the left view is black.
@@ -22,7 +22,7 @@ pub struct Brightness {
     pub residual: f32,
 }
 
-impl Brightness {
+impl BrightnessRelation {
     /// Fits the line to the means of corresponding windows; none where there are too few, or all alike.
     ///
     /// The slope is the median of the slopes of all pairs (Theil 1950, Sen 1968), which up to 29 % of wrong seeds
@@ -79,7 +79,7 @@ mod tests {
                 Seed { x: 45.0 + (i % 10) as f32 * 5.0, y: 5.0 + i as f32, disparity, dy: 0.0, confidence: 1.0 }
             })
             .collect();
-        let found = Brightness::new(&left, &right, &seeds).unwrap();
+        let found = BrightnessRelation::new(&left, &right, &seeds).unwrap();
         assert!((found.gain - 0.5).abs() < 0.03 && (found.offset - 20.0).abs() < 3.0, "{found:?}");
     }
 
@@ -87,10 +87,10 @@ mod tests {
     fn nothing_is_claimed_without_contrast_or_seeds() {
         let grey = Luma::filled(50, 50, 90);
         let seeds = [Seed { x: 20.0, y: 20.0, disparity: 1.0, dy: 0.0, confidence: 1.0 }; 20];
-        assert_eq!(Brightness::new(&grey, &grey, &seeds), None);
-        assert_eq!(Brightness::new(&grey, &grey, &[]), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &seeds), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &[]), None);
         let white = Luma::filled(50, 50, 255);
-        assert_eq!(Brightness::new(&white, &grey, &seeds), None);
+        assert_eq!(BrightnessRelation::new(&white, &grey, &seeds), None);
     }
 
     #[test]

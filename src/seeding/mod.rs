@@ -9,7 +9,7 @@ mod range;
 mod rectification;
 mod support;
 
-pub use brightness::Brightness;
+pub use brightness::BrightnessRelation;
 pub use enlarged::enlarged_feature;
 pub use range::ThinSupport;
 pub use rectification::{Rectification, Verdict};
@@ -49,7 +49,7 @@ pub struct Seeding {
     /// Whether rows correspond.
     pub rectification: Rectification,
     /// How the grey values of the views differ, where enough seeds tell.
-    pub brightness: Option<Brightness>,
+    pub brightness: Option<BrightnessRelation>,
     /// How far a dense result can be trusted, 0 to 1: the share of all matches, found without any demand on their
     /// rows, that lie in corresponding rows and in the range; lower where they are few (half at 30 of them).
     pub trust: f32,
@@ -85,7 +85,7 @@ impl Seeding {
         let seeds = support::supported(&seeds);
         let range = range::disparity_range(&seeds, count);
         Ok(Self {
-            brightness: Brightness::new(views.0, views.1, &seeds),
+            brightness: BrightnessRelation::new(views.0, views.1, &seeds),
             trust: range.map_or(0.0, |range| trust(&raw, range, config.max_dy)),
             range,
             rectification,

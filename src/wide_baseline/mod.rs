@@ -69,7 +69,7 @@ pub struct WideBaselineMatch {
 
 /// What was found.
 #[derive(Clone, Debug)]
-pub struct Sparse {
+pub struct WideBaselineMatches {
     /// Interest points of both views, in their pixels. Scales and directions of the second are those of the picture in
     /// which they were found.
     pub features: [Vec<Feature>; 2],
@@ -136,7 +136,7 @@ type Indexed = (Seed, [usize; 2]);
 /// # Errors
 /// [`crate::Error::Parameter`]; and as [`Backend::features`].
 #[cfg(not(target_arch = "wasm32"))]
-pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &WideBaselineConfig) -> Result<Sparse> {
+pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &WideBaselineConfig) -> Result<WideBaselineMatches> {
     backend.wait(match_views_async(backend, first, second, config))
 }
 
@@ -149,7 +149,7 @@ pub async fn match_views_async(
     first: &Luma,
     second: &Luma,
     config: &WideBaselineConfig,
-) -> Result<Sparse> {
+) -> Result<WideBaselineMatches> {
     config.validate()?;
     let WideBaselineConfig { features, matching, adapt } = config;
     let mut detecting = Detecting::new(backend);
@@ -242,7 +242,7 @@ fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
 }
 
 /// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
-fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> Sparse {
+fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> WideBaselineMatches {
     let smoothing = [first.sigma, second.sigma];
     let back = map.inverse();
     let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
@@ -262,7 +262,7 @@ fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rect
         Feature { x: at.x as f32, y: at.y as f32, scale: growth * feature.scale, ..feature }
     };
     let features = [first.features, second.features.into_iter().map(moved).collect()];
-    Sparse { features, matches, alignment: map, rectified, smoothing }
+    WideBaselineMatches { features, matches, alignment: map, rectified, smoothing }
 }
 
 #[cfg(test)]
@@ -298,7 +298,7 @@ mod tests {
     }
 
     /// Matches of the picture with itself, changed, and the share that is right within 1.5 px.
-    fn matched(condition: &str, adapt: bool) -> (Sparse, f64) {
+    fn matched(condition: &str, adapt: bool) -> (WideBaselineMatches, f64) {
         let picture = picture();
         let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
         let backend = Backend::open(&DeviceChoice::Cpu).unwrap();

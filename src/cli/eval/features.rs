@@ -1,6 +1,6 @@
 //! `hsad eval features`: how good matches of interest points are.
 
-mod foreign;
+mod supplied_matches;
 mod table;
 mod views;
 
@@ -22,8 +22,8 @@ use serde_json::json;
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        complain,
-        kept::{self, Place},
+        report_failures,
+        saved_results::{self, SavedResults},
         scenes,
     },
     options::{FeatureOptions, RunOptions, with_default},
@@ -138,7 +138,7 @@ pub struct Features {
 /// Who finds the matches.
 enum Finder {
     Hsad(Backend, WideBaselineConfig),
-    Other { matches: PathBuf, points: Option<Vec<PathBuf>> },
+    Supplied { matches: PathBuf, points: Option<Vec<PathBuf>> },
 }
 
 impl Features {
@@ -156,7 +156,7 @@ impl Features {
         let mut failures: Vec<String> = unread.iter().map(Error::to_string).collect();
         if let Some(folder) = &self.write_views {
             self.write(folder, &pairs, &changes, &mut failures)?;
-            return complain(&failures);
+            return report_failures(&failures);
         }
         let root = self.output.as_deref().map(Output::open).transpose()?;
         for file in [&self.csv, &self.json].into_iter().flatten() {
@@ -175,27 +175,27 @@ impl Features {
                 }
                 .into());
             }
-            Some(matches) => Finder::Other { matches, points: self.points.take() },
+            Some(matches) => Finder::Supplied { matches, points: self.points.take() },
         };
 
         let mut table = Table { columns: self.columns(), rows: Vec::new() };
         let width = pairs.iter().map(|pair| pair.name.chars().count()).fold("mean".len(), usize::max);
-        let place = self.place(&finder);
+        let saved = self.saved_results(&finder);
         let of_pair =
-            |pair: &Pair| pair.files()?.into_iter().try_fold(place.clone().below(&pair.name), Place::with_file);
-        let places: Vec<Result<Place>> = pairs.iter().map(of_pair).collect();
+            |pair: &Pair| pair.files()?.into_iter().try_fold(saved.clone().below(&pair.name), SavedResults::depending_on_file);
+        let saved_by_pair: Vec<Result<SavedResults>> = pairs.iter().map(of_pair).collect();
         let progress = Progress::new(self.run.quiet);
         let total = pairs.len() * changes.len();
-        let (mut done, mut kept) = (0, 0);
+        let (mut done, mut reused) = (0, 0);
         for change in &changes {
             let before = table.rows.len();
-            for (pair, place) in pairs.iter().zip(&places) {
+            for (pair, saved) in pairs.iter().zip(&saved_by_pair) {
                 done += 1;
                 progress.piece(&format!("{}, {}", pair.name, change.name), done, total);
-                let failure = match self.row(pair, change, &finder, place, &mut kept) {
-                    Ok((row, unkept)) => {
+                let failure = match self.row(pair, change, &finder, saved, &mut reused) {
+                    Ok((row, unsaved)) => {
                         table.rows.push(row);
-                        unkept
+                        unsaved
                     }
                     Err(failure) => Some(failure),
                 };
@@ -208,11 +208,11 @@ impl Features {
         }
         drop((progress, root));
         if let (Some(folder), true, false) = (&self.output, !table.rows.is_empty(), self.run.quiet) {
-            let told = kept::told(kept, table.rows.len());
-            terminal::print(&format!("\nresults are in {}{told}\n", folder.display()))?;
+            let reuse = saved_results::reuse_note(reused, table.rows.len());
+            terminal::print(&format!("\nresults are in {}{reuse}\n", folder.display()))?;
         }
         self.write_figures(&table, &finder, &failures)?;
-        complain(&failures)
+        report_failures(&failures)
     }
 
     fn check(&self) -> Result<()> {
@@ -255,14 +255,14 @@ impl Features {
     }
 
     /// Where the results of all pairs are kept.
-    fn place(&self, finder: &Finder) -> Place {
-        let place = Place::new(self.output.as_deref(), self.fresh);
-        let place = place.with(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
+    fn saved_results(&self, finder: &Finder) -> SavedResults {
+        let saved = SavedResults::new(self.output.as_deref(), self.fresh);
+        let saved = saved.depending_on(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
         match finder {
             Finder::Hsad(backend, config) => {
-                place.with(&format!("{config:?}")).with(&report::device(backend).to_string())
+                saved.depending_on(&format!("{config:?}")).depending_on(&report::device(backend).to_string())
             }
-            Finder::Other { .. } => place,
+            Finder::Supplied { .. } => saved,
         }
     }
 
@@ -273,21 +273,21 @@ impl Features {
         pair: &Pair,
         change: &Change,
         finder: &Finder,
-        place: &Result<Place>,
-        kept: &mut usize,
+        saved: &Result<SavedResults>,
+        reused: &mut usize,
     ) -> std::result::Result<(Row, Option<String>), String> {
         let of_pair = |error: &Error| format!("{}: {error}", pair.name);
-        let place = place.as_ref().map_err(of_pair)?.clone().below(&change.name).with(&change.name);
-        if let Some(row) = place.find() {
-            *kept += 1;
+        let saved = saved.as_ref().map_err(of_pair)?.clone().below(&change.name).depending_on(&change.name);
+        if let Some(row) = saved.load() {
+            *reused += 1;
             return Ok((row, None));
         }
         let views = pair.views().map_err(|error| of_pair(&error))?;
-        let told = |error: Error| format!("{}, {}: {error}", pair.name, change.name);
-        let figures = self.figures(views, change, finder).map_err(told)?;
+        let described = |error: Error| format!("{}, {}: {error}", pair.name, change.name);
+        let figures = self.figures(views, change, finder).map_err(described)?;
         let row = Row { scene: pair.name.clone(), condition: change.name.clone(), figures };
-        let unkept = place.keep(&row, |_| Ok(())).err().map(told);
-        Ok((row, unkept))
+        let unsaved = saved.save(&row, |_| Ok(())).err().map(described);
+        Ok((row, unsaved))
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -319,17 +319,17 @@ impl Features {
                 let points = found.features.each_ref().map(|view| view.iter().map(Point::from).collect::<Vec<_>>());
                 (found.matches.iter().map(PointMatch::from).collect(), Some(points))
             }
-            Finder::Other { matches, points } => {
+            Finder::Supplied { matches, points } => {
                 let sizes = truth.sizes();
-                let mut matches: Vec<PointMatch> = foreign::matches(matches, sizes)?;
+                let mut matches: Vec<PointMatch> = supplied_matches::matches(matches, sizes)?;
                 let points = match points.as_deref() {
                     Some([first, second]) => {
-                        Some([foreign::points(first, sizes[0])?, foreign::points(second, sizes[1])?])
+                        Some([supplied_matches::points(first, sizes[0])?, supplied_matches::points(second, sizes[1])?])
                     }
                     _ => None,
                 };
                 if let Some([first, second]) = &points {
-                    foreign::join(&mut matches, [first, second]);
+                    supplied_matches::join(&mut matches, [first, second]);
                 }
                 (matches, points)
             }
@@ -363,7 +363,7 @@ impl Features {
                 "version": env!("CARGO_PKG_VERSION"),
                 "matches_of": match finder {
                     Finder::Hsad(..) => "hsad".into(),
-                    Finder::Other { matches, .. } => matches.display().to_string(),
+                    Finder::Supplied { matches, .. } => matches.display().to_string(),
                 },
                 "tolerance_px": self.tolerance,
                 "seed": self.seed,

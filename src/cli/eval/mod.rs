@@ -1,7 +1,7 @@
 mod change;
 mod dense;
 mod features;
-mod kept;
+mod saved_results;
 mod paper;
 mod scenes;
 
@@ -16,11 +16,11 @@ use crate::cli::terminal;
 #[derive(Args)]
 pub struct Eval {
     #[command(subcommand)]
-    what: What,
+    evaluation: Evaluation,
 }
 
 #[derive(Subcommand)]
-enum What {
+enum Evaluation {
     Dense(Box<dense::Dense>),
     Features(Box<features::Features>),
     Paper(paper::Paper),
@@ -29,16 +29,16 @@ enum What {
 impl Eval {
     /// Does what was asked.
     pub fn run(self) -> anyhow::Result<()> {
-        match self.what {
-            What::Dense(command) => command.run(),
-            What::Features(command) => command.run(),
-            What::Paper(command) => command.run(),
+        match self.evaluation {
+            Evaluation::Dense(command) => command.run(),
+            Evaluation::Features(command) => command.run(),
+            Evaluation::Paper(command) => command.run(),
         }
     }
 }
 
 /// A line about each failure, the last of which is the program's own.
-fn complain(failures: &[impl Display]) -> anyhow::Result<()> {
+fn report_failures(failures: &[impl Display]) -> anyhow::Result<()> {
     let Some((last, others)) = failures.split_last() else { return Ok(()) };
     others.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
     Err(anyhow!("{last}"))

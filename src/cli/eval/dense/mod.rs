@@ -1,6 +1,6 @@
 //! `hsad eval dense`: disparity maps against the truth of whole scenes.
 
-mod given;
+mod supplied_maps;
 mod record;
 mod run;
 mod table;
@@ -15,9 +15,9 @@ use clap::Args;
 use hsad::{Error, io::atomic::write_whole};
 use serde_json::{Value, json};
 
-use self::{given::Given, record::Record, run::Run};
+use self::{supplied_maps::SuppliedMaps, record::Record, run::Run};
 use crate::cli::{
-    eval::{complain, kept, scenes},
+    eval::{report_failures, saved_results, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, check_writable, write_json},
     report, terminal,
@@ -55,10 +55,10 @@ pub struct Dense {
     scenes: Vec<PathBuf>,
     /// Also score FILE, a map of the same view by another program: PFM (+inf for none) or PNG (16 bit, 256 times the
     /// disparity, 0 for none). {scene} in FILE stands for each scene's name
-    #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = Given::parse)]
-    given: Vec<Given>,
+    #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = SuppliedMaps::parse)]
+    supplied: Vec<SuppliedMaps>,
     /// Match nothing, only score the maps that --disparity names
-    #[arg(long, requires = "given")]
+    #[arg(long, requires = "supplied")]
     given_only: bool,
     /// Folder for maps, pictures and results, created if need be
     #[arg(short, long, value_name = "DIR")]
@@ -101,7 +101,7 @@ impl Display for Failure {
 struct Results {
     records: Vec<Record>,
     /// How many of the records an earlier run made.
-    kept: usize,
+    reused: usize,
     failures: Vec<Failure>,
 }
 
@@ -111,7 +111,7 @@ impl Dense {
         let config = self.matching.config(&self.features)?;
         let (scenes, unread) = scenes::find(&self.scenes)?;
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
-        given::check(&self.given, scenes.len())?;
+        supplied_maps::check(&self.supplied, scenes.len())?;
         let root = self.output.as_deref().map(Output::open).transpose()?;
         for file in [&self.csv, &self.json].into_iter().flatten() {
             check_writable(file)?;
@@ -123,7 +123,7 @@ impl Dense {
         drop(root);
 
         let methods: Vec<&str> =
-            backend.iter().map(|_| OURS).chain(self.given.iter().map(|given| &*given.name)).collect();
+            backend.iter().map(|_| OURS).chain(self.supplied.iter().map(|maps| &*maps.name)).collect();
         if let Some(file) = &self.csv {
             write_whole(file, |out| out.write_all(record::csv(&results.records).as_bytes()))?;
         }
@@ -134,12 +134,12 @@ impl Dense {
             write_whole(file, |out| write_json(out, &report))?;
         }
         if !self.run.quiet {
-            self.tell(&results, &methods)?;
+            self.print_results(&results, &methods)?;
         }
-        complain(&results.failures)
+        report_failures(&results.failures)
     }
 
-    fn tell(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
+    fn print_results(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
         for record in &results.records {
             record.warnings.iter().for_each(|text| terminal::warning(format!("{}: {text}", record.scene)));
         }
@@ -149,7 +149,7 @@ impl Dense {
         let mut text = format!("{}\n{}", table::tables(&results.records, methods), table::LEGEND);
         if let Some(folder) = &self.output {
             text += &format!("\nmaps and pictures of errors are in {}", folder.display());
-            text += &kept::told(results.kept, results.records.len());
+            text += &saved_results::reuse_note(results.reused, results.records.len());
             text.push('\n');
         }
         terminal::print(&text)
@@ -163,7 +163,7 @@ impl Results {
             self.failures.iter().map(|Failure { what, error }| json!({ "what": what, "error": error.to_string() }));
         json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "results": self.records.iter().map(kept::Record::to_json).collect::<Vec<_>>(),
+            "results": self.records.iter().map(saved_results::Saveable::to_json).collect::<Vec<_>>(),
             "means": record::means(&self.records, methods),
             "failed": failed.collect::<Vec<_>>(),
         })

@@ -3,7 +3,7 @@
 use hsad::eval::{Score, scene::Scores};
 use serde_json::{Value, json};
 
-use crate::cli::{eval::kept, score};
+use crate::cli::{eval::saved_results, score};
 
 /// How good one method's map of one scene is.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Record {
     pub warnings: Vec<String>,
 }
 
-impl kept::Record for Record {
+impl saved_results::Saveable for Record {
     fn to_json(&self) -> Value {
         let Self { scene, method, scores, range, seconds, warnings } = self;
         json!({
@@ -191,7 +191,7 @@ pub mod tests {
     };
 
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
     /// A record of errors, pixel by pixel; NaN is no estimate.
     pub fn record(scene: &str, method: &str, errors: &[f32], non_occluded: Option<&[f32]>) -> Record {

@@ -14,15 +14,15 @@ use hsad::{
 };
 use serde_json::Value;
 
-use super::{Dense, Failure, OURS, Results, given::Given, record::Record};
-use crate::cli::{eval::kept::Place, job, output::Output, products, report, terminal::Progress};
+use super::{Dense, Failure, OURS, Results, supplied_maps::SuppliedMaps, record::Record};
+use crate::cli::{eval::saved_results::SavedResults, job, output::Output, products, report, terminal::Progress};
 
 /// What makes maps, and where they are kept.
 pub struct Run<'a> {
     config: &'a Config,
     methods: Vec<Method<'a>>,
     /// Where the results of all scenes are kept.
-    place: Place,
+    saved: SavedResults,
     progress: Progress,
 }
 
@@ -30,17 +30,17 @@ pub struct Run<'a> {
 #[derive(Clone, Copy)]
 enum Method<'a> {
     Ours(&'a Backend),
-    Given(&'a Given),
+    Supplied(&'a SuppliedMaps),
 }
 
 impl<'a> Run<'a> {
     /// Without a backend nothing is matched.
     pub fn new(options: &'a Dense, config: &'a Config, backend: Option<&'a Backend>) -> Self {
-        let given = options.given.iter().map(Method::Given);
+        let supplied = options.supplied.iter().map(Method::Supplied);
         Self {
             config,
-            methods: backend.map(Method::Ours).into_iter().chain(given).collect(),
-            place: Place::new(options.output.as_deref(), options.fresh),
+            methods: backend.map(Method::Ours).into_iter().chain(supplied).collect(),
+            saved: SavedResults::new(options.output.as_deref(), options.fresh),
             progress: Progress::new(options.run.quiet),
         }
     }
@@ -58,14 +58,14 @@ impl<'a> Run<'a> {
     /// Fails where the scene cannot be read; a method that fails is noted and does not lose the others.
     fn scene(&self, files: &SceneFiles, results: &mut Results) -> Result<()> {
         let paths = files.files(self.config.reference)?;
-        let of_scene = paths.into_iter().try_fold(self.place.clone().below(&files.name), Place::with_file)?;
+        let of_scene = paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
         // Read when it is first needed, which may be never.
         let mut scene = None;
         for &method in &self.methods {
-            let made = match self.place(of_scene.clone(), &files.name, method) {
-                Ok(place) => match place.find() {
+            let made = match self.saved_results(of_scene.clone(), &files.name, method) {
+                Ok(saved) => match saved.load() {
                     Some(record) => {
-                        results.kept += 1;
+                        results.reused += 1;
                         Ok(record)
                     }
                     None => {
@@ -73,7 +73,7 @@ impl<'a> Run<'a> {
                             Some(scene) => scene,
                             unread => unread.insert(self.read(files)?),
                         };
-                        self.make(&files.name, scene, method, &place, &mut results.failures)
+                        self.make(&files.name, scene, method, &saved, &mut results.failures)
                     }
                 },
                 Err(error) => Err(error),
@@ -89,12 +89,12 @@ impl<'a> Run<'a> {
     }
 
     /// Where a method's result is kept, by that of the scene called `name`.
-    fn place(&self, of_scene: Place, name: &str, method: Method) -> Result<Place> {
+    fn saved_results(&self, of_scene: SavedResults, name: &str, method: Method) -> Result<SavedResults> {
         match method {
             Method::Ours(backend) => {
-                Ok(of_scene.with(&format!("{:?}", self.config)).with(&report::device(backend).to_string()))
+                Ok(of_scene.depending_on(&format!("{:?}", self.config)).depending_on(&report::device(backend).to_string()))
             }
-            Method::Given(given) => of_scene.below(&given.name).with_file(&given.path(name)),
+            Method::Supplied(maps) => of_scene.below(&maps.name).depending_on_file(&maps.path(name)),
         }
     }
 
@@ -109,18 +109,18 @@ impl<'a> Run<'a> {
         name: &str,
         scene: &Scene,
         method: Method,
-        place: &Place,
+        saved: &SavedResults,
         failures: &mut Vec<Failure>,
     ) -> Result<Record> {
         let (map, record) = match method {
             Method::Ours(backend) => self.ours(backend, name, scene)?,
-            Method::Given(given) => self.given(given, name, scene)?,
+            Method::Supplied(maps) => self.supplied(maps, name, scene)?,
         };
-        let kept = place.keep(&record, |output| {
+        let written = saved.save(&record, |output| {
             self.progress.begin("writing");
             add_files(output, scene, &map)
         });
-        failures.extend(kept.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
+        failures.extend(written.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
         Ok(record)
     }
 
@@ -141,11 +141,11 @@ impl<'a> Run<'a> {
         Ok((map, record))
     }
 
-    fn given(&self, given: &Given, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
-        let map = disparities::read(&given.path(name))?;
+    fn supplied(&self, maps: &SuppliedMaps, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
+        let map = disparities::read(&maps.path(name))?;
         let record = Record {
             scene: name.into(),
-            method: given.name.clone(),
+            method: maps.name.clone(),
             scores: scene.score(&map)?,
             range: Value::Null,
             seconds: None,
@@ -159,7 +159,7 @@ impl<'a> Run<'a> {
 fn name_of(name: &str, method: Method) -> String {
     match method {
         Method::Ours(_) => name.into(),
-        Method::Given(given) => format!("{name}, {}", given.name),
+        Method::Supplied(maps) => format!("{name}, {}", maps.name),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::cli::eval::kept;
+use crate::cli::eval::saved_results;
 
 /// What a column's figures are.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct Row {
     pub figures: Vec<f64>,
 }
 
-impl kept::Record for Row {
+impl saved_results::Saveable for Row {
     fn to_json(&self) -> Value {
         json!({ "scene": self.scene, "condition": self.condition, "figures": self.figures })
     }
@@ -133,7 +133,7 @@ fn quoted(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
     fn table() -> Table {
         let column = |name: &str, unit| Column { name: name.into(), title: name.into(), unit };

@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 /// What a method says.
-pub struct Answers {
+pub struct MethodMatches {
     /// The points that it was asked about, in pixels of the first view.
     pub points: Vec<DVec2>,
     /// Its answers to these.
@@ -83,27 +83,27 @@ impl Method {
     ///
     /// # Errors
     /// As [`match_views`] and [`pipeline::run`].
-    pub fn answer(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<Answers> {
+    pub fn run(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<MethodMatches> {
         let Some(config) = self.dense() else {
             let found = match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default())?;
             let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
             let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
-            return Ok(Answers { points, at_points: matches.clone(), everywhere: matches });
+            return Ok(MethodMatches { points, at_points: matches.clone(), everywhere: matches });
         };
         let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
         let (width, height) = first.size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| DVec2::new(x.into(), y.into())));
-        Ok(Answers {
+        Ok(MethodMatches {
             points: points.to_vec(),
-            at_points: points.iter().filter_map(|&at| answer_at(&dense, at)).collect(),
-            everywhere: pixels.filter_map(|at| answer_at(&dense, at)).collect(),
+            at_points: points.iter().filter_map(|&at| match_at(&dense, at)).collect(),
+            everywhere: pixels.filter_map(|at| match_at(&dense, at)).collect(),
         })
     }
 }
 
 /// What a map says about a place of the left view: the disparity of the pixel that it lies in. Where that was not
 /// measured, or only filled in, it says nothing.
-fn answer_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
+fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
     // Interest points can lie up to half a pixel outside the last ones' centres.
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
     let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
@@ -124,7 +124,7 @@ mod tests {
         let disparity = Plane::from_fn(4, 1, |x, _| [256, 384, NONE, 512][x as usize]);
         let confidence = Plane::from_fn(4, 1, |x, _| [0, 7, 0, 9][x as usize]);
         let dense = Dense { disparity, confidence };
-        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| answer_at(&dense, DVec2::new(x, 0.3)));
+        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| match_at(&dense, DVec2::new(x, 0.3)));
         let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));
         let second = Some((3.4 - 2.0, 0.3, 9.0));
         assert_eq!(found, [None, Some((-0.75, 0.3, 7.0)), Some((-0.25, 0.3, 7.0)), None, second]);

@@ -25,12 +25,12 @@ use serde_json::json;
 use self::{
     curve::Figure,
     results::{Cell, Group, groups},
-    run::{Found, Run},
+    run::{SceneResults, Run},
 };
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        complain, kept, scenes,
+        report_failures, saved_results, scenes,
     },
     options::RunOptions,
     output::Output,
@@ -120,7 +120,7 @@ impl Paper {
         let root = self.output.as_deref().map(Output::open).transpose()?;
         let backend = self.run.open()?;
         let run = Run::new(&self, &changes, &backend);
-        let mut told = false;
+        let mut printed = false;
         for files in &scenes {
             match run.scene(files) {
                 Ok(found) => {
@@ -129,8 +129,8 @@ impl Paper {
                         failures.push(error.to_string());
                     }
                     if !self.run.quiet && !groups.is_empty() {
-                        run.progress.suspend(|| self.tell(&files.name, &groups, &found))?;
-                        told = true;
+                        run.progress.suspend(|| self.print_results(&files.name, &groups, &found))?;
+                        printed = true;
                     }
                     failures.extend(found.failures);
                 }
@@ -138,10 +138,10 @@ impl Paper {
             }
         }
         drop((run, root));
-        if told {
+        if printed {
             terminal::print(table::LEGEND)?;
         }
-        complain(&failures)
+        report_failures(&failures)
     }
 
     fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Error>)> {
@@ -155,7 +155,7 @@ impl Paper {
     }
 
     /// The scene's curves, plots and report, where a folder was named.
-    fn write(&self, scene: &str, groups: &[Group], found: &Found, backend: &Backend) -> hsad::Result<()> {
+    fn write(&self, scene: &str, groups: &[Group], found: &SceneResults, backend: &Backend) -> hsad::Result<()> {
         let Some(root) = &self.output else { return Ok(()) };
         let mut output = Output::open(&root.join(scene))?;
         for figure in Figure::ALL {
@@ -184,12 +184,12 @@ impl Paper {
         output.finish()
     }
 
-    fn tell(&self, scene: &str, groups: &[Group], found: &Found) -> io::Result<()> {
+    fn print_results(&self, scene: &str, groups: &[Group], found: &SceneResults) -> io::Result<()> {
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
             text += &format!("\ncurves and plots are in {}", folder.join(scene).display());
-            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Done(_))).count();
-            text += &kept::told(found.kept, done);
+            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Measured(_))).count();
+            text += &saved_results::reuse_note(found.reused, done);
             text.push('\n');
         }
         terminal::print(&(text + "\n"))

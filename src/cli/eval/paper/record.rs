@@ -8,8 +8,8 @@ use hsad::{
 };
 use serde_json::{Value, json};
 
-use super::method::{Answers, Method};
-use crate::cli::eval::kept;
+use super::method::{MethodMatches, Method};
+use crate::cli::eval::saved_results;
 
 /// A method's answers under a condition, held against the truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Record {
     /// [`hsad::Error::Parameter`] for a tolerance that is none.
     pub fn new(
         (condition, method): (&str, Method),
-        answers: Answers,
+        answers: MethodMatches,
         (truth, disparities): (&Truth, &Plane<f32>),
         tolerance: f64,
         seconds: f64,
@@ -62,7 +62,7 @@ impl Record {
     }
 }
 
-impl kept::Record for Record {
+impl saved_results::Saveable for Record {
     fn to_json(&self) -> Value {
         let Self { condition, method, points, known, shown, right, pixels, everywhere, seconds } = self;
         json!({
@@ -126,7 +126,7 @@ fn counted(right: &[bool]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
     /// With answers that are right where `right` has a 1, of which the picture has the same.
     pub fn record(condition: &str, method: Method, shown: usize, right: &str) -> Record {
@@ -157,7 +157,7 @@ pub mod tests {
             points: None,
         };
         let at_points = vec![answer(0, 0.0, 3.0), answer(1, 1.0, 1.0), answer(2, 1.5, 2.0), answer(4, 0.0, 9.0)];
-        let answers = Answers { points: points.clone(), everywhere: at_points[1..2].to_vec(), at_points };
+        let answers = MethodMatches { points: points.clone(), everywhere: at_points[1..2].to_vec(), at_points };
         let record = Record::new(("none", Method::Balanced), answers, (&truth, &disparities), 1.0, 2.0).unwrap();
         // The hidden one is the surest, and wrong.
         assert_eq!((record.known, record.shown, record.right), (4, 3, vec![false, false, true]));

@@ -8,7 +8,7 @@ use super::{
 
 /// One method under one condition.
 pub enum Cell {
-    Done(Record),
+    Measured(Record),
     /// It needs rows that correspond, and the condition leaves none.
     NotApplicable {
         condition: String,
@@ -19,21 +19,21 @@ pub enum Cell {
 impl Cell {
     fn condition(&self) -> &str {
         match self {
-            Self::Done(record) => &record.condition,
+            Self::Measured(record) => &record.condition,
             Self::NotApplicable { condition, .. } => condition,
         }
     }
 
     fn method(&self) -> Method {
         match self {
-            Self::Done(record) => record.method,
+            Self::Measured(record) => record.method,
             Self::NotApplicable { method, .. } => *method,
         }
     }
 
     fn record(&self) -> Option<&Record> {
         match self {
-            Self::Done(record) => Some(record),
+            Self::Measured(record) => Some(record),
             Self::NotApplicable { .. } => None,
         }
     }
@@ -91,7 +91,7 @@ pub mod tests {
 
     /// Two conditions by all methods, and one that only the sparse one can be used under.
     pub fn cells() -> Vec<Cell> {
-        let done = |condition, method, right| Cell::Done(record(condition, method, 8, right));
+        let done = |condition, method, right| Cell::Measured(record(condition, method, 8, right));
         let not = |method| Cell::NotApplicable { condition: "rotation=90".into(), method };
         vec![
             done("none", Method::Sparse, "1111"),

@@ -14,13 +14,13 @@ const RESULTS: [&str; 4] = ["disparity.pfm", "error.png", "figure.png", "result.
 
 /// Another program's maps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
+pub struct SuppliedMaps {
     /// What the program is called.
     pub name: String,
     file: String,
 }
 
-impl Given {
+impl SuppliedMaps {
     /// Takes NAME=FILE apart.
     ///
     /// # Errors
@@ -51,12 +51,12 @@ impl Given {
 ///
 /// # Errors
 /// [`Error::Parameter`].
-pub fn check(given: &[Given], scenes: usize) -> Result<()> {
-    let refused = |given: &Given, expected: String| {
-        Err(Error::Parameter { name: "disparity", value: format!("{}={}", given.name, given.file), expected })
+pub fn check(maps: &[SuppliedMaps], scenes: usize) -> Result<()> {
+    let refused = |maps: &SuppliedMaps, expected: String| {
+        Err(Error::Parameter { name: "disparity", value: format!("{}={}", maps.name, maps.file), expected })
     };
-    for (index, this) in given.iter().enumerate() {
-        if given[..index].iter().any(|other| other.name == this.name) {
+    for (index, this) in maps.iter().enumerate() {
+        if maps[..index].iter().any(|other| other.name == this.name) {
             return refused(this, format!("there is another '{}': give each program a name of its own", this.name));
         }
         if scenes > 1 && !this.file.contains(SCENE) {
@@ -78,15 +78,15 @@ mod tests {
 
     #[test]
     fn names_and_files() {
-        let given = Given::parse("sgbm=maps/{scene}/a=b.png").unwrap();
+        let given = SuppliedMaps::parse("sgbm=maps/{scene}/a=b.png").unwrap();
         assert_eq!((&*given.name, given.path("Art")), ("sgbm", PathBuf::from("maps/Art/a=b.png")));
         for text in ["64", "=a", "a=", "a/b=c", "..=c", "hsad=c", "result.json=c", "a\nb=c"] {
-            assert!(Given::parse(text).is_err(), "{text}");
+            assert!(SuppliedMaps::parse(text).is_err(), "{text}");
         }
-        let alone = Given::parse("sgbm=map.pfm").unwrap();
+        let alone = SuppliedMaps::parse("sgbm=map.pfm").unwrap();
         check(slice::from_ref(&alone), 1).unwrap();
         check(slice::from_ref(&given), 9).unwrap();
-        let message = |given: &[Given], scenes| check(given, scenes).unwrap_err().to_string();
+        let message = |maps: &[SuppliedMaps], scenes| check(maps, scenes).unwrap_err().to_string();
         assert!(message(slice::from_ref(&alone), 2).contains("as in sgbm=maps/{scene}.pfm"));
         assert!(message(&[alone, given], 1).contains("another 'sgbm'"));
     }

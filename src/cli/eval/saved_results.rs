@@ -15,8 +15,8 @@ use crate::cli::output::Output;
 /// The file that keeps a result, next to its pictures if it has any.
 const NAME: &str = "result.json";
 
-/// A result that can be kept.
-pub trait Record: Sized {
+/// A result that can be location.
+pub trait Saveable: Sized {
     /// An object, for [`Self::from_json`].
     fn to_json(&self) -> Value;
 
@@ -26,10 +26,10 @@ pub trait Record: Sized {
 
 /// Where results are kept, if they are, and all that they depend on.
 #[derive(Clone, Debug)]
-pub struct Place(Option<Kept>);
+pub struct SavedResults(Option<Location>);
 
 #[derive(Clone, Debug)]
-struct Kept {
+struct Location {
     folder: PathBuf,
     /// Of all that the results depend on. The standard library's hash may be another one in another release of the
     /// compiler, but then the program is another one, too.
@@ -38,7 +38,7 @@ struct Kept {
     fresh: bool,
 }
 
-impl Place {
+impl SavedResults {
     /// Keeps the results of this very build of the program below `folder`: whoever works on it must not be shown what
     /// another build found. Without a folder nothing is kept; where `fresh`, nothing is found.
     pub fn new(folder: Option<&Path>, fresh: bool) -> Self {
@@ -50,24 +50,24 @@ impl Place {
                 // It was replaced since it started: whatever was kept is not known to be of the same build.
                 Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
             }
-            Kept { folder: folder.into(), fingerprint, fresh }
+            Location { folder: folder.into(), fingerprint, fresh }
         }))
     }
 
     /// The folder `name` in this one.
     #[must_use]
     pub fn below(mut self, name: &str) -> Self {
-        if let Some(kept) = &mut self.0 {
-            kept.folder.push(name);
+        if let Some(location) = &mut self.0 {
+            location.folder.push(name);
         }
         self
     }
 
     /// The same for results that also depend on a text.
     #[must_use]
-    pub fn with(mut self, text: &str) -> Self {
-        if let Some(kept) = &mut self.0 {
-            text.hash(&mut kept.fingerprint);
+    pub fn depending_on(mut self, text: &str) -> Self {
+        if let Some(location) = &mut self.0 {
+            text.hash(&mut location.fingerprint);
         }
         self
     }
@@ -76,20 +76,20 @@ impl Place {
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be read.
-    pub fn with_file(mut self, path: &Path) -> Result<Self> {
-        if let Some(kept) = &mut self.0 {
-            fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut kept.fingerprint);
+    pub fn depending_on_file(mut self, path: &Path) -> Result<Self> {
+        if let Some(location) = &mut self.0 {
+            fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut location.fingerprint);
         }
         Ok(self)
     }
 
     /// The result of an earlier run, if neither its files nor anything that it depends on has changed.
-    pub fn find<R: Record>(&self) -> Option<R> {
-        let kept = self.0.as_ref().filter(|kept| !kept.fresh)?;
-        let result: Value = serde_json::from_str(&fs::read_to_string(kept.folder.join(NAME)).ok()?).ok()?;
-        let is_whole = |(name, hash): (&String, &Value)| kept.hash(name).is_ok_and(|found| *hash == found);
+    pub fn load<R: Saveable>(&self) -> Option<R> {
+        let location = self.0.as_ref().filter(|location| !location.fresh)?;
+        let result: Value = serde_json::from_str(&fs::read_to_string(location.folder.join(NAME)).ok()?).ok()?;
+        let is_whole = |(name, hash): (&String, &Value)| location.hash(name).is_ok_and(|found| *hash == found);
         let holds =
-            result["fingerprint"] == text(&kept.fingerprint) && result["files"].as_object()?.iter().all(is_whole);
+            result["fingerprint"] == text(&location.fingerprint) && result["files"].as_object()?.iter().all(is_whole);
         if holds { R::from_json(&result) } else { None }
     }
 
@@ -97,22 +97,22 @@ impl Place {
     ///
     /// # Errors
     /// [`Error::Io`] with the file; those of `add`.
-    pub fn keep(&self, result: &impl Record, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
-        let Some(kept) = &self.0 else { return Ok(()) };
-        let mut output = Output::open(&kept.folder)?;
+    pub fn save(&self, result: &impl Saveable, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
+        let Some(location) = &self.0 else { return Ok(()) };
+        let mut output = Output::open(&location.folder)?;
         add(&mut output)?;
         // Until the last file appears, an earlier result does not fit these, and will not be found.
         output.finish()?;
         let mut result = result.to_json();
-        result["fingerprint"] = text(&kept.fingerprint).into();
-        let files = output.names().iter().map(|&name| Ok((name.to_string(), kept.hash(name)?.into())));
+        result["fingerprint"] = text(&location.fingerprint).into();
+        let files = output.names().iter().map(|&name| Ok((name.to_string(), location.hash(name)?.into())));
         result["files"] = Value::Object(files.collect::<Result<_>>()?);
         output.add_json(NAME, &result)?;
         output.finish()
     }
 }
 
-impl Kept {
+impl Location {
     /// What tells whether a file in the folder is still the same.
     fn hash(&self, name: &str) -> Result<String> {
         let path = self.folder.join(name);
@@ -127,10 +127,10 @@ fn text(hasher: &DefaultHasher) -> String {
 }
 
 /// The end of a sentence on where results are: how many of them an earlier run made.
-pub fn told(kept: usize, all: usize) -> String {
-    match kept {
+pub fn reuse_note(reused: usize, total: usize) -> String {
+    match reused {
         0 => String::new(),
-        _ => format!("; {kept} of {all} results were there from an earlier run (--fresh computes them again)"),
+        _ => format!("; {reused} of {total} results were there from an earlier run (--fresh computes them again)"),
     }
 }
 
@@ -145,7 +145,7 @@ mod tests {
     #[derive(Debug, PartialEq)]
     struct Number(u64);
 
-    impl Record for Number {
+    impl Saveable for Number {
         fn to_json(&self) -> Value {
             json!({ "number": self.0 })
         }
@@ -160,34 +160,34 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let input = folder.path().join("input");
         fs::write(&input, "picture").unwrap();
-        let root = Place::new(Some(folder.path()), false);
-        let place = || root.clone().below("a").with("noise=3").with_file(&input).unwrap();
-        assert_eq!(place().find::<Number>(), None);
-        place().keep(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
-        assert_eq!(place().find(), Some(Number(7)));
+        let root = SavedResults::new(Some(folder.path()), false);
+        let saved = || root.clone().below("a").depending_on("noise=3").depending_on_file(&input).unwrap();
+        assert_eq!(saved().load::<Number>(), None);
+        saved().save(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
+        assert_eq!(saved().load(), Some(Number(7)));
 
-        assert_eq!(root.clone().below("b").with("noise=3").with_file(&input).unwrap().find::<Number>(), None);
-        assert_eq!(root.clone().below("a").with("noise=4").with_file(&input).unwrap().find::<Number>(), None);
-        let fresh = Place::new(Some(folder.path()), true).below("a").with("noise=3");
-        assert_eq!(fresh.with_file(&input).unwrap().find::<Number>(), None);
+        assert_eq!(root.clone().below("b").depending_on("noise=3").depending_on_file(&input).unwrap().load::<Number>(), None);
+        assert_eq!(root.clone().below("a").depending_on("noise=4").depending_on_file(&input).unwrap().load::<Number>(), None);
+        let fresh = SavedResults::new(Some(folder.path()), true).below("a").depending_on("noise=3");
+        assert_eq!(fresh.depending_on_file(&input).unwrap().load::<Number>(), None);
         fs::write(&input, "another").unwrap();
-        assert_eq!(place().find::<Number>(), None);
+        assert_eq!(saved().load::<Number>(), None);
         fs::write(&input, "picture").unwrap();
-        assert_eq!(place().find(), Some(Number(7)));
+        assert_eq!(saved().load(), Some(Number(7)));
         let map = folder.path().join("a/map");
         fs::write(&map, "2").unwrap();
-        assert_eq!(place().find::<Number>(), None, "half of it is another");
+        assert_eq!(saved().load::<Number>(), None, "half of it is another");
         fs::write(&map, "1").unwrap();
-        assert_eq!(place().find(), Some(Number(7)));
+        assert_eq!(saved().load(), Some(Number(7)));
         fs::remove_file(map).unwrap();
-        assert_eq!(place().find::<Number>(), None, "half of it is gone");
+        assert_eq!(saved().load::<Number>(), None, "half of it is gone");
     }
 
     #[test]
     fn without_a_folder_nothing_is_kept_or_read() {
-        let place = Place::new(None, false).below("a").with_file(Path::new("nowhere")).unwrap();
-        place.keep(&Number(7), |_| panic!("there is no folder")).unwrap();
-        assert_eq!(place.find::<Number>(), None);
-        assert!(Place::new(Some(Path::new("here")), false).with_file(Path::new("nowhere")).is_err());
+        let saved = SavedResults::new(None, false).below("a").depending_on_file(Path::new("nowhere")).unwrap();
+        saved.save(&Number(7), |_| panic!("there is no folder")).unwrap();
+        assert_eq!(saved.load::<Number>(), None);
+        assert!(SavedResults::new(Some(Path::new("here")), false).depending_on_file(Path::new("nowhere")).is_err());
     }
 }
