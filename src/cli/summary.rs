@@ -1,4 +1,4 @@
-//! The few lines about a run that people read.
+//! The summary of a run that is printed on the terminal.
 
 use hsad::{disparity::coverage, pipeline::RangeSource, seeding::Verdict};
 
@@ -8,7 +8,7 @@ use super::{
 };
 
 impl CompletedJob {
-    /// A line for each fact.
+    /// Device, range, matches, rectification, trust, coverage and time, one line each.
     pub fn summary(&self) -> String {
         let Self { job, backend, outcome, total, .. } = self;
         let seeding = &outcome.seeding;
@@ -49,7 +49,7 @@ impl CompletedJob {
     }
 }
 
-/// Where the files are.
+/// The line that names the output folder and its files.
 pub fn files(output: &Output) -> String {
     let mut text = String::new();
     line(&mut text, "files", format!("{}: {}", output.folder().display(), output.names().join(", ")));

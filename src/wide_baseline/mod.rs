@@ -136,7 +136,12 @@ type Indexed = (Seed, [usize; 2]);
 /// # Errors
 /// [`crate::Error::Parameter`]; and as [`Backend::features`].
 #[cfg(not(target_arch = "wasm32"))]
-pub fn match_views(backend: &Backend, first: &Luma, second: &Luma, config: &WideBaselineConfig) -> Result<WideBaselineMatches> {
+pub fn match_views(
+    backend: &Backend,
+    first: &Luma,
+    second: &Luma,
+    config: &WideBaselineConfig,
+) -> Result<WideBaselineMatches> {
     backend.wait(match_views_async(backend, first, second, config))
 }
 

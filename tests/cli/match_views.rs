@@ -172,7 +172,7 @@ fn options_of_the_other_method_are_refused() {
         let [left, right] = views("planes");
         let mut command = match_on_cpu(&left, &right, temporary.path());
         command.args(["--method", "kamencay"]).args(args);
-        fails(command, 2, &format!("{} is for --method hsad: leave one of them out", args[0]));
+        fails(command, 2, &format!("{} needs --method hsad: leave one of the two out", args[0]));
     }
     let [left, right] = views("planes");
     let mut command = match_on_cpu(&left, &right, temporary.path());

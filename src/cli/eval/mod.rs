@@ -1,8 +1,8 @@
 mod change;
 mod dense;
 mod features;
-mod saved_results;
 mod paper;
+mod saved_results;
 mod scenes;
 
 use std::fmt::Display;
@@ -12,7 +12,7 @@ use clap::{Args, Subcommand};
 
 use crate::cli::terminal;
 
-/// Tell how good results are, on data with known truth
+/// Measure the quality of results on data with ground truth
 #[derive(Args)]
 pub struct Eval {
     #[command(subcommand)]
@@ -27,7 +27,7 @@ enum Evaluation {
 }
 
 impl Eval {
-    /// Does what was asked.
+    /// Runs the evaluation.
     pub fn run(self) -> anyhow::Result<()> {
         match self.evaluation {
             Evaluation::Dense(command) => command.run(),
@@ -37,7 +37,7 @@ impl Eval {
     }
 }
 
-/// A line about each failure, the last of which is the program's own.
+/// Prints one line for each failure but the last, and returns the last one as the error of the program.
 fn report_failures(failures: &[impl Display]) -> anyhow::Result<()> {
     let Some((last, others)) = failures.split_last() else { return Ok(()) };
     others.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));

@@ -1,4 +1,4 @@
-//! Results that outlast a run, so that a long one can be interrupted and taken up again.
+//! Results saved in the output folder, so that an interrupted evaluation can be resumed.
 
 use std::{
     fs,
@@ -12,49 +12,49 @@ use serde_json::Value;
 
 use crate::cli::output::Output;
 
-/// The file that keeps a result, next to its pictures if it has any.
+/// The file of a saved result, next to its pictures if it has any.
 const NAME: &str = "result.json";
 
-/// A result that can be location.
+/// A result that can be saved as JSON.
 pub trait Saveable: Sized {
-    /// An object, for [`Self::from_json`].
+    /// The result as a JSON object.
     fn to_json(&self) -> Value;
 
-    /// What [`Self::to_json`] made; `None` where something is missing.
+    /// Reads an object that [`Self::to_json`] wrote; `None` if a value is missing.
     fn from_json(value: &Value) -> Option<Self>;
 }
 
-/// Where results are kept, if they are, and all that they depend on.
+/// Where results are saved, and a fingerprint of everything that they depend on; without a folder nothing is saved.
 #[derive(Clone, Debug)]
 pub struct SavedResults(Option<Location>);
 
 #[derive(Clone, Debug)]
 struct Location {
     folder: PathBuf,
-    /// Of all that the results depend on. The standard library's hash may be another one in another release of the
-    /// compiler, but then the program is another one, too.
+    /// Hash of everything that the results depend on. The standard library's hash function may change with the
+    /// compiler, but then the program changes, too.
     fingerprint: DefaultHasher,
-    /// Whether results of an earlier run are passed over.
+    /// Whether results of an earlier run are ignored.
     fresh: bool,
 }
 
 impl SavedResults {
-    /// Keeps the results of this very build of the program below `folder`: whoever works on it must not be shown what
-    /// another build found. Without a folder nothing is kept; where `fresh`, nothing is found.
+    /// Saves results below `folder`, valid for this build of the program only: a developer must not be shown the
+    /// results of another build. Without a folder nothing is saved; with `fresh` nothing is loaded.
     pub fn new(folder: Option<&Path>, fresh: bool) -> Self {
         Self(folder.map(|folder| {
             let mut fingerprint = DefaultHasher::new();
             env!("CARGO_PKG_VERSION").hash(&mut fingerprint);
             match std::env::current_exe().and_then(fs::read) {
                 Ok(bytes) => bytes.hash(&mut fingerprint),
-                // It was replaced since it started: whatever was kept is not known to be of the same build.
+                // The program file was replaced since the start: saved results cannot be attributed to this build.
                 Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
             }
             Location { folder: folder.into(), fingerprint, fresh }
         }))
     }
 
-    /// The folder `name` in this one.
+    /// The same dependencies, in the subfolder `name`.
     #[must_use]
     pub fn below(mut self, name: &str) -> Self {
         if let Some(location) = &mut self.0 {
@@ -63,7 +63,7 @@ impl SavedResults {
         self
     }
 
-    /// The same for results that also depend on a text.
+    /// Adds a text to the dependencies.
     #[must_use]
     pub fn depending_on(mut self, text: &str) -> Self {
         if let Some(location) = &mut self.0 {
@@ -72,7 +72,7 @@ impl SavedResults {
         self
     }
 
-    /// The same for results that also depend on what a file holds.
+    /// Adds the content of a file to the dependencies.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be read.
@@ -83,7 +83,7 @@ impl SavedResults {
         Ok(self)
     }
 
-    /// The result of an earlier run, if neither its files nor anything that it depends on has changed.
+    /// The result of an earlier run; `None` if its files or one of its dependencies have changed.
     pub fn load<R: Saveable>(&self) -> Option<R> {
         let location = self.0.as_ref().filter(|location| !location.fresh)?;
         let result: Value = serde_json::from_str(&fs::read_to_string(location.folder.join(NAME)).ok()?).ok()?;
@@ -93,15 +93,15 @@ impl SavedResults {
         if holds { R::from_json(&result) } else { None }
     }
 
-    /// Keeps a result, with the files that `add` makes beside it.
+    /// Saves a result, with the files that `add` adds beside it.
     ///
     /// # Errors
-    /// [`Error::Io`] with the file; those of `add`.
+    /// [`Error::Io`] with the file; the errors of `add`.
     pub fn save(&self, result: &impl Saveable, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
         let Some(location) = &self.0 else { return Ok(()) };
         let mut output = Output::open(&location.folder)?;
         add(&mut output)?;
-        // Until the last file appears, an earlier result does not fit these, and will not be found.
+        // Until `result.json` is replaced, its hashes do not match the new files, and no result is loaded.
         output.finish()?;
         let mut result = result.to_json();
         result["fingerprint"] = text(&location.fingerprint).into();
@@ -113,7 +113,7 @@ impl SavedResults {
 }
 
 impl Location {
-    /// What tells whether a file in the folder is still the same.
+    /// Hash of a file in the folder.
     fn hash(&self, name: &str) -> Result<String> {
         let path = self.folder.join(name);
         let mut hasher = DefaultHasher::new();
@@ -126,11 +126,11 @@ fn text(hasher: &DefaultHasher) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-/// The end of a sentence on where results are: how many of them an earlier run made.
+/// End of the sentence about the output folder: how many results were reused from an earlier run; empty for none.
 pub fn reuse_note(reused: usize, total: usize) -> String {
     match reused {
         0 => String::new(),
-        _ => format!("; {reused} of {total} results were there from an earlier run (--fresh computes them again)"),
+        _ => format!("; {reused} of {total} results are from an earlier run (--fresh computes them again)"),
     }
 }
 
@@ -166,8 +166,14 @@ mod tests {
         saved().save(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
         assert_eq!(saved().load(), Some(Number(7)));
 
-        assert_eq!(root.clone().below("b").depending_on("noise=3").depending_on_file(&input).unwrap().load::<Number>(), None);
-        assert_eq!(root.clone().below("a").depending_on("noise=4").depending_on_file(&input).unwrap().load::<Number>(), None);
+        assert_eq!(
+            root.clone().below("b").depending_on("noise=3").depending_on_file(&input).unwrap().load::<Number>(),
+            None
+        );
+        assert_eq!(
+            root.clone().below("a").depending_on("noise=4").depending_on_file(&input).unwrap().load::<Number>(),
+            None
+        );
         let fresh = SavedResults::new(Some(folder.path()), true).below("a").depending_on("noise=3");
         assert_eq!(fresh.depending_on_file(&input).unwrap().load::<Number>(), None);
         fs::write(&input, "another").unwrap();

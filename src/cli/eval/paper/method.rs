@@ -1,4 +1,4 @@
-//! The methods, and what each answers where it is asked.
+//! The methods, and the matches of each for given interest points.
 
 use glam::DVec2;
 use hsad::{
@@ -14,32 +14,32 @@ use hsad::{
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
-/// Who answers.
+/// A matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Matches of interest points, as `hsad eval features` has them.
+    /// Matches of interest points, as in `hsad eval features`.
     Sparse,
-    /// The rival: the hybrid method, with its default parameters.
+    /// The method that the paper compares itself with: the hybrid method, with its default parameters.
     Kamencay,
-    /// The dense half of this program, with its default preset.
+    /// Dense matching of this program, with its default preset.
     Balanced,
 }
 
-/// What a method says.
+/// The matches of one method.
 pub struct MethodMatches {
-    /// The points that it was asked about, in pixels of the first view.
+    /// The interest points to match, in pixels of the first view.
     pub points: Vec<DVec2>,
-    /// Its answers to these.
+    /// The matches of these points.
     pub at_points: Vec<PointMatch>,
-    /// Its answers about any place of the first view.
+    /// The matches of all positions of the first view; for a dense method one per measured pixel.
     pub everywhere: Vec<PointMatch>,
 }
 
 impl Method {
-    /// The one whose points the others are asked about comes first.
+    /// All methods; the first one finds the points that the others match.
     pub const ALL: [Self; 3] = [Self::Sparse, Self::Kamencay, Self::Balanced];
 
-    /// Its name in one word.
+    /// Name of the method in one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sparse => "sparse",
@@ -53,12 +53,12 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Whether it looks for the points of a row in the same row of the other view only.
+    /// Whether the method searches along rows only and so needs rows that correspond.
     pub fn needs_rows(self) -> bool {
         self != Self::Sparse
     }
 
-    /// All parameters, as a text that is another one where they are others.
+    /// All parameters as a text that changes with each of them.
     pub fn described(self) -> String {
         match self.dense() {
             None => format!("{:?}", WideBaselineConfig::default()),
@@ -66,9 +66,9 @@ impl Method {
         }
     }
 
-    /// How it matches whole pictures, if it does.
+    /// Configuration of a dense method; `None` for matches of interest points.
     fn dense(self) -> Option<Config> {
-        // Rows are known to correspond: no doubt about it shall cost a method its answers.
+        // Rows are known to correspond: a mistaken verdict on the rectification must not stop the method.
         let balanced = Config { force: true, ..Preset::Balanced.config() };
         match self {
             Self::Sparse => None,
@@ -79,11 +79,17 @@ impl Method {
         }
     }
 
-    /// Matches two views. `points` are what a dense method is asked about.
+    /// Matches two views. A dense method matches the given `points` and every pixel; matching of interest points
+    /// ignores `points` and finds its own.
     ///
     /// # Errors
     /// As [`match_views`] and [`pipeline::run`].
-    pub fn run(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<MethodMatches> {
+    pub fn run(
+        self,
+        backend: &Backend,
+        (first, second): (&Picture, &Picture),
+        points: &[DVec2],
+    ) -> Result<MethodMatches> {
         let Some(config) = self.dense() else {
             let found = match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default())?;
             let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
@@ -101,10 +107,10 @@ impl Method {
     }
 }
 
-/// What a map says about a place of the left view: the disparity of the pixel that it lies in. Where that was not
-/// measured, or only filled in, it says nothing.
+/// The match of a position of the left view, by the disparity of the pixel that it lies in; `None` if that disparity was
+/// not measured or only filled in.
 fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
-    // Interest points can lie up to half a pixel outside the last ones' centres.
+    // Interest points can lie up to half a pixel beyond the centres of the border pixels.
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
     let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
     let confidence = dense.confidence.get(x, y);

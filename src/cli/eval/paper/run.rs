@@ -1,4 +1,4 @@
-//! One condition after the other, by all methods.
+//! Runs all methods under one condition after the other.
 
 use std::time::Instant;
 
@@ -20,19 +20,20 @@ use crate::cli::{
     eval::{change::Change, saved_results::SavedResults},
     report,
     terminal::Progress,
+    wording::in_options,
 };
 
-/// What computes, under which conditions, and where its results are reused.
+/// The device, the conditions, and where results are saved.
 pub struct Run<'a> {
     options: &'a Paper,
     changes: &'a [Change],
     backend: &'a Backend,
-    /// Where the results of all scenes are reused.
+    /// Where the results of all scenes are saved.
     saved: SavedResults,
     pub progress: Progress,
 }
 
-/// A scene's results so far.
+/// The results of a scene so far.
 #[derive(Default)]
 pub struct SceneResults {
     pub cells: Vec<Cell>,
@@ -41,7 +42,8 @@ pub struct SceneResults {
     pub failures: Vec<String>,
 }
 
-/// A scene, and its second view after a change; each is made when it is first needed, which may be never.
+/// A scene, and its second view after a change; each is made when it is first needed, which with saved results may be
+/// never.
 struct Views<'s> {
     files: &'s SceneFiles,
     scene: Option<(Scene, Truth)>,
@@ -49,7 +51,7 @@ struct Views<'s> {
 }
 
 impl Views<'_> {
-    /// Both views, the truth about them, and the scene.
+    /// The scene, its changed second view, and the ground truth for that view.
     fn get(&mut self, change: &Change, seed: u64) -> Result<(&Scene, &Picture, &Truth)> {
         let (scene, truth) = match &mut self.scene {
             Some(read) => read,
@@ -77,13 +79,14 @@ impl<'a> Run<'a> {
         Self { options, changes, backend, saved, progress: Progress::new(options.run.quiet) }
     }
 
-    /// What all methods make of a scene under all conditions; what fails loses no other condition.
+    /// Runs all methods on a scene under all conditions. A failure does not stop the other conditions.
     ///
     /// # Errors
-    /// Where a file that results depend on cannot be read.
+    /// If a file that the results depend on cannot be read.
     pub fn scene(&self, files: &SceneFiles) -> Result<SceneResults> {
         let paths = files.files(View::Left)?;
-        let of_scene = paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
+        let of_scene =
+            paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
         let mut found = SceneResults::default();
         let mut views = Views { files, scene: None, changed: None };
         for (number, change) in (1..).zip(self.changes) {
@@ -107,9 +110,9 @@ impl<'a> Run<'a> {
                         found.cells.push(Cell::Measured(record));
                     }
                     Err(error) => {
-                        found.failures.push(format!("{name}, {}: {error}", method.name()));
+                        found.failures.push(format!("{name}, {}: {}", method.name(), in_options(&error)));
                         if !method.needs_rows() {
-                            // There is nothing that the others could be asked about.
+                            // Without its points the other methods have nothing to match.
                             break;
                         }
                     }
@@ -138,7 +141,7 @@ impl<'a> Run<'a> {
         let seconds = start.elapsed().as_secs_f64();
         let judged = (truth, &scene.truth);
         let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;
-        // What cannot be reused is shown all the same.
+        // A result that cannot be saved is shown all the same.
         let described = |error| format!("{}, {}, {}: {error}", views.files.name, change.name, method.name());
         found.failures.extend(saved.save(&record, |_| Ok(())).err().map(described));
         Ok(record)
