@@ -147,9 +147,9 @@ pub struct MatchOptions {
     /// Skip the left-right consistency check
     #[arg(long)]
     no_lr_check: bool,
-    /// Match the other view separately for the left-right consistency check, instead of reusing the costs of
-    /// the reference view: fewer errors beside occlusions, for nearly twice the time; balanced and quality only
-    /// (for fast see --whole-range)
+    /// Match the other view separately for the left-right consistency check, instead of deriving its
+    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time;
+    /// balanced and quality only (for fast see --whole-range)
     #[arg(long, conflicts_with = "no_lr_check")]
     search_both_views: bool,
     /// Leave holes where the left-right consistency check fails or too few neighbours agree
