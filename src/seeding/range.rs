@@ -79,7 +79,7 @@ mod tests {
         // 200 seeds from 10 to 50: 1.2 * 0.15 * 40 = 7.2 px below, 1.2 * 0.4 * 40 = 19.2 px above.
         let many = seeds((0..200).map(|i| if i % 2 == 0 { 10.0 } else { 50.0 }));
         assert_eq!(disparity_range(&many, 250).unwrap(), DisparityRange::inclusive(2, 70).unwrap());
-        // 20 of them: three times the margins, 18 px and 48 px.
+        // 20 seeds: three times the margins, 18 px and 48 px.
         assert_eq!(disparity_range(&many[..20], 25).unwrap(), DisparityRange::inclusive(-8, 98).unwrap());
         // A plane at -7.5 px: 3 px on both sides, rounded outwards to whole pixels.
         let plane = seeds([-7.5; 20]);

@@ -15,7 +15,7 @@ use crate::{
     seeding::{Rectification, Verdict},
 };
 
-/// Number of corrections of the alignment.
+/// Largest number of corrections of the alignment, each by the remaining similarity.
 const ROUNDS: usize = 4;
 /// An aligned view is corrected until rows differ by at most this, in pixels: refinement along rows keeps the difference.
 const EXACT: f32 = 0.25;

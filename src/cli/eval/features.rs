@@ -12,7 +12,7 @@ use std::{
 use clap::Args;
 use hsad::{
     Error, Result,
-    eval::{Judged, OfPoints, Point, PointMatch, conditions::Changed, curves::accuracy_of_first},
+    eval::{Judged, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
     io::{atomic::write_whole, png},
     pair::Backend,
     wide_baseline::{WideBaselineConfig, match_views},
@@ -344,8 +344,8 @@ impl Features {
             }
         };
         let judged = Judged::new(&matches, &truth, self.tolerance)?;
-        let of_points = points.map(|[first, second]| OfPoints::new(&matches, &judged, [&first, &second], &truth));
-        let by_points = |figure: &dyn Fn(&OfPoints) -> f64| of_points.as_ref().map_or(f64::NAN, figure);
+        let point_scores = points.map(|[first, second]| PointScores::new(&matches, &judged, [&first, &second], &truth));
+        let by_points = |figure: &dyn Fn(&PointScores) -> f64| point_scores.as_ref().map_or(f64::NAN, figure);
         let mut figures = vec![
             by_points(&|found| found.repeatability.fewer() as f64),
             judged.right.len() as f64,
