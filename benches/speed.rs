@@ -75,7 +75,12 @@ fn submit(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
 }
 
 /// Block matching with a 7x7 window (both views, uniqueness, consistency and sub-pixel), then the presets.
-fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32, is_selected: impl Fn(&str) -> bool) -> hsad::Result<()> {
+fn dense(
+    gpu: &Gpu,
+    [left, right]: &[Luma; 2],
+    disparities: u32,
+    is_selected: impl Fn(&str) -> bool,
+) -> hsad::Result<()> {
     let range = DisparityRange::new(0, disparities)?;
     let blocks = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
     let preset =

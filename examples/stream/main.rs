@@ -1,10 +1,10 @@
-//! Disparity of a sequence of frames: uploads, compute and read-back overlap over a ring of slots, and what the features of
-//! a frame tell of range and brightness serves the frames after it.
+//! Disparities of a sequence of frames: upload, compute and read-back overlap over a ring of slots, and the disparity range
+//! and brightness found from the features of a frame serve the following frames.
 //!
 //!     cargo run --example stream -- [FRAMES]
 //!
-//! The frames are windows that wander over the shipped pair; from the middle on, the right camera is darker.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "it tells what it does, and what is wrong")]
+//! The frames are windows that move over the shipped pair; from the middle on, the right camera is darker.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "it prints results and errors")]
 
 mod slot;
 
@@ -21,15 +21,15 @@ use hsad::{
     wgpu,
 };
 
-use slot::{Answer, Slot};
+use slot::{FrameResult, Slot};
 
 type AnyError = Box<dyn std::error::Error>;
 
-/// Frames on their way at a time: one that is uploaded, one that is computed, one that is read.
+/// Number of frames in flight: one is uploaded, one computed, one read.
 const SLOTS: usize = 3;
-/// Of so many frames, one is looked at for what it tells of the others.
+/// Seeding runs on one frame out of this many.
 const SEEDED: usize = 8;
-/// Width and height of a frame.
+/// Width and height of a frame, in pixels.
 const SIZE: (u32, u32) = (256, 192);
 
 /// The cameras.
@@ -39,7 +39,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// What both see at a time.
+    /// The views of both cameras at a time.
     fn frame(&self, index: usize) -> [Picture; 2] {
         let (width, height) = self.views[0].size();
         let (x0, y0) = ((3 * index as u32) % (width - SIZE.0), index as u32 % (height - SIZE.1));
@@ -51,13 +51,13 @@ impl Scene {
     }
 }
 
-/// The matcher with the slots that were made for it, and what it was made for.
+/// The matcher, its slots, and its configuration.
 struct Stream<'d> {
     device: &'d wgpu::Device,
     queue: &'d wgpu::Queue,
     config: DenseConfig,
     matcher: Matcher,
-    /// For the left and the right view, in the matcher's luma.
+    /// Detectors of the left and the right view, which read the matcher's luma.
     detectors: [Detector; 2],
     slots: Vec<Slot>,
 }
@@ -65,7 +65,7 @@ struct Stream<'d> {
 impl<'d> Stream<'d> {
     fn new(device: &'d wgpu::Device, queue: &'d wgpu::Queue, config: DenseConfig) -> hsad::Result<Self> {
         let matcher = Matcher::new(device, SIZE, &config)?;
-        // Room for few features, so that little has to be read.
+        // A small capacity, so that little has to be read back.
         let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
         let [left, right] = matcher.luma().map(|luma| Detector::new(device, luma, SIZE.0, SIZE.1, &features));
         let detectors = [left?, right?];
@@ -73,15 +73,15 @@ impl<'d> Stream<'d> {
         Ok(Self { device, queue, config, matcher, detectors, slots })
     }
 
-    /// Sends a frame off, in a slot that is free.
+    /// Submits a frame in a free slot.
     fn send(&mut self, index: usize, frame: [Picture; 2]) {
         let slot = &mut self.slots[index % SLOTS];
         let detectors = index.is_multiple_of(SEEDED).then_some(&self.detectors);
         slot.send((self.device, self.queue), &self.matcher, index, frame, detectors);
     }
 
-    /// Waits for the frame in the slot that frame `index` is to take, and draws conclusions from it.
-    fn collect(&mut self, index: usize) -> Result<Option<Answer>, AnyError> {
+    /// Waits for the frame in the slot that frame `index` will take, and learns from it.
+    fn collect(&mut self, index: usize) -> Result<Option<FrameResult>, AnyError> {
         let answer = self.slots[index % SLOTS].collect(self.device)?;
         if let Some(seeding) = answer.as_ref().and_then(|answer| answer.seeding.as_ref()) {
             self.learn(seeding)?;
@@ -89,8 +89,8 @@ impl<'d> Stream<'d> {
         Ok(answer)
     }
 
-    /// The seeds of a frame serve those that are sent after it. Another brightness costs nothing; for another range the
-    /// matcher is built anew, so there has to be a reason for it.
+    /// Adopts range and brightness from the seeds of a frame for the following frames. A change of brightness costs nothing; a
+    /// change of range rebuilds the matcher, so it happens only if necessary.
     fn learn(&mut self, seeding: &Seeding) -> Result<(), AnyError> {
         if let Some(found) = &seeding.brightness {
             let brightness = equalising(found);
@@ -101,7 +101,7 @@ impl<'d> Stream<'d> {
         let has = self.config.range;
         let too_small = found.min < has.min || found.last() > has.last();
         if too_small || 4 * found.count < has.count {
-            // Half as much on either side, so that it is not left again at once. What is on its way is let go.
+            // The new range is half as wide again on either side, so that it is not left at once. Frames in flight are dropped.
             let margin = (found.count / 2).cast_signed();
             let range = DisparityRange::inclusive(found.min - margin, found.last() + margin)?;
             println!("range {} to {} px instead of {} to {}", range.min, range.last(), has.min, has.last());
@@ -111,8 +111,13 @@ impl<'d> Stream<'d> {
     }
 }
 
-/// Sends all frames, with `SLOTS` of them on their way at a time or, `in_turn`, one; frames a second.
-fn run(stream: &mut Stream<'_>, scene: &Scene, in_turn: bool, mut tell: impl FnMut(Answer)) -> Result<f64, AnyError> {
+/// Submits all frames, with `SLOTS` of them in flight, or one if `in_turn`. Returns the frames per second.
+fn run(
+    stream: &mut Stream<'_>,
+    scene: &Scene,
+    in_turn: bool,
+    mut tell: impl FnMut(FrameResult),
+) -> Result<f64, AnyError> {
     let start = Instant::now();
     for index in 0..scene.frames + SLOTS {
         stream.collect(index)?.map(&mut tell);
@@ -126,7 +131,7 @@ fn run(stream: &mut Stream<'_>, scene: &Scene, in_turn: bool, mut tell: impl FnM
     Ok(scene.frames as f64 / start.elapsed().as_secs_f64())
 }
 
-fn tell(Answer { index, disparities, seeding }: Answer) {
+fn tell(FrameResult { index, disparities, seeding }: FrameResult) {
     let known: Vec<i32> = disparities.into_iter().filter(|&disparity| disparity != NONE).collect();
     let mean = known.iter().map(|&d| f64::from(d) / 256.0).sum::<f64>() / known.len().max(1) as f64;
     let coverage = 100.0 * known.len() as f64 / f64::from(SIZE.0 * SIZE.1);
@@ -165,7 +170,7 @@ fn stream() -> Result<(), AnyError> {
         ..Default::default()
     }))?;
 
-    // A guess, until there are seeds.
+    // The range is a guess until there are seeds.
     let config = Preset::Fast.config().dense(DisparityRange::new(0, 32)?, Brightness::SAME);
     let mut stream = Stream::new(&device, &queue, config)?;
     run(&mut stream, &scene, false, tell)?;

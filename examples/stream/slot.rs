@@ -1,4 +1,4 @@
-//! A frame on its way: textures that it is uploaded to, and buffers that the host reads its results from.
+//! A slot of the ring: textures that a frame is uploaded to, and buffers that the host reads its results from.
 
 use std::sync::mpsc::{Receiver, channel};
 
@@ -11,17 +11,17 @@ use hsad::{
     wgpu,
 };
 
-/// What came of a frame.
-pub struct Answer {
-    /// Which frame it was.
+/// Result of a frame.
+pub struct FrameResult {
+    /// Index of the frame.
     pub index: usize,
-    /// A disparity a pixel.
+    /// One disparity per pixel, in 1/256 px.
     pub disparities: Vec<i32>,
-    /// What its features tell, if it was looked at for that.
+    /// Seeding from the frame's features, if it was run on this frame.
     pub seeding: Option<Seeding>,
 }
 
-/// The textures and buffers of one frame at a time.
+/// Textures and buffers of one frame.
 pub struct Slot {
     textures: [wgpu::Texture; 2],
     inputs: Inputs,
@@ -31,7 +31,7 @@ pub struct Slot {
     sent: Option<Sent>,
 }
 
-/// A frame that was sent off.
+/// A submitted frame.
 struct Sent {
     index: usize,
     frame: [Picture; 2],
@@ -40,27 +40,27 @@ struct Sent {
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
-/// Where the host reads a view's features.
+/// Buffers from which the host reads a view's features.
 struct Found {
     count: wgpu::Buffer,
     keypoints: wgpu::Buffer,
     descriptors: wgpu::Buffer,
 }
 
-/// A buffer that the host reads, of as many bytes.
+/// A buffer of `size` bytes that the host reads.
 fn staging(device: &wgpu::Device, size: u64) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
     device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
 }
 
-/// The values of a buffer that is mapped, which is then free again.
+/// Reads the values of a mapped buffer and unmaps it.
 fn values<T: bytemuck::Pod>(buffer: &wgpu::Buffer) -> Result<Vec<T>, wgpu::MapRangeError> {
     let values = bytemuck::pod_collect_to_vec(&buffer.get_mapped_range(..)?);
     buffer.unmap();
     Ok(values)
 }
 
-/// The buffers of a detector that hold what it finds.
+/// The output buffers of a detector.
 fn found_by(detector: &Detector) -> [&wgpu::Buffer; 3] {
     let list = detector.keypoints();
     [list.found(), list.keypoints(), detector.descriptors()]
@@ -76,7 +76,7 @@ impl Found {
         [&self.count, &self.keypoints, &self.descriptors]
     }
 
-    /// The features, once all is mapped: of those that were found as many as there is room for.
+    /// Reads the features from the mapped buffers, up to their capacity.
     fn features(&self) -> Result<Vec<Feature>, wgpu::MapRangeError> {
         let mut keypoints = values::<Keypoint>(&self.keypoints)?;
         keypoints.truncate(values::<u32>(&self.count)?[0] as usize);
@@ -112,7 +112,7 @@ impl Slot {
         Ok(Self { textures, inputs, outputs, disparities, found, sent: None })
     }
 
-    /// Uploads a frame, and submits its matching and, with `detectors`, the search for its features.
+    /// Uploads a frame and submits dense matching and, with `detectors`, feature detection.
     pub fn send(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
@@ -139,7 +139,7 @@ impl Slot {
         let (send, mapped) = channel();
         for buffer in self.mapped(seeded) {
             let send = send.clone();
-            // Nobody receives it where the slot was given up.
+            // If the slot was dropped, nobody receives the result.
             buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
         }
         self.sent = Some(Sent { index, frame, seeded, submission, mapped });
@@ -151,8 +151,8 @@ impl Slot {
         [&self.disparities].into_iter().chain(features).collect()
     }
 
-    /// Waits for the frame that was sent off, if there is one, and for none that was sent after it.
-    pub fn collect(&mut self, device: &wgpu::Device) -> Result<Option<Answer>, Box<dyn std::error::Error>> {
+    /// Waits for the submitted frame, if there is one, but not for frames submitted later.
+    pub fn collect(&mut self, device: &wgpu::Device) -> Result<Option<FrameResult>, Box<dyn std::error::Error>> {
         let Some(Sent { index, frame, seeded, submission, mapped }) = self.sent.take() else { return Ok(None) };
         device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })?;
         for result in mapped {
@@ -167,6 +167,6 @@ impl Slot {
                 Some(Seeding::find((&views[0], &views[1]), (&left, &right), &SeedingConfig::default())?)
             }
         };
-        Ok(Some(Answer { index, disparities, seeding }))
+        Ok(Some(FrameResult { index, disparities, seeding }))
     }
 }

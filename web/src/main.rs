@@ -10,8 +10,9 @@ fn main() -> anyhow::Result<()> {
         text.parse::<u16>().with_context(|| format!("'{text}' is not a port: use a number from 0 to 65535"))
     })?;
     // The port is bound before anything is built, since it may be taken.
-    let listener = TcpListener::bind(("127.0.0.1", port))
-        .with_context(|| format!("port {port} is not available: use another one, as in cargo run -p hsad-web -- 8081"))?;
+    let listener = TcpListener::bind(("127.0.0.1", port)).with_context(|| {
+        format!("port {port} is not available: use another one, as in cargo run -p hsad-web -- 8081")
+    })?;
     let folder = hsad_web::bundle::target_folder().join("web");
     hsad_web::bundle::bundle(&folder)?;
     eprintln!("{} can be served by any web server", folder.display());
