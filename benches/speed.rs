@@ -2,9 +2,9 @@
 //! `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES [NAME]]]`, where NAME selects one measurement: 7x7, fast,
 //! balanced, quality or features.
 //!
-//! One line per measurement: name, first run (which compiles), and minimum and median of the other runs, in milliseconds;
-//! below a dense measurement the time of each kernel by the device's clock. `scripts/compare-opencv.py` runs this benchmark
-//! beside OpenCV.
+//! One line per measurement: name, first run (which compiles), and minimum and median of the other runs, in
+//! milliseconds; below a dense measurement the time of each kernel by the device's clock. `scripts/compare-opencv.py`
+//! runs this benchmark beside OpenCV.
 #![expect(clippy::print_stdout, reason = "a benchmark prints")]
 
 use std::{

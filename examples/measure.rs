@@ -1,8 +1,8 @@
-//! Figures that `hsad eval dense` does not give, for judging a change: plain block matching over the true range, quality
-//! of the confidence and of the disparity range found, and precision of the matches.
+//! Figures that `hsad eval dense` does not give, for judging a change: plain block matching over the true range,
+//! quality of the confidence and of the disparity range found, and precision of the matches.
 //!
-//! `cargo run --example measure -- [SCENE...]`, with a `SCENE` as for `hsad eval dense`; scenes without a non-occlusion mask
-//! are left out. The default is the scenes of `data/`.
+//! `cargo run --example measure -- [SCENE...]`, with a `SCENE` as for `hsad eval dense`; scenes without a non-occlusion
+//! mask are left out. The default is the scenes of `data/`.
 #![expect(clippy::print_stdout, reason = "a measurement prints")]
 
 use std::path::Path;
@@ -161,8 +161,8 @@ fn main() -> Result<(), AnyError> {
     Ok(())
 }
 
-/// Share of all pixel-disparities of both views that a coarse-to-fine search visits, in per cent: those of the cells, and
-/// both views at half the size; computed by the CPU twins.
+/// Share of all pixel-disparities of both views that a coarse-to-fine search visits, in per cent: those of the cells,
+/// and both views at half the size; computed by the CPU twins.
 fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     let (size, range) = (pair.size(), config.range);
     let half =

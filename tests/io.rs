@@ -21,8 +21,8 @@ use proptest::prelude::*;
 const FORMATS: [ImageFormat; 6] =
     [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
 
-/// Number of cases per property: `PROPTEST_CASES=100000 cargo test --test io` runs a long search, with a name behind it, as
-/// in `--test io homography`, over the properties with that name.
+/// Number of cases per property: `PROPTEST_CASES=100000 cargo test --test io` runs a long search, with a name behind
+/// it, as in `--test io homography`, over the properties with that name.
 fn cases_or(usual: u32) -> u32 {
     std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("a number of cases"))
 }
@@ -335,8 +335,8 @@ proptest! {
     }
 }
 
-/// Largest single allocation allowed for a file, in bytes: for the pixels that its header claims, unless they exceed the
-/// limit, in the largest layout, plus what a codec keeps of the file and besides it.
+/// Largest single allocation allowed for a file, in bytes: for the pixels that its header claims, unless they exceed
+/// the limit, in the largest layout, plus what a codec keeps of the file and besides it.
 fn most_bytes(bytes: &[u8]) -> usize {
     let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().expect("bytes can be read");
     let codec = if reader.format() == Some(ImageFormat::Tiff) { TIFF_BYTES } else { CODEC_BYTES };
@@ -349,7 +349,8 @@ fn most_bytes(bytes: &[u8]) -> usize {
 /// Buffers and tables of a codec, independent of the picture's size, in bytes: WebP needs 2 MiB.
 const CODEC_BYTES: usize = 1 << 22;
 
-/// Most memory that the TIFF codec reserves for a list in its header before reading it, in bytes, at 32 bytes per value.
+/// Most memory that the TIFF codec reserves for a list in its header before reading it, in bytes, at 32 bytes per
+/// value.
 const TIFF_BYTES: usize = 1 << 28;
 
 fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {

@@ -126,8 +126,8 @@ fn the_desk_lies_where_its_plane_puts_it() {
     }
 }
 
-/// Half of the pixels next to an edge see two surfaces at once, so the mean error stays above 0; the test is that no other
-/// disparity explains the pictures as well, not even one a quarter of a pixel away.
+/// Half of the pixels next to an edge see two surfaces at once, so the mean error stays above 0; the test is that no
+/// other disparity explains the pictures as well, not even one a quarter of a pixel away.
 #[test]
 fn the_truth_warps_each_view_onto_the_other() {
     for (scene, limit) in [("planes", 3.0), ("curved", 4.1)] {
@@ -156,8 +156,8 @@ fn the_weak_scene_changes_its_brightness_and_nothing_else() {
 
 /// The disparity of `other` at a counterpart lies between those of the two pixels around it. If these see one surface,
 /// interpolation is exact on a plane, because disparity is linear in the picture there, and good to the curvature
-/// elsewhere; only creases and the rims of thin objects are worse. (The nearest pixel alone would be off by up to half the
-/// slope.) An occluded counterpart has a nearer surface in front of it.
+/// elsewhere; only creases and the rims of thin objects are worse. (The nearest pixel alone would be off by up to half
+/// the slope.) An occluded counterpart has a nearer surface in front of it.
 #[test]
 fn both_truths_agree_where_visible_and_contradict_each_other_where_not() {
     for (scene, typical, limit) in [("planes", 1e-4, 0.01), ("curved", 5e-3, 0.05), ("weak", 2e-3, 0.05)] {

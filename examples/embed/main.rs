@@ -1,10 +1,10 @@
-//! Disparities inside a frame of an application's renderer: two pictures in textures, their disparities in a texture, drawn,
-//! all in one encoder and one submission, on the application's own device.
+//! Disparities inside a frame of an application's renderer: two pictures in textures, their disparities in a texture,
+//! drawn, all in one encoder and one submission, on the application's own device.
 //!
 //!     cargo run --example embed -- frame.png [LEFT RIGHT]
 //!
-//! writes the left picture and its disparities side by side. With a window, the frame would be presented instead of read
-//! back.
+//! writes the left picture and its disparities side by side. With a window, the frame would be presented instead of
+//! read back.
 #![expect(clippy::print_stderr, reason = "it prints errors")]
 
 use std::{

@@ -1,5 +1,5 @@
-//! Disparities of a sequence of frames: upload, compute and read-back overlap over a ring of slots, and the disparity range
-//! and brightness found from the features of a frame serve the following frames.
+//! Disparities of a sequence of frames: upload, compute and read-back overlap over a ring of slots, and the disparity
+//! range and brightness found from the features of a frame serve the following frames.
 //!
 //!     cargo run --example stream -- [FRAMES]
 //!
@@ -89,8 +89,8 @@ impl<'d> Stream<'d> {
         Ok(answer)
     }
 
-    /// Adopts range and brightness from the seeds of a frame for the following frames. A change of brightness costs nothing; a
-    /// change of range rebuilds the matcher, so it happens only if necessary.
+    /// Adopts range and brightness from the seeds of a frame for the following frames. A change of brightness costs
+    /// nothing; a change of range rebuilds the matcher, so it happens only if necessary.
     fn learn(&mut self, seeding: &Seeding) -> Result<(), AnyError> {
         if let Some(found) = &seeding.brightness {
             let brightness = equalising(found);
@@ -101,7 +101,8 @@ impl<'d> Stream<'d> {
         let has = self.config.range;
         let too_small = found.min < has.min || found.last() > has.last();
         if too_small || 4 * found.count < has.count {
-            // The new range is half as wide again on either side, so that it is not left at once. Frames in flight are dropped.
+            // The new range is half as wide again on either side, so that it is not left at once. Frames in flight are
+            // dropped.
             let margin = (found.count / 2).cast_signed();
             let range = DisparityRange::inclusive(found.min - margin, found.last() + margin)?;
             println!("range {} to {} px instead of {} to {}", range.min, range.last(), has.min, has.last());

@@ -1,4 +1,4 @@
-//! The subcommands of `hsad`, one file each, and what they share.
+//! The subcommands of `hsad`, one file each, and their shared modules.
 
 mod demo;
 mod devices;

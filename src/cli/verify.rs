@@ -25,9 +25,9 @@ use super::{
 
 /// Compare every kernel on a device with its CPU twin
 ///
-/// Runs each kernel and the whole pipelines on inputs drawn from a seed, at odd sizes; compares the results with those of
-/// the CPU twins, bit for bit where the arithmetic is in integers, and the twins with hashes stored in this program. The
-/// arrays of a failed case are written to a folder, with the command that repeats the case alone.
+/// Runs each kernel and the whole pipelines on inputs drawn from a seed, at odd sizes; compares the results with those
+/// of the CPU twins, bit for bit where the arithmetic is in integers, and the twins with hashes stored in this program.
+/// The arrays of a failed case are written to a folder, with the command that repeats the case alone.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad verify

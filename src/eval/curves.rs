@@ -1,7 +1,8 @@
 //! Curves over matches in order of confidence: the paper's figures 7 to 9, and precision over coverage.
 //!
-//! Each curve is computed from a list with `true` for a right match and `false` for a wrong one, the most confident first:
-//! these are the matches that a falling confidence threshold accepts. The `i`-th value belongs to the first `i + 1` matches.
+//! Each curve is computed from a list with `true` for a right match and `false` for a wrong one, the most confident
+//! first: these are the matches that a falling confidence threshold accepts. The `i`-th value belongs to the first `i +
+//! 1` matches.
 
 /// Recall and precision of the matches above a confidence threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +25,8 @@ pub fn f_measure(precision: f64, recall: f64) -> f64 {
     if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
 }
 
-/// Recall and precision (figure 7) of the first 1, 2, 3... matches; `correspondences` is the number of matches that could
-/// be found, at least the number of right ones.
+/// Recall and precision (figure 7) of the first 1, 2, 3... matches; `correspondences` is the number of matches that
+/// could be found, at least the number of right ones.
 pub fn recall_precision(right: &[bool], correspondences: usize) -> Vec<RecallPrecision> {
     let each = (1..).zip(counts(right));
     each.map(|(k, right)| RecallPrecision { recall: share(right, correspondences), precision: share(right, k) })
@@ -37,7 +38,8 @@ pub fn f_measure_over_recall(right: &[bool], correspondences: usize) -> Vec<(f64
     recall_precision(right, correspondences).iter().map(|point| (point.recall, point.f_measure())).collect()
 }
 
-/// Accuracy (figure 9): share of right matches among the first `k`, or among all if there are fewer; NaN without matches.
+/// Accuracy (figure 9): share of right matches among the first `k`, or among all if there are fewer; NaN without
+/// matches.
 pub fn accuracy_of_first(right: &[bool], k: usize) -> f64 {
     let first = &right[..right.len().min(k)];
     share(first.iter().filter(|&&right| right).count(), first.len())

@@ -36,9 +36,9 @@ impl From<&WideBaselineMatch> for PointMatch {
 
 /// Matches judged against the ground truth.
 ///
-/// A match is *right* if the second view shows the point of the first, and the matched position lies within the tolerance
-/// of the true one. Otherwise it is *wrong*, also if the point is occluded and nothing could be found. Matches without
-/// ground truth are neither and do not count.
+/// A match is *right* if the second view shows the point of the first, and the matched position lies within the
+/// tolerance of the true one. Otherwise it is *wrong*, also if the point is occluded and nothing could be found.
+/// Matches without ground truth are neither and do not count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
     /// For each match with ground truth, the most confident first: whether it is right. Among equally confident matches
@@ -76,8 +76,9 @@ impl Judged {
         Ok(Self { unknown: matches.len() - right.len(), right, order })
     }
 
-    /// Interleaves right and wrong matches of equal confidence evenly, as a random order does on average. For confidences
-    /// with few distinct values, which large parts of a picture share. `matches` are those given to [`Self::new`].
+    /// Interleaves right and wrong matches of equal confidence evenly, as a random order does on average. For
+    /// confidences with few distinct values, which large parts of a picture share. `matches` are those given to
+    /// [`Self::new`].
     #[must_use]
     pub fn with_even_ties(mut self, matches: &[PointMatch]) -> Self {
         let mut start = 0;
@@ -113,9 +114,9 @@ impl Judged {
 pub struct PointScores {
     /// Correspondences between the points.
     pub repeatability: Repeatability,
-    /// Number of points that could have been matched: the correspondences (see [`Repeatability`]), and every other point
-    /// with a right match, since block matching can locate a point to a pixel and a half where two detections are further
-    /// apart.
+    /// Number of points that could have been matched: the correspondences (see [`Repeatability`]), and every other
+    /// point with a right match, since block matching can locate a point to a pixel and a half where two detections are
+    /// further apart.
     pub findable: usize,
     /// Points with a right match, each counted once, divided by `findable`: 0 to 1, NaN if `findable` is 0.
     pub recall: f64,

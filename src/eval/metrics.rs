@@ -1,6 +1,6 @@
 //! Measures of the Middlebury benchmark (Scharstein and Szeliski, IJCV 47, 2002, section 5.1; Scharstein et al., GCPR
-//! 2014, section 5) and of the KITTI benchmark (Menze and Geiger, CVPR 2015, section 5). Missing estimates are kept apart
-//! from wrong ones.
+//! 2014, section 5) and of the KITTI benchmark (Menze and Geiger, CVPR 2015, section 5). Missing estimates are kept
+//! apart from wrong ones.
 
 use crate::{
     disparity::{self, DisparityMap},
@@ -22,8 +22,8 @@ pub struct Bad {
     pub of_estimated: f64,
 }
 
-/// Shares of KITTI's outliers, 'D1': pixels with an error above [`OUTLIER_PIXELS`] and above [`OUTLIER_SHARE`] of the true
-/// disparity.
+/// Shares of KITTI's outliers, 'D1': pixels with an error above [`OUTLIER_PIXELS`] and above [`OUTLIER_SHARE`] of the
+/// true disparity.
 ///
 /// KITTI's own tool fills a map's holes before it counts over all pixels; here a hole is an outlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,9 +42,9 @@ pub const OUTLIER_SHARE: f64 = 0.05;
 
 /// Score of a disparity map against the ground truth.
 ///
-/// A pixel is *scored* if its ground truth is known and the mask, if any, is 255 there; it is *estimated* if it is scored
-/// and the map has a disparity. Without scored or estimated pixels the shares and averages are undefined: they are NaN,
-/// never a flattering 0.
+/// A pixel is *scored* if its ground truth is known and the mask, if any, is 255 there; it is *estimated* if it is
+/// scored and the map has a disparity. Without scored or estimated pixels the shares and averages are undefined: they
+/// are NaN, never a flattering 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
     /// Number of scored pixels.
@@ -74,8 +74,8 @@ impl Score {
     }
 }
 
-/// Scores `map`, in 1/256 px, against `truth`, in pixels and not finite where unknown, where `mask` is 255. `thresholds`
-/// are those of [`Score::bad`], in pixels.
+/// Scores `map`, in 1/256 px, against `truth`, in pixels and not finite where unknown, where `mask` is 255.
+/// `thresholds` are those of [`Score::bad`], in pixels.
 ///
 /// An error of exactly the threshold is right. `truth` is not rounded to 1/256 px.
 ///

@@ -1,7 +1,8 @@
-//! Quality of disparity maps ([`score`]) and of matches of interest points, also under synthetic changes of the second view.
+//! Quality of disparity maps ([`score`]) and of matches of interest points, also under synthetic changes of the second
+//! view.
 //!
-//! A [`Truth`] maps points of the first view to the second, under any [`conditions`]. [`Judged`] compares matches with it,
-//! [`PointScores`] relates them to all detected points, and [`curves`] are computed from the judged matches.
+//! A [`Truth`] maps points of the first view to the second, under any [`conditions`]. [`Judged`] compares matches with
+//! it, [`PointScores`] relates them to all detected points, and [`curves`] are computed from the judged matches.
 
 pub mod conditions;
 pub mod curves;

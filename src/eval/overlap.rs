@@ -27,8 +27,8 @@ impl Region {
         Self { centre, shape: DMat2::from_diagonal(DVec2::splat(radius)) }
     }
 
-    /// Enlarges both regions by one factor, each about its own centre, so that the area of `self` becomes that of a circle
-    /// of [`NORMAL_RADIUS`]. The distance of the centres stays.
+    /// Enlarges both regions by one factor, each about its own centre, so that the area of `self` becomes that of a
+    /// circle of [`NORMAL_RADIUS`]. The distance of the centres stays.
     fn normalised(self, other: Self) -> (Self, Self) {
         let factor = NORMAL_RADIUS / self.shape.determinant().abs().sqrt();
         let scaled = |region: Self| Self { shape: region.shape * factor, ..region };
@@ -36,8 +36,8 @@ impl Region {
     }
 }
 
-/// Overlap error: one minus intersection over union, after normalisation to the size of `reference`; 0 for equal regions,
-/// 1 for disjoint ones.
+/// Overlap error: one minus intersection over union, after normalisation to the size of `reference`; 0 for equal
+/// regions, 1 for disjoint ones.
 pub fn overlap_error(reference: Region, other: Region) -> f64 {
     let (reference, other) = reference.normalised(other);
     error(reference, other)

@@ -31,8 +31,8 @@ impl From<&Feature> for Point {
 /// Correspondences between two lists of interest points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repeatability {
-    /// For each point of the first view the index of its corresponding point of the second. Each point corresponds to one
-    /// other at most; candidate pairs are taken in order of overlap error, the smallest first.
+    /// For each point of the first view the index of its corresponding point of the second. Each point corresponds to
+    /// one other at most; candidate pairs are taken in order of overlap error, the smallest first.
     pub partner: Vec<Option<usize>>,
     /// Number of points of each view in the area that both views show.
     pub shared: [usize; 2],
@@ -90,8 +90,8 @@ fn reach(linear: DMat2) -> f64 {
     NORMAL_RADIUS * (linear.x_axis.length_squared() + linear.y_axis.length_squared()).sqrt()
 }
 
-/// Overlap error of two points in the first view; `None` if it is above [`MAX_OVERLAP_ERROR`]. The second point's circle is
-/// mapped to the first view by the inverse of the local linear map at the first point.
+/// Overlap error of two points in the first view; `None` if it is above [`MAX_OVERLAP_ERROR`]. The second point's
+/// circle is mapped to the first view by the inverse of the local linear map at the first point.
 pub(super) fn corresponding(first: Point, second: Point, truth: &Truth) -> Option<f64> {
     let back = truth.linear(first.at).inverse();
     let displacement = back * (second.at - truth.locate(first.at)?);

@@ -137,8 +137,8 @@ impl SceneFiles {
         })
     }
 
-    /// The layout of Middlebury 2014 (D. Scharstein et al., 'High-resolution stereo datasets with subpixel-accurate ground
-    /// truth', GCPR 2014), with the file names of the data sets or of the third version of the evaluation.
+    /// The layout of Middlebury 2014 (D. Scharstein et al., 'High-resolution stereo datasets with subpixel-accurate
+    /// ground truth', GCPR 2014), with the file names of the data sets or of the third version of the evaluation.
     fn middlebury(folder: &Path) -> Option<Self> {
         let [left, right] = ["im0.png", "im1.png"].map(|name| folder.join(name));
         let truth = |disparities: [&str; 2], masks: [&str; 2]| {
@@ -160,8 +160,8 @@ impl SceneFiles {
         })
     }
 
-    /// The layout of KITTI 2015 (M. Menze and A. Geiger, 'Object Scene Flow for Autonomous Vehicles', CVPR 2015), from the
-    /// left picture of a frame with ground truth: the first frame, N_10, of a training sequence.
+    /// The layout of KITTI 2015 (M. Menze and A. Geiger, 'Object Scene Flow for Autonomous Vehicles', CVPR 2015), from
+    /// the left picture of a frame with ground truth: the first frame, N_10, of a training sequence.
     fn frame(picture: &Path) -> Option<Self> {
         let (file, folder) = (picture.file_name()?, picture.parent()?);
         if folder.file_name()? != "image_2" {

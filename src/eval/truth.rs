@@ -1,5 +1,5 @@
-//! Ground truth of a pair of views: positions of the first view's points in the second, by a disparity map or a homography,
-//! combined with a change of the second view.
+//! Ground truth of a pair of views: positions of the first view's points in the second, by a disparity map or a
+//! homography, combined with a change of the second view.
 
 use glam::{DAffine2, DMat2, DMat3, DVec2, DVec3};
 
@@ -71,8 +71,8 @@ impl Truth {
         Ok(Self { model, first_size: (width, height), second_size: (width, height), change: None })
     }
 
-    /// Ground truth of two views of a plane, or of two views from one position: the homography `matrix` maps `(x, y, 1)` of
-    /// the first view to the second. Sizes are width and height in pixels.
+    /// Ground truth of two views of a plane, or of two views from one position: the homography `matrix` maps `(x, y,
+    /// 1)` of the first view to the second. Sizes are width and height in pixels.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the matrix has no inverse.
@@ -140,8 +140,8 @@ impl Truth {
         }
     }
 
-    /// Local linear map (rotation, scale, shear) from the surroundings of a point to the second view. Surfaces of a stereo
-    /// scene are assumed to face the cameras.
+    /// Local linear map (rotation, scale, shear) from the surroundings of a point to the second view. Surfaces of a
+    /// stereo scene are assumed to face the cameras.
     pub fn linear(&self, first: DVec2) -> DMat2 {
         let model = match &self.model {
             Model::Stereo { .. } => DMat2::IDENTITY,
@@ -206,8 +206,8 @@ mod tests {
         let picture = Picture::filled(9, 3, [0; 4]);
         let turned = "rotation=90".parse::<Condition>().unwrap().apply(&picture, 1);
         let truth = stereo().changed(&turned);
-        // (6, 1) corresponds to (4, 1) of the second view, its centre; (8, 1) to (6, 1), which rotates to two rows below
-        // the centre, outside the three rows.
+        // (6, 1) corresponds to (4, 1) of the second view, its centre; (8, 1) to (6, 1), which rotates to two rows
+        // below the centre, outside the three rows.
         assert_eq!(truth.locate(DVec2::new(6.0, 1.0)), Some(DVec2::new(4.0, 1.0)));
         assert_eq!(truth.locate(DVec2::new(8.0, 1.0)), Some(DVec2::new(4.0, 3.0)));
         assert!(truth.shows(DVec2::new(7.0, 1.0)) && !truth.shows(DVec2::new(8.0, 1.0)));

@@ -5,8 +5,8 @@ use glam::{DAffine2, DVec2};
 use super::grey;
 use crate::image::Plane;
 
-/// Similarity about the centre of a picture of `size` (width and height in pixels): rotates by `angle` degrees, clockwise
-/// on the screen, and enlarges by `scale`.
+/// Similarity about the centre of a picture of `size` (width and height in pixels): rotates by `angle` degrees,
+/// clockwise on the screen, and enlarges by `scale`.
 ///
 /// Multiples of 90 degrees are exact; other angles are exact up to the rounding of `f64`.
 pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAffine2 {
@@ -27,8 +27,8 @@ pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAff
 /// Resamples `plane` to a picture of `size` (width and height in pixels) that shows at `map(p)` the value of `plane` at
 /// `p`. Returns the picture and a mask: 255 where it shows the plane; 0 beyond the plane's edge, where it is `fill`.
 ///
-/// Interpolation by Catmull-Rom splines (Keys 1981, a = -1/2). If `map` shrinks the plane, a pixel is the mean of enough
-/// samples to cover it, up to 8x8.
+/// Interpolation by Catmull-Rom splines (Keys 1981, a = -1/2). If `map` shrinks the plane, a pixel is the mean of
+/// enough samples to cover it, up to 8x8.
 pub fn resample<const N: usize>(
     plane: &Plane<[u8; N]>,
     map: DAffine2,

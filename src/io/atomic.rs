@@ -10,11 +10,11 @@ use std::{
 
 use crate::error::{Error, Result};
 
-/// Writes a file to a temporary place and moves it to `path` only when it is complete. If anything fails, an older file at
-/// `path` stays unchanged.
+/// Writes a file to a temporary place and moves it to `path` only when it is complete. If anything fails, an older file
+/// at `path` stays unchanged.
 ///
-/// The new file takes over the permissions of the file it replaces; a read-only file is not replaced; a link is followed; a
-/// path that is no regular file (`/dev/null`, a pipe) is written to directly.
+/// The new file takes over the permissions of the file it replaces; a read-only file is not replaced; a link is
+/// followed; a path that is no regular file (`/dev/null`, a pipe) is written to directly.
 ///
 /// # Errors
 /// [`Error::Io`] with `path`, for any failure.
@@ -97,8 +97,8 @@ pub fn abandon() {
     mem::forget(temporaries);
 }
 
-/// A temporary file in `folder`, removed when dropped. Also the way to check, before any work, whether files can be written
-/// in `folder`.
+/// A temporary file in `folder`, removed when dropped. Also the way to check, before any work, whether files can be
+/// written in `folder`.
 ///
 /// # Errors
 /// The errors of the system, and an error if `folder` does not exist.

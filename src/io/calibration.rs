@@ -31,8 +31,8 @@ pub struct Calibration {
     pub focal: f64,
     /// Distance between the cameras, in metres.
     pub baseline: f64,
-    /// Difference of the principal points' columns, right minus left (cx1 - cx0), in pixels: `disparity + doffs` is 0 at
-    /// infinity.
+    /// Difference of the principal points' columns, right minus left (cx1 - cx0), in pixels: `disparity + doffs` is 0
+    /// at infinity.
     pub doffs: f64,
     /// Column of the principal point, in pixels: of the left camera, as in files, or of the right camera after
     /// [`Self::seen_from_right`].
@@ -44,8 +44,8 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// A calibration for pictures of `size` (width and height in pixels) with the principal point at their centre. `focal`
-    /// and `doffs` are in pixels, `baseline` in metres.
+    /// A calibration for pictures of `size` (width and height in pixels) with the principal point at their centre.
+    /// `focal` and `doffs` are in pixels, `baseline` in metres.
     ///
     /// # Errors
     /// As [`Self::validate`].
@@ -64,8 +64,8 @@ impl Calibration {
         Self::parse(String::from_utf8_lossy(&read_whole(path, MAX_BYTES)?).trim_start_matches('\u{feff}'), path)
     }
 
-    /// Parses the text of a `calib.txt`; `path` is named in errors. The keys `cam0`, `doffs` and `baseline` are required,
-    /// `cam1`, `width` and `height` are optional, and other keys are ignored.
+    /// Parses the text of a `calib.txt`; `path` is named in errors. The keys `cam0`, `doffs` and `baseline` are
+    /// required, `cam1`, `width` and `height` are optional, and other keys are ignored.
     ///
     /// # Errors
     /// [`Error::Format`] with the line that is wrong, or the key that is missing.
@@ -113,8 +113,8 @@ impl Calibration {
         check("cy", self.cy, within(self.cy), "it must be -10^6 to 10^6 pixels")
     }
 
-    /// Checks that the calibration is for pictures of this size (width and height in pixels): scaled pictures have another
-    /// focal length.
+    /// Checks that the calibration is for pictures of this size (width and height in pixels): scaled pictures have
+    /// another focal length.
     ///
     /// # Errors
     /// [`Error::Parameter`] with both sizes, if they differ.
@@ -135,8 +135,8 @@ impl Calibration {
         Self { cx: self.cx + self.doffs, ..self }
     }
 
-    /// Depth along the optical axis, in metres, for a disparity in pixels: `baseline * focal / (disparity + doffs)`; `None`
-    /// at infinity and beyond.
+    /// Depth along the optical axis, in metres, for a disparity in pixels: `baseline * focal / (disparity + doffs)`;
+    /// `None` at infinity and beyond.
     pub fn depth(&self, disparity: f64) -> Option<f64> {
         let denominator = disparity + self.doffs;
         (denominator > 0.0).then(|| self.baseline * self.focal / denominator)

@@ -8,8 +8,8 @@ use crate::{
 /// Position on Turbo of the smallest disparity, 0 to 1; at 0 Turbo is nearly black.
 const FAR: f32 = 0.05;
 
-/// Disparity range for [`disparity_colors`], in 1/256 px: the 1st and the 99th percentile of `map`, so that a few outliers
-/// do not take up all colours. `None` if the map has no disparity.
+/// Disparity range for [`disparity_colors`], in 1/256 px: the 1st and the 99th percentile of `map`, so that a few
+/// outliers do not take up all colours. `None` if the map has no disparity.
 pub fn disparity_range(map: &DisparityMap) -> Option<(i32, i32)> {
     let mut known: Vec<i32> = map.data().iter().copied().filter(|&d| d != NONE).collect();
     let last = known.len().checked_sub(1)?;
@@ -41,9 +41,9 @@ pub const ERROR_COLORS: [(f32, [u8; 3]); 5] = [
 /// Colour of a pixel with ground truth but without an estimate.
 pub const NO_ESTIMATE: [u8; 3] = [255; 3];
 
-/// Colours the errors of `map` by [`ERROR_COLORS`] and [`NO_ESTIMATE`]. Pixels where `mask` is not 255 are occluded and have
-/// a third of their brightness; pixels without ground truth are black. Disparities are in pixels; one that is not finite is
-/// missing in `map` and unknown in `truth`.
+/// Colours the errors of `map` by [`ERROR_COLORS`] and [`NO_ESTIMATE`]. Pixels where `mask` is not 255 are occluded and
+/// have a third of their brightness; pixels without ground truth are black. Disparities are in pixels; one that is not
+/// finite is missing in `map` and unknown in `truth`.
 ///
 /// # Panics
 /// If the sizes differ.
@@ -61,8 +61,8 @@ pub fn error_colors(map: &Plane<f32>, truth: &Plane<f32>, mask: Option<&Plane<u8
     })
 }
 
-/// The colour of Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour map: 'Turbo,
-/// An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
+/// The colour of Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour map:
+/// 'Turbo, An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
 /// <https://gist.github.com/mikhailov-work/0d177465a8151eb6ede1768d51d476c7>.
 pub fn turbo(t: f32) -> [u8; 3] {
     /// Coefficients of red, green and blue, from t^0 to t^5.

@@ -1,7 +1,7 @@
 //! Tables of numbers: comma-separated values with a header row.
 //!
-//! Columns are identified by name and may come in any order, with other columns among them. Blank lines are skipped; quotes
-//! are not supported, since numbers need none.
+//! Columns are identified by name and may come in any order, with other columns among them. Blank lines are skipped;
+//! quotes are not supported, since numbers need none.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ const MAX_BYTES: u64 = 1 << 30;
 pub struct Table {
     /// For each row its line in the file, counted from 1, and its values in the order of the requested columns.
     pub rows: Vec<(usize, Vec<f64>)>,
-    /// For each optional column whether the table has it; the values of optional columns follow those of the needed ones.
+    /// For each optional column whether the table has it; the values of optional columns follow those of the needed
+    /// ones.
     pub has: Vec<bool>,
 }
 
@@ -31,8 +32,8 @@ pub fn read(path: &Path, needed: &[&str], optional: &[&str]) -> Result<Table> {
 /// Decodes the columns of a table from a file's bytes; `path` is named in errors.
 ///
 /// # Errors
-/// [`Error::Format`] if a needed column is missing, or with the line of a row that is too short or of a value that is no
-/// finite number.
+/// [`Error::Format`] if a needed column is missing, or with the line of a row that is too short or of a value that is
+/// no finite number.
 pub fn decode(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]) -> Result<Table> {
     let text = std::str::from_utf8(bytes).map_err(|_| malformed(path, "not a table: it is no UTF-8 text"))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -1,9 +1,9 @@
 //! Disparities as 16-bit grey PNG, the format of the KITTI benchmarks.
 //!
-//! A value is 256 times the disparity in pixels, and 0 stands for no disparity (Menze and Geiger, 'Object Scene Flow for
-//! Autonomous Vehicles', CVPR 2015, development kit). The scale is this crate's fixed point, so nothing is rounded, but the
-//! format is limited to 1/256 to 65535/256 px. A disparity of exactly 0 becomes 1/256 px; disparities below 0 or from
-//! 256 px on become 'no disparity' and are counted. A PFM ([`super::pfm`]) holds all disparities.
+//! A value is 256 times the disparity in pixels, and 0 stands for no disparity (Menze and Geiger, 'Object Scene Flow
+//! for Autonomous Vehicles', CVPR 2015, development kit). The scale is this crate's fixed point, so nothing is rounded,
+//! but the format is limited to 1/256 to 65535/256 px. A disparity of exactly 0 becomes 1/256 px; disparities below 0
+//! or from 256 px on become 'no disparity' and are counted. A PFM ([`super::pfm`]) holds all disparities.
 
 use std::{
     io::{self, Write},

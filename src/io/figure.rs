@@ -24,8 +24,8 @@ const DARK_BLOB: [u8; 3] = [255, 72, 48];
 /// Colour of a light blob on dark ground.
 const LIGHT_BLOB: [u8; 3] = [48, 176, 255];
 
-/// Draws `picture` in grey with a circle around each feature, of a radius of 2.5 scales: red for dark blobs, blue for light
-/// ones. A line from the centre shows the orientation, unless it is exactly 0, as in upright mode.
+/// Draws `picture` in grey with a circle around each feature, of a radius of 2.5 scales: red for dark blobs, blue for
+/// light ones. A line from the centre shows the orientation, unless it is exactly 0, as in upright mode.
 pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
     let mut canvas = Canvas(grey(picture));
     for feature in features {
@@ -40,8 +40,8 @@ pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
     canvas.0
 }
 
-/// Draws both pictures in grey, side by side, with a line between the points of each pair and a circle around each point.
-/// Neighbours in the list have distinct colours.
+/// Draws both pictures in grey, side by side, with a line between the points of each pair and a circle around each
+/// point. Neighbours in the list have distinct colours.
 pub fn matches(left: &Picture, right: &Picture, pairs: &[PointPair]) -> Plane<[u8; 3]> {
     let start = left.width() + GAP;
     let mut canvas = Canvas(side_by_side(&[&grey(left), &grey(right)]));
@@ -75,8 +75,8 @@ pub fn side_by_side(pictures: &[&Plane<[u8; 3]>]) -> Plane<[u8; 3]> {
     canvas.0
 }
 
-/// The `index`-th of a list of saturated colours: steps of the golden angle around the hue circle keep neighbours apart,
-/// however long the list.
+/// The `index`-th of a list of saturated colours: steps of the golden angle around the hue circle keep neighbours
+/// apart, however long the list.
 fn distinct(index: u32) -> [u8; 3] {
     let hue = (f64::from(index) * 0.618_033_988_749_895).fract() * 6.0;
     // Red, green and blue are ramps around their own hue, at 0, 2 and 4 of 6.
@@ -99,8 +99,8 @@ impl Canvas {
         }
     }
 
-    /// Blends `color` over a pixel whose centre is `distance` pixels from the middle of a line: fully inside the line, not
-    /// at all outside, and in proportion where the edge crosses the pixel.
+    /// Blends `color` over a pixel whose centre is `distance` pixels from the middle of a line: fully inside the line,
+    /// not at all outside, and in proportion where the edge crosses the pixel.
     fn stroke(&mut self, x: u32, y: u32, distance: f32, color: [u8; 3]) {
         let cover = (LINE_WIDTH / 2.0 + 0.5 - distance).clamp(0.0, 1.0);
         let under = self.0.get(x, y);

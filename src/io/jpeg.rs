@@ -1,8 +1,8 @@
-//! Checks of JPEG files that the decoder does not report: truncation (it fills the rest with grey) and CMYK (it converts
-//! the colours by guess).
+//! Checks of JPEG files that the decoder does not report: truncation (it fills the rest with grey) and CMYK (it
+//! converts the colours by guess).
 //!
-//! Only the markers are read (ITU-T T.81, annex B). A scan that ends early, before a proper end marker, goes unnoticed: only
-//! its entropy codes tell its length, and the decoder, which reads them, does not report it.
+//! Only the markers are read (ITU-T T.81, annex B). A scan that ends early, before a proper end marker, goes unnoticed:
+//! only its entropy codes tell its length, and the decoder, which reads them, does not report it.
 
 const START_OF_SCAN: u8 = 0xda;
 const END_OF_IMAGE: u8 = 0xd9;
@@ -59,8 +59,8 @@ fn skip_entropy_coded(bytes: &[u8]) -> &[u8] {
 mod tests {
     use super::*;
 
-    /// A JPEG of a start marker, a comment that contains an end marker, a frame of `components`, a scan with a stuffed FF
-    /// and a restart, and an end marker.
+    /// A JPEG of a start marker, a comment that contains an end marker, a frame of `components`, a scan with a stuffed
+    /// FF and a restart, and an end marker.
     fn jpeg(components: u8) -> Vec<u8> {
         let mut bytes = vec![0xff, 0xd8, 0xff, 0xfe, 0, 4, 0xff, 0xd9];
         bytes.extend([0xff, 0xff, 0xc0, 0, 8, 8, 0, 1, 0, 1, components]);

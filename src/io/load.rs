@@ -6,8 +6,8 @@
 //! - pictures are rotated by their EXIF orientation, as in viewers;
 //! - colour profiles and gamma are ignored: both views have the same.
 //!
-//! CMYK and floating-point pictures are refused, since their conversion to 8 bits would be a guess. Only the first frame or
-//! page of a file is read.
+//! CMYK and floating-point pictures are refused, since their conversion to 8 bits would be a guess. Only the first
+//! frame or page of a file is read.
 
 use std::{io::Cursor, path::Path};
 

@@ -1,8 +1,8 @@
 //! File formats: pictures, disparity maps, calibrations, homographies, tables, point clouds and figures.
 //!
-//! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes, and its path for error
-//! messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to [`MAX_PIXELS`]
-//! where a codec expands them.
+//! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes, and its path for
+//! error messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to
+//! [`MAX_PIXELS`] where a codec expands them.
 //!
 //! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `cli`. PFM, calibrations, PLY,
 //! tables, homographies and colour maps are always available.
@@ -59,7 +59,8 @@ fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Refuses an empty size, a size above [`MAX_PIXELS`], and a side above [`MAX_SIDE`], the limit of the kernels' workgroups.
+/// Refuses an empty size, a size above [`MAX_PIXELS`], and a side above [`MAX_SIDE`], the limit of the kernels'
+/// workgroups.
 fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(malformed(path, format!("its size is {width}x{height}: there is nothing in it")));

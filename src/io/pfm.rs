@@ -1,9 +1,9 @@
 //! Portable float maps (PFM), the lossless format of disparities and depths.
 //!
 //! A header of text, `Pf`, width and height, and a scale; then 32-bit floats, the **bottom row first**. The sign of the
-//! scale gives the byte order (negative: little endian); its magnitude is ignored, as in Middlebury's tools. +inf stands
-//! for 'unknown'; NaN and -inf, which some programs write instead, are read as +inf. P. Debevec, 'PFM Portable FloatMap
-//! Image Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
+//! scale gives the byte order (negative: little endian); its magnitude is ignored, as in Middlebury's tools. +inf
+//! stands for 'unknown'; NaN and -inf, which some programs write instead, are read as +inf. P. Debevec, 'PFM Portable
+//! FloatMap Image Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
 
 use std::{
     io::{self, Write},
@@ -31,8 +31,8 @@ pub fn read(path: &Path) -> Result<Plane<f32>> {
     decode(&read_whole(path, 4 * MAX_PIXELS + MAX_HEADER)?, path)
 }
 
-/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`disparity::NONE`], other values are rounded to the
-/// nearest 1/256 px (halves away from 0).
+/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`disparity::NONE`], other values are rounded to
+/// the nearest 1/256 px (halves away from 0).
 ///
 /// # Errors
 /// As [`read`]; also [`crate::Error::Format`] for a disparity beyond [`DisparityRange::LIMIT`].
@@ -46,7 +46,8 @@ pub fn read_disparities(path: &Path) -> Result<DisparityMap> {
 /// format has neither.
 ///
 /// # Errors
-/// [`crate::Error::Format`] for another magic word, an invalid size or scale, or fewer or more values than the size needs.
+/// [`crate::Error::Format`] for another magic word, an invalid size or scale, or fewer or more values than the size
+/// needs.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let mut header = Header { bytes, path };
     match &*header.word("magic word")? {
@@ -80,8 +81,8 @@ pub fn write(out: &mut impl Write, plane: &Plane<f32>) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes disparities in pixels as a little-endian PFM, [`disparity::NONE`] as +inf. Lossless below 65536 px, where a float
-/// holds every 1/256.
+/// Writes disparities in pixels as a little-endian PFM, [`disparity::NONE`] as +inf. Lossless below 65536 px, where a
+/// float holds every 1/256.
 ///
 /// # Errors
 /// The errors of `out`.
@@ -149,7 +150,8 @@ impl Header<'_> {
     /// The `needed` bytes of values, after the single white-space character that ends the header.
     fn values(&self, needed: usize, (width, height): (u32, u32)) -> Result<&[u8]> {
         let values = match self.bytes {
-            // A header with CRLF ends in two characters; the length decides whether a line feed belongs to the first value.
+            // A header with CRLF ends in two characters; the length decides whether a line feed belongs to the first
+            // value.
             [b'\r', b'\n', values @ ..] if values.len() == needed => values,
             [_, values @ ..] => values,
             [] => &[],

@@ -1,7 +1,7 @@
 //! Coloured point clouds as PLY, the Stanford polygon format.
 //!
-//! Points are in camera coordinates of the depth map's view, in metres: x right, y down, z forward. Viewers that take y as
-//! up show them upside down; rotate the points by 180 degrees around x.
+//! Points are in camera coordinates of the depth map's view, in metres: x right, y down, z forward. Viewers that take y
+//! as up show them upside down; rotate the points by 180 degrees around x.
 
 use std::io::{self, Write};
 
@@ -20,8 +20,8 @@ pub struct Point {
     pub color: [u8; 3],
 }
 
-/// The points of a depth map in metres, coloured by its picture, in raster order. Pixels without a finite depth are left
-/// out.
+/// The points of a depth map in metres, coloured by its picture, in raster order. Pixels without a finite depth are
+/// left out.
 ///
 /// # Errors
 /// [`Error::Parameter`] if depth map and picture differ in size.

@@ -17,8 +17,8 @@ pub struct MatchConfig {
     pub ratio: f32,
     /// Keep a match only if each of the two features is the other's nearest.
     pub mutual: bool,
-    /// Match bright blobs only with bright ones and dark blobs only with dark ones (the sign of the Laplacian; Bay et al.
-    /// 2008, section 4.3).
+    /// Match bright blobs only with bright ones and dark blobs only with dark ones (the sign of the Laplacian; Bay et
+    /// al. 2008, section 4.3).
     pub same_contrast: bool,
     /// Largest row difference of a match, in pixels, at least 0; only for pairs known to be rectified. `None`: any row.
     pub max_dy: Option<f32>,

@@ -32,8 +32,8 @@ pub struct Match {
 
 /// Matches the features of two views by their descriptors.
 ///
-/// The matches are sorted by confidence, the most confident first, equal ones by index; no feature occurs twice. Features
-/// in flat surroundings (a descriptor of zeros) match nothing.
+/// The matches are sorted by confidence, the most confident first, equal ones by index; no feature occurs twice.
+/// Features in flat surroundings (a descriptor of zeros) match nothing.
 ///
 /// The confidence is one minus the ratio of the distances of the nearest descriptor and of its nearest rival (Lowe
 /// 2004, section 7.1). Another detection of the same structure, next to the nearest feature, is no rival. With

@@ -1,10 +1,11 @@
 //! Exact nearest-neighbour search: for every feature of one view the nearest descriptor of the other, by brute force.
 //!
-//! Both lists are first sorted by contrast and row, so that the candidates of a feature are one range of the other list.
-//! Candidates are stored in blocks of [`LANES`] with their values interleaved, and [`QUERIES`] features are compared with
-//! a block at a time: the inner loop is then plain multiply-and-add over whole registers without any horizontal sum. The
-//! registers are glam's, because the compiler's own vectorisation of plain arrays reached a quarter of the speed. The
-//! order of the additions is fixed, so that results do not depend on the machine or the number of threads.
+//! Both lists are first sorted by contrast and row, so that the candidates of a feature are one range of the other
+//! list. Candidates are stored in blocks of [`LANES`] with their values interleaved, and [`QUERIES`] features are
+//! compared with a block at a time: the inner loop is then plain multiply-and-add over whole registers without any
+//! horizontal sum. The registers are glam's, because the compiler's own vectorisation of plain arrays reached a quarter
+//! of the speed. The order of the additions is fixed, so that results do not depend on the machine or the number of
+//! threads.
 
 use std::ops::Range;
 
@@ -192,7 +193,8 @@ impl Row<'_> {
         Some(Nearest { index, distance: squared.sqrt(), rival: rival.map_or(f32::INFINITY, |(_, d)| d.sqrt()) })
     }
 
-    /// The candidate with the smallest squared distance among those that `admit` accepts; among equals the lowest index.
+    /// The candidate with the smallest squared distance among those that `admit` accepts; among equals the lowest
+    /// index.
     fn smallest(&self, admit: impl Fn(usize) -> bool) -> Option<(usize, f32)> {
         let mut best: Option<(usize, f32)> = None;
         for (block, (squared, &least)) in self.squared.iter().zip(self.least).enumerate() {

@@ -1,8 +1,9 @@
 //! Sub-pixel refinement of the position of a match, by block matching.
 //!
 //! The position of a feature is only as exact as its scale, and differs between the two views; a window of the picture
-//! around it can be located to a fraction of a pixel. So the window around the left feature is searched for near the right
-//! one (paper, step 5: blocks of 7x7, 'interpolation is performed between the nearest matching window and its neighbors').
+//! around it can be located to a fraction of a pixel. So the window around the left feature is searched for near the
+//! right one (paper, step 5: blocks of 7x7, 'interpolation is performed between the nearest matching window and its
+//! neighbors').
 
 use rayon::prelude::*;
 
@@ -17,8 +18,8 @@ const REACH: i64 = 3;
 const PLACES: usize = 2 * REACH as usize + 1;
 /// A minimum is distinct if its cost is at most this share of the second best cost within reach.
 ///
-/// Measured on nine scenes: 78 % of the matches are within 1 px without this condition and 91 % with it, at the price of a
-/// sixth of the matches.
+/// Measured on nine scenes: 78 % of the matches are within 1 px without this condition and 91 % with it, at the price
+/// of a sixth of the matches.
 const CLEAR: f32 = 0.75;
 
 /// The row of the right view that is searched.
@@ -96,8 +97,8 @@ pub(crate) fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows, hal
 /// Position of the distinct cost minimum, to a fraction of a step, and the ratio of the least cost to the second best;
 /// `None` without a distinct minimum.
 ///
-/// Equiangular interpolation: two lines of opposite slope through the least cost and its neighbours (Shimizu and Okutomi,
-/// ICCV 2001), since a sum of absolute differences has a corner at its minimum, not the curve of a parabola.
+/// Equiangular interpolation: two lines of opposite slope through the least cost and its neighbours (Shimizu and
+/// Okutomi, ICCV 2001), since a sum of absolute differences has a corner at its minimum, not the curve of a parabola.
 fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
     let least = (1..PLACES - 1).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
     let (before, at, after) = (costs[least - 1], costs[least], costs[least + 1]);
@@ -110,8 +111,8 @@ fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
     Some((least as f32 + (before - after) / (2.0 * slope), at / rival))
 }
 
-/// The pixels of a window minus their mean, divided by the sum of their absolute deviations: the difference of two windows
-/// depends neither on brightness nor on contrast.
+/// The pixels of a window minus their mean, divided by the sum of their absolute deviations: the difference of two
+/// windows depends neither on brightness nor on contrast.
 struct Window(Vec<f32>);
 
 impl Window {

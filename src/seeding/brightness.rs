@@ -25,8 +25,8 @@ pub struct BrightnessRelation {
 }
 
 impl BrightnessRelation {
-    /// Fits the line to the mean grey values of corresponding windows; `None` for fewer than 12 usable seeds, or without
-    /// contrast between their windows.
+    /// Fits the line to the mean grey values of corresponding windows; `None` for fewer than 12 usable seeds, or
+    /// without contrast between their windows.
     ///
     /// The slope is the median of the slopes of all pairs (Theil 1950, Sen 1968), which up to 29 % of wrong seeds
     /// cannot move far. Windows with a black or a white pixel are left out, since the sensor may have clipped them.

@@ -1,5 +1,5 @@
-//! Seeding: facts about a pair from the matches of its features, namely disparity range, rectification, brightness relation
-//! and trust.
+//! Seeding: facts about a pair from the matches of its features, namely disparity range, rectification, brightness
+//! relation and trust.
 //!
 //! Seeds do not set disparities of single pixels: dense matching searches the whole range, also where seeds are rare.
 
@@ -50,8 +50,8 @@ pub struct Seeding {
     pub rectification: Rectification,
     /// Relation of the grey values of the views; `None` if there are too few seeds.
     pub brightness: Option<BrightnessRelation>,
-    /// Trust in a dense result, 0 to 1: the share of all matches, found in any row, that lie in corresponding rows and in
-    /// the range; multiplied by `n / (n + 30)` for `n` of these matches.
+    /// Trust in a dense result, 0 to 1: the share of all matches, found in any row, that lie in corresponding rows and
+    /// in the range; multiplied by `n / (n + 30)` for `n` of these matches.
     pub trust: f32,
     /// The seeds that their neighbours support, the most confident first.
     pub seeds: Vec<Seed>,

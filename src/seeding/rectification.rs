@@ -14,7 +14,8 @@ const TRIED: usize = 1000;
 const FITS: usize = 1000;
 /// Largest row error of an inlier, in pixels: features are located to about half a pixel.
 const AGREEMENT: f64 = 1.5;
-/// Smallest number of inliers, and their smallest share of all seeds. By chance about one seed in a hundred is an inlier.
+/// Smallest number of inliers, and their smallest share of all seeds. By chance about one seed in a hundred is an
+/// inlier.
 const NEEDED: (usize, f64) = (15, 0.2);
 /// Number of steps of the robust fit; the last ones no longer change it.
 const STEPS: usize = 10;
@@ -57,8 +58,8 @@ pub struct Rectification {
 }
 
 impl Rectification {
-    /// Fits the similarity to seeds matched in any row, the most confident first; `size` is width and height of the views,
-    /// in pixels.
+    /// Fits the similarity to seeds matched in any row, the most confident first; `size` is width and height of the
+    /// views, in pixels.
     ///
     /// Random sample consensus (Fischler and Bolles 1981) with a fixed random sequence, then reweighted least squares
     /// (Tukey's biweight); the same seeds give the same figures.
@@ -226,8 +227,8 @@ mod tests {
 
     const SIZE: (u32, u32) = (641, 481);
 
-    /// Seeds of a scene of many depths whose right view is rotated, scaled and shifted about the picture's centre; every
-    /// third seed is wrong.
+    /// Seeds of a scene of many depths whose right view is rotated, scaled and shifted about the picture's centre;
+    /// every third seed is wrong.
     fn seeds(degrees: f32, scale: f32, offset: f32) -> Vec<Seed> {
         let (sin, cos) = degrees.to_radians().sin_cos();
         (0..120)

@@ -41,8 +41,8 @@ mod tests {
     #[test]
     fn by_hand() {
         let seed = |x, disparity, dy| Seed { x, y: 5.0, disparity, dy, confidence: 0.5 };
-        // At a distance of 10 px a difference of 2.5 px is allowed; the third seed is a second detection of the first, the
-        // fourth is too far away, the last one lies in another row.
+        // At a distance of 10 px a difference of 2.5 px is allowed; the third seed is a second detection of the first,
+        // the fourth is too far away, the last one lies in another row.
         let seeds =
             [seed(0.0, 7.0, 0.0), seed(10.0, 9.5, 0.0), seed(1.0, 7.2, 0.0), seed(90.0, 7.0, 0.0), seed(5.0, 7.0, 3.0)];
         assert_eq!(agreement(&seeds, 40.0), [0.125, 0.25, 0.125, 0.0, 0.0]);

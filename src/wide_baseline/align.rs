@@ -1,5 +1,5 @@
-//! Alignment: rotates and scales the second view like the first, so that upright descriptors match, and rows correspond if
-//! the views are those of a rectified pair.
+//! Alignment: rotates and scales the second view like the first, so that upright descriptors match, and rows correspond
+//! if the views are those of a rectified pair.
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,7 +17,8 @@ use crate::{
 
 /// Largest number of corrections of the alignment, each by the remaining similarity.
 const ROUNDS: usize = 4;
-/// An aligned view is corrected until rows differ by at most this, in pixels: refinement along rows keeps the difference.
+/// An aligned view is corrected until rows differ by at most this, in pixels: refinement along rows keeps the
+/// difference.
 const EXACT: f32 = 0.25;
 /// Largest deviation of a match's rotation from the common rotation, in radians.
 const SAME_TURN: f64 = PI / 18.0;
@@ -26,7 +27,8 @@ const SAME_SCALE: f64 = 0.3;
 /// Smallest number of matches with a common rotation and scale.
 const NEEDED: usize = 10;
 
-/// Smallest ratio of the matches in equal rows to the matches that agree with a fit, for rows to count as corresponding.
+/// Smallest ratio of the matches in equal rows to the matches that agree with a fit, for rows to count as
+/// corresponding.
 const LEVEL: f64 = 0.9;
 
 /// The second view, rotated and scaled like the first.
@@ -41,8 +43,8 @@ pub(super) struct Aligned {
 /// Rotates and scales the second view by the similarity that matches show, repeatedly, until rows correspond.
 ///
 /// Upright features measure small rotations and all scales by their rows, which do not depend on depth
-/// ([`Rectification`]); if they match too rarely, features with orientations are matched once. If rows do not correspond
-/// in the end, the last alignment is kept.
+/// ([`Rectification`]); if they match too rarely, features with orientations are matched once. If rows do not
+/// correspond in the end, the last alignment is kept.
 pub(super) async fn align(
     detectors: &mut DetectorCache<'_>,
     first: &View,
@@ -205,8 +207,8 @@ mod tests {
             };
             (0..40).map(|i| seed(place(i))).collect()
         };
-        // A rotation by one degree: matches near the centre differ by half a row at most, matches all over the picture by
-        // more.
+        // A rotation by one degree: matches near the centre differ by half a row at most, matches all over the picture
+        // by more.
         for (middle, level) in [(30.0, true), (300.0, false)] {
             let seeds = seeds(middle, |x| 0.0175 * x);
             let rows = Rectification::new(&seeds, size);

@@ -10,8 +10,8 @@ use crate::{
     pair::Backend,
 };
 
-/// Finds interest points and keeps the last detector: building one takes longer than using it, and most pictures have the
-/// size of the previous one. Only one detector is kept, as it holds memory for each pixel.
+/// Finds interest points and keeps the last detector: building one takes longer than using it, and most pictures have
+/// the size of the previous one. Only one detector is kept, as it holds memory for each pixel.
 pub(super) struct DetectorCache<'b> {
     backend: &'b Backend,
     last: Option<SizedDetector>,

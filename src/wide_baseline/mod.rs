@@ -1,8 +1,8 @@
-//! Wide-baseline matching: interest points of one view matched to a second view without prior knowledge. The second view
-//! may be rotated, scaled, blurred, noisy, or of another size.
+//! Wide-baseline matching: interest points of one view matched to a second view without prior knowledge. The second
+//! view may be rotated, scaled, blurred, noisy, or of another size.
 //!
-//! align (rotation, scale, rows) -> detect and match features, also with one view or both smoothed -> refine along rows,
-//! from either view -> keep matches that their neighbours support. Pictures of one size share a detector.
+//! align (rotation, scale, rows) -> detect and match features, also with one view or both smoothed -> refine along
+//! rows, from either view -> keep matches that their neighbours support. Pictures of one size share a detector.
 //!
 //! Constraints of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], apply only if rows were found to
 //! correspond after the alignment.
@@ -31,8 +31,8 @@ pub struct WideBaselineConfig {
     pub features: FeatureConfig,
     /// Parameters of descriptor matching. `max_dy` is set to 1.5 px if rows correspond after the alignment.
     pub matching: MatchConfig,
-    /// Rotate, scale and smooth the views so that they become alike, and keep only matches that their neighbours support.
-    /// Otherwise the views are matched as they are, in any row.
+    /// Rotate, scale and smooth the views so that they become alike, and keep only matches that their neighbours
+    /// support. Otherwise the views are matched as they are, in any row.
     pub adapt: bool,
 }
 
@@ -71,8 +71,8 @@ pub struct WideBaselineMatch {
 /// Result of [`match_views`].
 #[derive(Clone, Debug)]
 pub struct WideBaselineMatches {
-    /// Interest points of both views. Positions and scales are in pixels of their own view; orientations and descriptors
-    /// of the second view are those of the aligned picture.
+    /// Interest points of both views. Positions and scales are in pixels of their own view; orientations and
+    /// descriptors of the second view are those of the aligned picture.
     pub features: [Vec<Feature>; 2],
     /// Matches, the most confident first.
     pub matches: Vec<WideBaselineMatch>,
@@ -84,8 +84,9 @@ pub struct WideBaselineMatches {
     pub smoothing: [f64; 2],
 }
 
-/// Standard deviations of the Gaussians that are tried, in pixels, since it is unknown which view is blurred or noisy: on
-/// one view, as long as more smoothing does not lose matches, and the first Gaussian on both views. 0 stands for none.
+/// Standard deviations of the Gaussians that are tried, in pixels, since it is unknown which view is blurred or noisy:
+/// on one view, as long as more smoothing does not lose matches, and the first Gaussian on both views. 0 stands for
+/// none.
 const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// Smoothing must yield at least this factor more matches to be chosen, since it removes detail.
 const CLEARLY_MORE: f64 = 1.25;
@@ -228,13 +229,14 @@ fn window(first: &View, second: &View) -> i64 {
     matching::HALF + (first.sigma - second.sigma).abs().round() as i64
 }
 
-/// Left-right consistency of a match: whether the window around its position in the second view leads back to the first.
-/// It does not at the edge of a surface, or at an occlusion.
+/// Left-right consistency of a match: whether the window around its position in the second view leads back to the
+/// first. It does not at the edge of a surface, or at an occlusion.
 fn is_consistent(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
     let there =
         Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };
     let back = locate((&second.luma, &first.luma), &there, rows, window(first, second));
-    // The two disparities have opposite signs. They are compared instead of positions, which are whole pixels of each view.
+    // The two disparities have opposite signs. They are compared instead of positions, which are whole pixels of each
+    // view.
     back.is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
 }
 
@@ -247,8 +249,8 @@ fn with_support(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
         .collect()
 }
 
-/// Converts features and matches from pixels of the aligned views to pixels of the original pictures; `map` leads from the
-/// second picture to its aligned view.
+/// Converts features and matches from pixels of the aligned views to pixels of the original pictures; `map` leads from
+/// the second picture to its aligned view.
 fn in_picture_pixels(
     [first, second]: [View; 2],
     seeds: Vec<Indexed>,

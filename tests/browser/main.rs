@@ -26,7 +26,8 @@ use hsad::{
 };
 use serde_json::json;
 
-/// Helper functions in the page; `choose` puts `files` (promises of files) into the input of a side, as the file dialog does.
+/// Helper functions in the page; `choose` puts `files` (promises of files) into the input of a side, as the file dialog
+/// does.
 const HELPERS: &str = r#"
 async function choose(side, files) {
   delete document.body.dataset.state;

@@ -216,7 +216,7 @@ fn memory_is_what_the_device_gives() {
     }
 }
 
-/// Sizes of the README's table fit a device with the limits named there.
+/// Matchers take the memory that the README's table states, in MB.
 #[test]
 fn matchers_take_the_memory_that_is_told() {
     let readme = include_str!("../../README.md");

@@ -69,8 +69,8 @@ fn errors_stay_with_their_thread() {
     application.assert_quiet();
 }
 
-/// Not every driver fills a pipeline cache visibly, but a cache of another device is refused by every kernel compiled with
-/// it.
+/// Not every driver fills a pipeline cache visibly, but a cache of another device is refused by every kernel compiled
+/// with it.
 #[test]
 fn the_pipeline_cache_of_the_application_is_used() {
     let applications = [0; 2].map(|_| Application::with(Features::PIPELINE_CACHE, Limits::downlevel_defaults()));

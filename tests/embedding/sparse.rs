@@ -10,7 +10,8 @@ use hsad::{
 
 use crate::application::{Application, config};
 
-/// One conversion to luma serves dense matching and features; the buffers hold the same features as the library's read-back.
+/// One conversion to luma serves dense matching and features; the buffers hold the same features as the library's
+/// read-back.
 #[test]
 fn features_of_a_texture_are_read_from_their_buffers() {
     let application = Application::new();

@@ -1,5 +1,5 @@
-//! Bundles the page in a folder that any web server can serve: the library in WebAssembly, the page's own files, and the
-//! example pair.
+//! Bundles the page in a folder that any web server can serve: the library in WebAssembly, the page's own files, and
+//! the example pair.
 
 use std::{
     env,

@@ -10,8 +10,8 @@ use super::{Object, Ray};
 /// Distance above a surface at which a ray starts, in millimetres, so that it does not meet the same surface again.
 const CLEARANCE: f64 = 1e-4;
 
-/// The lamp and the surroundings. Light depends on the position alone, not on the viewer, so a point has one colour in both
-/// views.
+/// The lamp and the surroundings. Light depends on the position alone, not on the viewer, so a point has one colour in
+/// both views.
 pub struct Lighting {
     /// Centre of the lamp, in millimetres.
     pub lamp: DVec3,
@@ -34,8 +34,8 @@ pub fn first<'a>(objects: &'a [Object], ray: &Ray) -> Option<(&'a Object, Hit)> 
 }
 
 impl Lighting {
-    /// Light that reaches a point, by sample `i` of `n * n`: one position on the lamp, one direction of the surroundings.
-    /// The samples of a pixel together cover the lamp and all directions.
+    /// Light that reaches a point, by sample `i` of `n * n`: one position on the lamp, one direction of the
+    /// surroundings. The samples of a pixel together cover the lamp and all directions.
     pub fn at(&self, objects: &[Object], point: DVec3, normal: DVec3, i: u32, n: u32) -> DVec3 {
         let start = point + normal * CLEARANCE;
         let cell = |k: u32| (f64::from(2 * k + 1) / f64::from(n) - 1.0) * self.size;

@@ -124,6 +124,7 @@ struct Surface {
     point: DVec3,
     /// Position along the surface from the middle of the face, in millimetres, v upwards for a viewer outside.
     uv: [f64; 2],
-    /// Index of the face of a [`shapes::Cuboid`] (0 to 5: +x -x +y -y +z -z) or of the end of a [`shapes::Cylinder`] (1, 2).
+    /// Index of the face of a [`shapes::Cuboid`] (0 to 5: +x -x +y -y +z -z) or of the end of a [`shapes::Cylinder`]
+    /// (1, 2).
     face: usize,
 }

@@ -10,8 +10,8 @@ use super::{Pair, Scene, Sensor, View};
 
 /// Number of rays along each side of a pixel.
 const RAYS: u32 = 5;
-/// A point counts as seen if the other camera's ray ends this near to it, as a fraction of its depth. The tolerance is far
-/// above the rounding of the intersections (1e-11) and far below any step between surfaces (0.1 mm at a metre).
+/// A point counts as seen if the other camera's ray ends this near to it, as a fraction of its depth. The tolerance is
+/// far above the rounding of the intersections (1e-11) and far below any step between surfaces (0.1 mm at a metre).
 const TOLERANCE: f64 = 1e-6;
 
 /// Renders both views of `scene`.

@@ -23,8 +23,8 @@ pub(super) fn gamma(picture: &Picture, exponent: f64) -> Picture {
     each(picture, |_, value| curve[usize::from(value)])
 }
 
-/// Multiplies colour values by a factor that grows linearly from `1 - strength` in the first column to `1 + strength` in
-/// the last one.
+/// Multiplies colour values by a factor that grows linearly from `1 - strength` in the first column to `1 + strength`
+/// in the last one.
 pub(super) fn ramp(picture: &Picture, strength: f64) -> Picture {
     let last = f64::from(picture.width() - 1).max(1.0);
     each(picture, |x, value| (1.0 + strength * (2.0 * f64::from(x) / last - 1.0)) * f64::from(value))

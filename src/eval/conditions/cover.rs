@@ -37,8 +37,8 @@ pub(super) fn clutter(picture: &Picture, share: f64, mut random: Random) -> (Pic
     (changed, visible)
 }
 
-/// Draws a frame of one colour that hides half of `share` of the width or height on each side. Returns the picture and a
-/// mask, 255 where the original is visible.
+/// Draws a frame of one colour that hides half of `share` of the width or height on each side. Returns the picture and
+/// a mask, 255 where the original is visible.
 pub(super) fn frame(picture: &Picture, share: f64, fill: [u8; 4]) -> (Picture, Plane<u8>) {
     let (width, height) = picture.size();
     let strip = |side: u32| (share / 2.0 * f64::from(side)).round() as u32;

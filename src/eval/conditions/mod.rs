@@ -1,7 +1,7 @@
 //! Conditions: synthetic changes of the second view, each with a strength and exact ground truth for the positions.
 //!
-//! A changed picture is the same bytes for the same seed on every machine: only integers, `f64` arithmetic and functions of
-//! `libm` are used, which are arithmetic themselves (see [`crate::filter`]).
+//! A changed picture is the same bytes for the same seed on every machine: only integers, `f64` arithmetic and
+//! functions of `libm` are used, which are arithmetic themselves (see [`crate::filter`]).
 
 mod brightness;
 mod cover;
@@ -41,7 +41,8 @@ pub enum Kind {
     Scale,
     /// Patches of random colours occlude the picture; the strength is the hidden share, 0 to 1.
     Clutter,
-    /// A frame of one colour occludes the picture; on each side it hides half the strength as a share of width or height.
+    /// A frame of one colour occludes the picture; on each side it hides half the strength as a share of width or
+    /// height.
     Occlusion,
 }
 

@@ -1,5 +1,5 @@
-//! Pale objects in front of a seamless backdrop: little texture, smooth shading, and a right camera with another exposure,
-//! response and noise.
+//! Pale objects in front of a seamless backdrop: little texture, smooth shading, and a right camera with another
+//! exposure, response and noise.
 
 use glam::{DVec3, dvec3};
 

@@ -29,11 +29,12 @@ const OURS: &str = "hsad";
 
 /// Score disparity maps against the ground truth of scenes, by the measures of Middlebury and KITTI
 ///
-/// A SCENE is a folder with left.png, right.png, disp_left.pfm and optionally nonocc.png (255: non-occluded); a folder of
-/// Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2, image_3,
+/// A SCENE is a folder with left.png, right.png, disp_left.pfm and optionally nonocc.png (255: non-occluded); a folder
+/// of Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2, image_3,
 /// disp_occ_0, disp_noc_0) or a single picture in image_2; or a folder of such folders. Each pair is matched as by hsad
 /// match, with the disparity range found for each pair unless --disparities is given, and scored over the non-occluded
-/// pixels, over all pixels, and over the estimated pixels. A pixel without an estimate counts as wrong in the first two.
+/// pixels, over all pixels, and over the estimated pixels. A pixel without an estimate counts as wrong in the first
+/// two.
 #[derive(Args)]
 #[command(
     after_help = "With -o, DIR/SCENE/ gets disparity.pfm, error.png, figure.png (picture, truth, map and errors) and

@@ -41,8 +41,8 @@ pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
     points.collect()
 }
 
-/// Assigns to every match the points it joins: in each view the nearest point. Of several points at one position, such as
-/// one point with several orientations, the match takes the first that no earlier match has taken.
+/// Assigns to every match the points it joins: in each view the nearest point. Of several points at one position, such
+/// as one point with several orientations, the match takes the first that no earlier match has taken.
 pub fn join(matches: &mut [PointMatch], points: [&[Point]; 2]) {
     let mut joined = points.map(|points| vec![0_usize; points.len()]);
     let nearest = |points: &[Point], joined: &[usize], place: DVec2| {

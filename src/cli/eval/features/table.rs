@@ -49,8 +49,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// The mean of each condition, in the order of the conditions. A figure that is defined for some rows only counts as
-    /// 0 in the others: without matches nothing is right.
+    /// The mean of each condition, in the order of the conditions. A figure that is defined for some rows only counts
+    /// as 0 in the others: without matches nothing is right.
     pub fn means(&self) -> Vec<Row> {
         let mut conditions: Vec<&str> = self.rows.iter().map(|row| &*row.condition).collect();
         conditions.dedup();

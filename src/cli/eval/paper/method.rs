@@ -107,8 +107,8 @@ impl Method {
     }
 }
 
-/// The match of a position of the left view, by the disparity of the pixel that it lies in; `None` if that disparity was
-/// not measured or only filled in.
+/// The match of a position of the left view, by the disparity of the pixel that it lies in; `None` if that disparity
+/// was not measured or only filled in.
 fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
     // Interest points can lie up to half a pixel beyond the centres of the border pixels.
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;

@@ -100,8 +100,8 @@ impl saved_results::Saveable for Record {
     }
 }
 
-/// The numbers of matches at which long curves are sampled: all up to 32, then in steps of a sixteenth of the number, and
-/// the `last`.
+/// The numbers of matches at which long curves are sampled: all up to 32, then in steps of a sixteenth of the number,
+/// and the `last`.
 pub fn steps(last: usize) -> Vec<usize> {
     let next = |&k: &usize| Some(k + (k / 16).max(1));
     let mut steps: Vec<usize> = std::iter::successors(Some(1), next).take_while(|&k| k < last).collect();
