@@ -230,7 +230,7 @@ fn window(first: &View, second: &View) -> i64 {
 }
 
 /// Left-right consistency of a match: whether the window around its position in the second view leads back to the
-/// first. It does not at the edge of a surface, or at an occlusion.
+/// first. The window is lost at the edge of a surface, or at an occlusion.
 fn is_consistent(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
     let there =
         Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };

@@ -343,7 +343,7 @@ fn scenes_have_any_layout_that_maps_are_scored_in() {
         command.args(view);
         command
     };
-    fails(of_a_scene(&["--view", "2"]), 1, "here is a stereo scene");
+    fails(of_a_scene(&["--view", "2"]), 1, "this is a stereo scene");
 }
 
 #[test]
