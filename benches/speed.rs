@@ -18,7 +18,7 @@ use hsad::{
     dense::{Brightness, DenseConfig, Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
-    gpu::{DeviceChoice, Gpu},
+    gpu::{DeviceChoice, Gpu, block_on},
     image::Luma,
     io::{Picture, load},
     luma::pack,
@@ -39,7 +39,7 @@ fn main() -> hsad::Result<()> {
     let disparities = arguments.get(2).and_then(|count| count.parse().ok()).unwrap_or(64);
     let gpu = Gpu::open(&DeviceChoice::Best)?;
     let (width, height) = pair[0].size();
-    println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info.name, gpu.info.driver_info);
+    println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info().name, gpu.info().driver_info);
     let luma = pair.each_ref().map(Picture::luma);
     let is_selected = |name: &str| arguments.get(3).is_none_or(|selected| selected == name);
     dense(&gpu, &luma, disparities, is_selected)?;
@@ -100,26 +100,26 @@ fn dense(
             continue;
         }
         let start = Instant::now();
-        let matcher = Matcher::new(&gpu.device, left.size(), &config)?;
+        let matcher = Matcher::new(gpu, left.size(), &config)?;
         println!("dense {name}, building: {:.1} ms, {} bytes", 1e3 * start.elapsed().as_secs_f64(), matcher.memory());
         for (view, luma) in [left, right].into_iter().zip(matcher.luma()) {
             gpu.queue.write_buffer(luma, 0, bytemuck::cast_slice(&pack(view)));
         }
-        let outputs = matcher.outputs(&gpu.device, Destination::Buffer(&map), Some(&confidence))?;
+        let outputs = matcher.outputs(Destination::Buffer(&map), Some(&confidence))?;
         time(&format!("dense {name}"), || {
             submit(gpu, |encoder| matcher.record(encoder, &outputs));
             Ok(())
         })?;
-        kernels(gpu, &matcher)?;
+        kernels(&matcher)?;
     }
     Ok(())
 }
 
 /// Prints the time of each kernel by the device's clock: the sum of its dispatches, each at its fastest.
-fn kernels(gpu: &Gpu, matcher: &Matcher) -> hsad::Result<()> {
-    let (_, mut least) = matcher.profile(gpu)?;
+fn kernels(matcher: &Matcher) -> hsad::Result<()> {
+    let (_, mut least) = block_on(matcher.profile())?;
     for _ in 1..PROFILES {
-        let (_, times) = matcher.profile(gpu)?;
+        let (_, times) = block_on(matcher.profile())?;
         least.iter_mut().zip(times).for_each(|(least, time)| least.1 = least.1.min(time.1));
     }
     let mut sums: Vec<(&str, Vec<Duration>)> = Vec::new();
@@ -139,14 +139,17 @@ fn kernels(gpu: &Gpu, matcher: &Matcher) -> hsad::Result<()> {
 
 /// Times detection and description of both views, then matching and seeding.
 fn features(gpu: &Gpu, luma: &[Luma; 2]) -> hsad::Result<()> {
-    let (width, height) = luma[0].size();
     let detectors = luma
         .iter()
-        .map(|view| Detector::new(&gpu.device, &upload(gpu, view), width, height, &FeatureConfig::default()))
+        .map(|view| {
+            let detector = block_on(Detector::new(gpu, view.size(), &FeatureConfig::default()))?;
+            let input = block_on(detector.input(&upload(gpu, view)))?;
+            Ok((detector, input))
+        })
         .collect::<hsad::Result<Vec<_>>>()?;
     let detect = || -> hsad::Result<Vec<_>> {
-        submit(gpu, |encoder| detectors.iter().for_each(|detector| detector.record(encoder)));
-        detectors.iter().map(|detector| detector.read(&gpu.device, &gpu.queue)).collect()
+        submit(gpu, |encoder| detectors.iter().for_each(|(detector, input)| detector.record(encoder, input)));
+        detectors.iter().map(|(detector, _)| block_on(detector.read())).collect()
     };
     time("features of both views", || detect().map(|found| drop(black_box(found))))?;
     let found = detect()?;

@@ -8,6 +8,7 @@
 use std::path::Path;
 
 use hsad::{
+    backend::Backend,
     config::{Config, Method, Preset},
     cpu,
     dense::{Aggregation, Dense, DenseConfig, Search, View, kernels::CellBand},
@@ -15,9 +16,10 @@ use hsad::{
     eval::scene::{self, SceneFiles},
     features::Feature,
     gpu::DeviceChoice,
+    gpu::block_on,
     kamencay::KamencayParameters,
     matching::{MatchConfig, Rows, Seed, match_features, refine},
-    pair::{Backend, Pair},
+    pair::Pair,
     pipeline,
 };
 
@@ -90,19 +92,20 @@ fn main() -> Result<(), AnyError> {
     table("7x7 SAD, winner-take-all, from 0 to the truth's largest, in whole sixteens", &columns, &scenes, |scene| {
         let largest = scene.known().fold(0.0, f32::max);
         let config = DenseConfig::new(DisparityRange::new(0, (largest as u32 + 1).next_multiple_of(16))?);
-        let dense = Pair::new(&backend, &scene.data.left, &scene.data.right)?.dense(&config)?;
+        let dense =
+            block_on(async { Pair::new(&backend, &scene.data.left, &scene.data.right).await?.dense(&config).await })?;
         let scores = scene.data.score(&disparity::in_pixels(&dense.disparity))?;
         let visible = scores.non_occluded.ok_or("no mask")?.bad[1];
         let all = scores.all.bad[1];
         let shares = [visible.of_known, all.of_known, visible.of_estimated, all.of_estimated, scores.all.coverage()];
         Ok(shares.map(|share| 100.0 * share))
     })?;
-    let hybrid = Method::Kamencay(KamencayParameters::default());
+    let kamencay = Method::Kamencay(KamencayParameters::default());
     for (name, config) in [
         ("preset fast", Preset::Fast.config()),
         ("preset balanced", Preset::Balanced.config()),
         ("preset quality", Preset::Quality.config()),
-        ("method kamencay", Config { method: hybrid, ..Preset::Balanced.config() }),
+        ("method kamencay", Config { method: kamencay, ..Preset::Balanced.config() }),
     ] {
         let columns = ["from px", "to px", "inside", "half bad"];
         table(&format!("{name}, the range found"), &columns, &scenes, |scene| {
@@ -127,7 +130,7 @@ fn main() -> Result<(), AnyError> {
             let outcome = pipeline::run(&backend, views, config, |_| ())?;
             if i == 0 {
                 let config = config.dense(outcome.range, outcome.brightness);
-                figures[0] = searched(&Pair::new(&backend, views.0, views.1)?, &config)?;
+                figures[0] = searched(&block_on(Pair::new(&backend, views.0, views.1))?, &config)?;
             }
             let scores = scene.data.score(&disparity::in_pixels(&outcome.dense.disparity))?;
             let visible = scores.non_occluded.ok_or("no mask")?.bad[1];
@@ -149,8 +152,8 @@ fn main() -> Result<(), AnyError> {
     ];
     for (title, seeds) in kinds {
         table(title, &["matches", "all", "of 10", "of 100", "of 500"], &scenes, |scene| {
-            let pair = Pair::new(&backend, &scene.data.left, &scene.data.right)?;
-            let features = pair.features(&Preset::Balanced.config().features)?;
+            let pair = block_on(Pair::new(&backend, &scene.data.left, &scene.data.right))?;
+            let features = block_on(pair.features(&Preset::Balanced.config().features))?;
             Ok(scene.right(&seeds(&pair, &features)?))
         })?;
     }
@@ -167,7 +170,7 @@ fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     let (size, range) = (pair.size(), config.range);
     let half =
         DenseConfig { range: CellBand::new(size, (0, size.1), range).map_range, consistency: None, ..config.clone() };
-    let map = pair.reduced(2)?.dense(&half.with_window(config.window()))?.disparity;
+    let map = block_on(async { pair.reduced(2).await?.dense(&half.with_window(config.window())).await })?.disparity;
     let ranges = cpu::dense::cell_ranges(&map, size, range);
     let share = |cells: &cpu::dense::CellPlane| {
         let counts = cells.data().iter().map(|&(_, count)| f64::from(count) / f64::from(range.count));

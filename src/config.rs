@@ -2,8 +2,8 @@
 
 use crate::{
     dense::{
-        Aggregation, Brightness, Cost, DenseConfig, Difference, Interpolation, OtherView, Paths, Penalties, Refinement,
-        Search, SemiGlobal, View,
+        Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Difference, Interpolation, Paths, Penalties,
+        Refinement, Search, SemiGlobal, View,
     },
     disparity::DisparityRange,
     error::{Error, Result},
@@ -147,7 +147,7 @@ const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
     window: 1,
     penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
     paths: Paths::Three,
-    other_view: OtherView::Claimed,
+    cross_check: CrossCheck::Claimed,
 };
 
 impl Preset {

@@ -70,7 +70,7 @@
 //! Or all at once, the disparity range found by itself:
 //!
 //! ```
-//! use hsad::{config::Preset, gpu::DeviceChoice, io::Picture, pair::Backend, pipeline};
+//! use hsad::{config::Preset, gpu::DeviceChoice, io::Picture, backend::Backend, pipeline};
 //!
 //! fn disparity(left: &Picture, right: &Picture) -> hsad::Result<hsad::disparity::DisparityMap> {
 //!     let backend = Backend::open(&DeviceChoice::Best)?;
@@ -111,6 +111,7 @@
 //! Beside it, [`wide_baseline`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
 //! results are where the truth is known.
 
+pub mod backend;
 pub mod config;
 pub mod cpu;
 pub mod dense;

@@ -2,7 +2,10 @@
 
 use web_time::{Duration, Instant};
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
 use crate::{
+    backend::Backend,
     config::{Config, Method},
     dense::{Brightness, Dense, DenseConfig},
     disparity::DisparityRange,
@@ -10,7 +13,7 @@ use crate::{
     features::{Feature, FeatureConfig},
     io::Picture,
     kamencay::KamencayConfig,
-    pair::{Backend, Pair},
+    pair::Pair,
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
 
@@ -89,7 +92,7 @@ pub fn run(
     config: &Config,
     begin: impl FnMut(Step),
 ) -> Result<Outcome> {
-    backend.wait(run_async(backend, views, config, begin))
+    block_on(run_async(backend, views, config, begin))
 }
 
 /// As [`run`], without blocking for longer than the work on the host takes.
@@ -114,19 +117,19 @@ pub async fn run_async(
     config.validate()?;
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
-    let pair = Pair::new_async(backend, left, right).await?;
+    let pair = Pair::new(backend, left, right).await?;
     enter(Some(Step::Features));
     let factor = reduction(pair.size());
-    let reduced = if factor == 1 { None } else { Some(pair.reduced_async(factor).await?) };
+    let reduced = if factor == 1 { None } else { Some(pair.reduced(factor).await?) };
     let sparse = reduced.as_ref().unwrap_or(&pair);
-    let mut features = sparse.features_async(&config.features).await?;
+    let mut features = sparse.features(&config.features).await?;
     enter(Some(Step::Seeding));
     let find =
         |features: &[Vec<Feature>; 2]| Seeding::find(sparse.views(), (&features[0], &features[1]), &config.seeding);
     let mut seeding = find(&features)?;
     if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
         // Views that are turned against each other are recognised only with orientations.
-        let turned = sparse.features_async(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
+        let turned = sparse.features(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
         let found = find(&turned)?;
         if found.rectification.verdict != Verdict::Unknown {
             (features, seeding) = (turned, found);
@@ -154,13 +157,13 @@ pub async fn run_async(
             let dense = config.dense(range, brightness);
             let range = dense.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, pair.dense_async(&DenseConfig { range, ..dense }).await?)
+            (range, pair.dense(&DenseConfig { range, ..dense }).await?)
         }
         Method::Kamencay(parameters) => {
             let hybrid = config.hybrid(parameters, range, brightness);
             let range = hybrid.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, backend.kamencay_async(left, right, &KamencayConfig { range, ..hybrid }).await?)
+            (range, backend.kamencay(left, right, &KamencayConfig { range, ..hybrid }).await?)
         }
     };
     enter(None);

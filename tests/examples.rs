@@ -7,7 +7,7 @@ use hsad::{
     config::Preset,
     dense::{self, Brightness},
     disparity::DisparityRange,
-    gpu::{DeviceChoice, Gpu},
+    gpu::{DeviceChoice, Gpu, block_on},
     io::{color::turbo, load},
 };
 
@@ -33,7 +33,7 @@ fn embed_draws_the_picture_and_its_disparities() {
     let [left, right] = ["left.png", "right.png"].map(|name| load::load(&scene.join(name)).unwrap());
     let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
     let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64).unwrap(), Brightness::SAME);
-    let map = dense::compute(&gpu, &left.luma(), &right.luma(), &config).unwrap().disparity;
+    let map = block_on(dense::compute(&gpu, &left.luma(), &right.luma(), &config)).unwrap().disparity;
     let (width, height) = left.size();
     assert_eq!(frame.size(), (2 * width, height));
     let mut colors = 0;

@@ -9,12 +9,12 @@ use std::{
 };
 
 use hsad::{
+    backend::Backend,
     config::Preset,
     dense::View,
     disparity::NONE,
     gpu::DeviceChoice,
     io::{Picture, load, pfm},
-    pair::Backend,
     pipeline::{self, RangeSource},
     wgpu,
 };

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DAffine2;
 use hsad::{
+    backend::Backend,
     dense::View,
     eval::{
         Judged, PointMatch, Truth,
@@ -13,7 +14,7 @@ use hsad::{
         scene::SceneFiles,
     },
     gpu::DeviceChoice,
-    pair::Backend,
+    gpu::block_on,
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
@@ -38,7 +39,7 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
             let changed = Changed::by(&[condition.parse::<Condition>().unwrap()], &scene.right, 1);
             let truth = known.clone().changed(&changed);
             let views = (&scene.left.luma(), &changed.picture.luma());
-            let found = match_views(&backend, views.0, views.1, &WideBaselineConfig::default()).unwrap();
+            let found = block_on(match_views(&backend, views.0, views.1, &WideBaselineConfig::default())).unwrap();
             let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
             let right = Judged::new(&matches, &truth, 1.5).unwrap().right;
             let accuracy = accuracy_of_first(&right, 100);
@@ -54,9 +55,9 @@ fn points_are_those_of_a_detector_of_their_own() {
     let scene = scene[0].read(View::Left).unwrap();
     let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
     let (config, views) = (WideBaselineConfig::default(), [scene.left.luma(), scene.right.luma()]);
-    let found = match_views(&backend, &views[0], &views[1], &config).unwrap();
+    let found = block_on(match_views(&backend, &views[0], &views[1], &config)).unwrap();
     assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
     for (features, view) in found.features.iter().zip(&views) {
-        assert!(features.len() > 500 && *features == backend.features(view, &config.features).unwrap());
+        assert!(features.len() > 500 && *features == block_on(backend.features(view, &config.features)).unwrap());
     }
 }

@@ -16,6 +16,7 @@ use hsad::{
     config::Preset,
     dense::{Brightness, Destination, Matcher},
     disparity::DisparityRange,
+    gpu::Gpu,
     io::{Picture, atomic, load, png},
     luma::Source,
     wgpu::{self, TextureFormat, TextureUsages},
@@ -184,9 +185,10 @@ fn run() -> Result<(), AnyError> {
 
     // Once per size: kernels, memory, inputs and outputs.
     let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64)?, Brightness::SAME);
-    let matcher = Matcher::new(device, size, &config)?;
-    let inputs = matcher.inputs(device, Source::Texture(&left), Source::Texture(&right))?;
-    let outputs = matcher.outputs(device, Destination::Texture(&disparities), None)?;
+    let gpu = Gpu::new(renderer.device.clone(), renderer.queue.clone());
+    let matcher = Matcher::new(&gpu, size, &config)?;
+    let inputs = matcher.inputs(Source::Texture(&left), Source::Texture(&right))?;
+    let outputs = matcher.outputs(Destination::Texture(&disparities), None)?;
     let (pipeline, textures) = renderer.drawing([&left, &disparities], frame.format());
 
     // Once per frame.

@@ -8,20 +8,20 @@
 
 mod slot;
 
-use std::{path::Path, process::ExitCode, time::Instant};
+use std::{path::Path, process::ExitCode, rc::Rc, time::Instant};
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, DenseConfig, Matcher},
+    dense::{Brightness, DenseConfig},
     disparity::{DisparityRange, NONE},
-    features::{Detector, FeatureConfig},
+    gpu::Gpu,
     io::{Picture, load},
     pipeline::equalising,
     seeding::Seeding,
     wgpu,
 };
 
-use slot::{FrameResult, Slot};
+use slot::{Engine, FrameResult, Slot};
 
 type AnyError = Box<dyn std::error::Error>;
 
@@ -51,79 +51,68 @@ impl Scene {
     }
 }
 
-/// The matcher, its slots, and its configuration.
-struct Stream<'d> {
-    device: &'d wgpu::Device,
-    queue: &'d wgpu::Queue,
-    config: DenseConfig,
-    matcher: Matcher,
-    /// Detectors of the left and the right view, which read the matcher's luma.
-    detectors: [Detector; 2],
+/// The engine for the next frames, and the frames in flight, each with the engine it was submitted to.
+struct Stream {
+    engine: Rc<Engine>,
     slots: Vec<Slot>,
 }
 
-impl<'d> Stream<'d> {
-    fn new(device: &'d wgpu::Device, queue: &'d wgpu::Queue, config: DenseConfig) -> hsad::Result<Self> {
-        let matcher = Matcher::new(device, SIZE, &config)?;
-        // A small capacity, so that little has to be read back.
-        let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
-        let [left, right] = matcher.luma().map(|luma| Detector::new(device, luma, SIZE.0, SIZE.1, &features));
-        let detectors = [left?, right?];
-        let slots = (0..SLOTS).map(|_| Slot::new(device, &matcher, &detectors, SIZE)).collect::<hsad::Result<_>>()?;
-        Ok(Self { device, queue, config, matcher, detectors, slots })
+impl Stream {
+    fn new(gpu: &Gpu, config: DenseConfig) -> hsad::Result<Self> {
+        let engine = Rc::new(Engine::new(gpu, SIZE, config)?);
+        let slots = (0..SLOTS).map(|_| Slot::new(&engine, SIZE)).collect::<hsad::Result<_>>()?;
+        Ok(Self { engine, slots })
     }
 
     /// Submits a frame in a free slot.
-    fn send(&mut self, index: usize, frame: [Picture; 2]) {
+    fn send(&mut self, index: usize, frame: [Picture; 2]) -> hsad::Result<()> {
         let slot = &mut self.slots[index % SLOTS];
-        let detectors = index.is_multiple_of(SEEDED).then_some(&self.detectors);
-        slot.send((self.device, self.queue), &self.matcher, index, frame, detectors);
+        if !Rc::ptr_eq(&slot.engine, &self.engine) {
+            *slot = Slot::new(&self.engine, SIZE)?;
+        }
+        slot.send(index, frame, index.is_multiple_of(SEEDED));
+        Ok(())
     }
 
     /// Waits for the frame in the slot that frame `index` will take, and learns from it.
-    fn collect(&mut self, index: usize) -> Result<Option<FrameResult>, AnyError> {
-        let answer = self.slots[index % SLOTS].collect(self.device)?;
-        if let Some(seeding) = answer.as_ref().and_then(|answer| answer.seeding.as_ref()) {
+    fn collect(&mut self, index: usize) -> hsad::Result<Option<FrameResult>> {
+        let result = self.slots[index % SLOTS].collect()?;
+        if let Some(seeding) = result.as_ref().and_then(|result| result.seeding.as_ref()) {
             self.learn(seeding)?;
         }
-        Ok(answer)
+        Ok(result)
     }
 
     /// Adopts range and brightness from the seeds of a frame for the following frames. A change of brightness costs
-    /// nothing; a change of range rebuilds the matcher, so it happens only if necessary.
-    fn learn(&mut self, seeding: &Seeding) -> Result<(), AnyError> {
+    /// nothing; a change of range needs another engine, so it happens only if necessary. Frames in flight keep the engine
+    /// they were submitted to.
+    fn learn(&mut self, seeding: &Seeding) -> hsad::Result<()> {
+        let mut config = self.engine.config.clone();
         if let Some(found) = &seeding.brightness {
-            let brightness = equalising(found);
-            self.matcher.set_brightness(self.queue, brightness)?;
-            self.config.brightness = brightness;
+            config.brightness = equalising(found);
+            self.engine.matcher.set_brightness(config.brightness)?;
         }
         let Ok(found) = seeding.range else { return Ok(()) };
-        let has = self.config.range;
+        let has = config.range;
         let too_small = found.min < has.min || found.last() > has.last();
         if too_small || 4 * found.count < has.count {
-            // The new range is half as wide again on either side, so that it is not left at once. Frames in flight are
-            // dropped.
+            // A margin of half the range on either side keeps the next frames inside.
             let margin = (found.count / 2).cast_signed();
             let range = DisparityRange::inclusive(found.min - margin, found.last() + margin)?;
             println!("range {} to {} px instead of {} to {}", range.min, range.last(), has.min, has.last());
-            *self = Self::new(self.device, self.queue, DenseConfig { range, ..self.config.clone() })?;
+            self.engine = Rc::new(Engine::new(&self.engine.gpu, SIZE, DenseConfig { range, ..config })?);
         }
         Ok(())
     }
 }
 
 /// Submits all frames, with `SLOTS` of them in flight, or one if `in_turn`. Returns the frames per second.
-fn run(
-    stream: &mut Stream<'_>,
-    scene: &Scene,
-    in_turn: bool,
-    mut tell: impl FnMut(FrameResult),
-) -> Result<f64, AnyError> {
+fn run(stream: &mut Stream, scene: &Scene, in_turn: bool, mut tell: impl FnMut(FrameResult)) -> Result<f64, AnyError> {
     let start = Instant::now();
     for index in 0..scene.frames + SLOTS {
         stream.collect(index)?.map(&mut tell);
         if index < scene.frames {
-            stream.send(index, scene.frame(index));
+            stream.send(index, scene.frame(index))?;
         }
         if in_turn {
             stream.collect(index)?.map(&mut tell);
@@ -132,8 +121,8 @@ fn run(
     Ok(scene.frames as f64 / start.elapsed().as_secs_f64())
 }
 
-fn tell(FrameResult { index, disparities, seeding }: FrameResult) {
-    let known: Vec<i32> = disparities.into_iter().filter(|&disparity| disparity != NONE).collect();
+fn tell(FrameResult { index, map, seeding }: FrameResult) {
+    let known: Vec<i32> = map.disparity.into_data().into_iter().filter(|&disparity| disparity != NONE).collect();
     let mean = known.iter().map(|&d| f64::from(d) / 256.0).sum::<f64>() / known.len().max(1) as f64;
     let coverage = 100.0 * known.len() as f64 / f64::from(SIZE.0 * SIZE.1);
     print!("frame {index:3}  coverage {coverage:5.1} %  mean disparity {mean:5.2} px");
@@ -173,7 +162,7 @@ fn stream() -> Result<(), AnyError> {
 
     // The range is a guess until there are seeds.
     let config = Preset::Fast.config().dense(DisparityRange::new(0, 32)?, Brightness::SAME);
-    let mut stream = Stream::new(&device, &queue, config)?;
+    let mut stream = Stream::new(&Gpu::new(device, queue), config)?;
     run(&mut stream, &scene, false, tell)?;
     let overlapped = run(&mut stream, &scene, false, drop)?;
     let in_turn = run(&mut stream, &scene, true, drop)?;

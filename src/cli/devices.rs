@@ -3,7 +3,7 @@
 use clap::Args;
 use hsad::{
     Error,
-    gpu::list_adapters,
+    gpu::{block_on, list_adapters},
     wgpu::{AdapterInfo, DeviceType},
 };
 
@@ -23,7 +23,7 @@ pub struct Devices {}
 impl Devices {
     /// Prints the table.
     pub fn run(self) -> anyhow::Result<()> {
-        let adapters = list_adapters();
+        let adapters = block_on(list_adapters());
         terminal::print(&table(&adapters))?;
         if adapters.is_empty() {
             terminal::warning(Error::NoAdapter);

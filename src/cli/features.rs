@@ -5,6 +5,7 @@ use std::{io::Write, path::PathBuf};
 use clap::Args;
 use hsad::{
     features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    gpu::block_on,
     image::reduced,
     io::{figure, load, png},
     pipeline::reduction,
@@ -58,7 +59,7 @@ impl Features {
         progress.begin("finding interest points");
         let luma = picture.luma();
         let factor = if self.full_size { 1 } else { reduction(luma.size()) };
-        let features = backend.features(&reduced(&luma, factor), &config)?;
+        let features = block_on(backend.features(&reduced(&luma, factor), &config))?;
         let features: Vec<_> = features.into_iter().map(|point| enlarged_feature(point, factor)).collect();
 
         let csv = csv(&features, self.descriptors);

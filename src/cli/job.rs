@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use hsad::{
     Error,
+    backend::Backend,
     config::Config,
     disparity::DisparityRange,
     io::{Calibration, Picture},
-    pair::Backend,
     pipeline::{self, Outcome, RangeSource},
 };
 

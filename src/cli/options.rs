@@ -6,15 +6,15 @@ use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use hsad::{
     Error, Result,
+    backend::Backend,
     config::{Config, Method, Preset},
-    dense::{Aggregation, Interpolation, OtherView, Paths, Search, SemiGlobal, View},
+    dense::{Aggregation, CrossCheck, Interpolation, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
     io::Calibration,
     kamencay::KamencayParameters,
     matching::MatchConfig,
-    pair::Backend,
     verify::self_test,
 };
 
@@ -203,7 +203,7 @@ impl MatchOptions {
             *search = Search::Whole;
         }
         if let (true, Aggregation::Paths(paths)) = (self.search_both_views, &mut config.aggregation) {
-            paths.other_view = OtherView::Searched;
+            paths.cross_check = CrossCheck::Searched;
         }
         self.choose_paths(&mut config.aggregation)?;
         config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);

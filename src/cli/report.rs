@@ -1,12 +1,12 @@
 //! `report.json`: parameters, figures and times of a run, for programs.
 
 use hsad::{
+    backend::Backend,
     config::{Config, Method},
-    dense::{Aggregation, Difference, Interpolation, OtherView, Paths, Refinement, Search, SemiGlobal, View},
+    dense::{Aggregation, CrossCheck, Difference, Interpolation, Paths, Refinement, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     kamencay::KamencayParameters,
-    pair::Backend,
     pipeline::RangeSource,
     seeding::{BrightnessRelation, Rectification, Verdict},
 };
@@ -167,7 +167,7 @@ fn part(Difference { weight, limit }: Difference) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }) = aggregation else {
+    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }) = aggregation else {
         return "window".into();
     };
     // Without paths no penalty is applied: null.
@@ -175,7 +175,7 @@ fn aggregation_of(aggregation: &Aggregation) -> Value {
     json!({
         "cost_window": window,
         "paths": paths.directions().len(),
-        "other_view": match other_view { OtherView::Searched => "searched", OtherView::Claimed => "claimed" },
+        "other_view": match cross_check { CrossCheck::Searched => "searched", CrossCheck::Claimed => "claimed" },
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),

@@ -103,13 +103,14 @@ impl Verify {
         }
         drop(progress);
         let (ran, seconds) = (reports.len(), start.elapsed());
+        let info = gpu.info();
         if let Some(path) = &self.json {
             let report = json!({
                 "version": env!("CARGO_PKG_VERSION"),
                 "device": {
-                    "name": gpu.info.name,
-                    "backend": gpu.info.backend.to_string(),
-                    "driver": format!("{} {}", gpu.info.driver, gpu.info.driver_info),
+                    "name": info.name,
+                    "backend": info.backend.to_string(),
+                    "driver": format!("{} {}", info.driver, info.driver_info),
                 },
                 "seconds": seconds.as_secs_f64(),
                 "planned": cases.len(),
@@ -128,7 +129,7 @@ impl Verify {
         if faults > 0 {
             let lost =
                 if ran < cases.len() { "; the device was lost, and the remaining cases were not run" } else { "" };
-            bail!("{faults} of {ran} cases fail on {}{lost}: see {}", gpu.info.name, self.output.display());
+            bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, self.output.display());
         }
         print(&format!("all {ran} cases pass, in {}\n", time(seconds)))?;
         Ok(())
@@ -180,7 +181,7 @@ impl Verify {
 
 /// Name, graphics interface and driver of the device, one line.
 fn described(gpu: &Gpu) -> String {
-    let info = &gpu.info;
+    let info = gpu.info();
     format!("{} ({}, {} {})\n", info.name, info.backend, info.driver, info.driver_info)
 }
 

@@ -3,6 +3,7 @@
 use crate::luma::Input;
 
 /// Left and right view on their way into a [`super::Matcher`]: see [`super::Matcher::inputs`].
+#[derive(Debug)]
 pub struct Inputs(pub(super) [Input; 2]);
 
 impl Inputs {

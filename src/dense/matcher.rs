@@ -7,19 +7,20 @@ use super::{
     inputs::Inputs,
     kernels::{MapRows, MapTexel, MapTexture},
     outputs::{Destination, Disparities, Outputs},
-    plan::{Copy, Plan, blocks, semi_global},
+    plan::{BandLimits, Plan, WordCopy, blocks, semi_global},
+    readback::MapReadback,
 };
 #[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::wait;
+use crate::gpu::block_on;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
-    gpu::{Context, Dispatch, Gpu, Readback, Stopwatch, check_limits, guarded, storage_buffer},
-    image::{Luma, Plane},
-    luma::{
-        Input, Source, check_buffer, check_size, check_texture, kernels::luma_texture::LumaTexture, pack, packed_bytes,
-        try_recording, unpack,
+    gpu::{
+        Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded,
+        storage_buffer, try_recording,
     },
+    image::{Luma, Plane},
+    luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
 };
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
@@ -41,7 +42,7 @@ impl Dense {
     }
 }
 
-/// Dense matching of pairs of one size on a borrowed device.
+/// Dense matching of pairs of one size on an application's device.
 ///
 /// It is built once for a size and a configuration; what an application has for it in each frame, textures or buffers, is
 /// prepared once as [`Self::inputs`] and [`Self::outputs`], of which there may be as many as it has frames in flight. Then
@@ -53,7 +54,9 @@ impl Dense {
 ///
 /// Pictures whose planes do not fit in one buffer are matched in bands of rows; no result depends
 /// on where they are cut.
+#[derive(Debug)]
 pub struct Matcher {
+    gpu: Gpu,
     size: (u32, u32),
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
@@ -70,60 +73,60 @@ impl Matcher {
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
     /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn new<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
-        Self::with_band_rows(device, size, config, u32::MAX)
+    pub fn new(gpu: &Gpu, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        block_on(Self::new_async(gpu, size, config))
     }
 
-    /// As [`Matcher::new`], without blocking.
+    /// As [`Matcher::new`], awaited.
     ///
     /// # Errors
     /// As [`Matcher::new`].
-    pub async fn new_async<'c>(device: impl Into<Context<'c>>, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
-        Self::with_band_rows_async(device, size, config, u32::MAX).await
+    pub async fn new_async(gpu: &Gpu, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+        Self::with_band_rows(gpu, size, config, u32::MAX).await
     }
 
     /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
     ///
     /// # Errors
     /// As [`Self::new`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn with_band_rows<'c>(
-        device: impl Into<Context<'c>>,
-        size: (u32, u32),
-        config: &DenseConfig,
-        band_rows: u32,
-    ) -> Result<Self> {
-        let device = device.into();
-        wait(&device, Self::with_band_rows_async(device, size, config, band_rows))
+    pub async fn with_band_rows(gpu: &Gpu, size: (u32, u32), config: &DenseConfig, band_rows: u32) -> Result<Self> {
+        Self::build(gpu, size, config, None, band_rows).await
     }
 
-    /// As [`Matcher::with_band_rows`], without blocking.
-    ///
-    /// # Errors
-    /// As [`Matcher::new`].
-    pub async fn with_band_rows_async<'c>(
-        device: impl Into<Context<'c>>,
+    /// As [`Self::new`], of packed luma that is on the device already.
+    pub(crate) async fn with_luma(
+        gpu: &Gpu,
         size: (u32, u32),
         config: &DenseConfig,
+        luma: [wgpu::Buffer; 2],
+    ) -> Result<Self> {
+        Self::build(gpu, size, config, Some(luma), u32::MAX).await
+    }
+
+    async fn build(
+        gpu: &Gpu,
+        size: (u32, u32),
+        config: &DenseConfig,
+        luma: Option<[wgpu::Buffer; 2]>,
         band_rows: u32,
     ) -> Result<Self> {
-        let device = &device.into();
         config.validate()?;
-        check_size(size.0, size.1)?;
-        check_limits(device)?;
-        // The kernels count words and pixels in 32 bits.
-        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size).min(1 << 32);
-        guarded(device, "dense matching", || {
-            let luma = |label| storage_buffer(device, label, packed_bytes(size.0, size.1));
-            let luma = [luma("left luma")?, luma("right luma")?];
+        check_size(size)?;
+        check_limits(gpu)?;
+        guarded(gpu, "dense matching", || {
+            let buffer = |label| storage_buffer(gpu, label, packed_bytes(size.0, size.1));
+            let luma = match luma {
+                Some(luma) => luma,
+                None => [buffer("left luma")?, buffer("right luma")?],
+            };
             let views = [&luma[0], &luma[1]];
+            let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
             let plan = match &config.aggregation {
-                Aggregation::Window { search, .. } => {
-                    blocks::plan(device, size, config, *search, views, (limit, band_rows))
-                }
-                Aggregation::Paths(paths) => semi_global::plan(device, size, config, paths, views, (limit, band_rows)),
+                Aggregation::Window { search, .. } => blocks::plan(gpu, size, config, *search, views, limits),
+                Aggregation::Paths(paths) => semi_global::plan(gpu, size, config, paths, views, limits),
             }?;
-            Ok(Self { size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
+            let gpu = gpu.clone();
+            Ok(Self { gpu, size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
         })
         .await
     }
@@ -145,61 +148,47 @@ impl Matcher {
         self.luma.each_ref()
     }
 
-    /// Prepares what turns two views into the matcher's [`Self::luma`]; it holds on to them.
+    /// Prepares the conversion of two views to the matcher's [`Self::luma`]; the inputs hold on to the views.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
-    /// device has against it.
+    /// [`Error::Parameter`] for an invalid size, format or usage; [`Error::Unsupported`] with what else the device has
+    /// against it.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn inputs<'c>(&self, device: impl Into<Context<'c>>, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
-        let device = device.into();
-        wait(&device, self.inputs_async(device, left, right))
+    pub fn inputs(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
+        block_on(self.inputs_async(left, right))
     }
 
-    /// As [`Matcher::inputs`], without blocking.
+    /// As [`Matcher::inputs`], awaited.
     ///
     /// # Errors
     /// As [`Matcher::inputs`].
-    pub async fn inputs_async<'c>(
-        &self,
-        device: impl Into<Context<'c>>,
-        left: Source<'_>,
-        right: Source<'_>,
-    ) -> Result<Inputs> {
-        let device = &device.into();
-        let input = |name, source, luma| Input::with_kernel(device, name, self.size, source, luma, &self.luma_texture);
+    pub async fn inputs_async(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
+        let input =
+            |name, source, luma| Input::with_kernel(&self.gpu, name, self.size, source, luma, &self.luma_texture);
         let [left_luma, right_luma] = self.luma();
         let left = input("the left view", left, left_luma).await?;
         Ok(Inputs([left, input("the right view", right, right_luma).await?]))
     }
 
-    /// Prepares the way of the answers to `disparities` and, if they are wanted, to `confidences`: a buffer with
-    /// `COPY_DST` for 0 to 255 a pixel, four a word, in rows of `width.div_ceil(4)` words. It holds on to them.
+    /// Prepares the copies of the results to `disparities` and, if they are wanted, to `confidences`: a buffer with
+    /// `COPY_DST` for 0 to 255 per pixel, four per word, in rows of `width.div_ceil(4)` words. The outputs hold on to both.
     ///
     /// # Errors
     /// As [`Self::inputs`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn outputs<'c>(
-        &self,
-        device: impl Into<Context<'c>>,
-        disparities: Destination<'_>,
-        confidences: Option<&wgpu::Buffer>,
-    ) -> Result<Outputs> {
-        let device = device.into();
-        wait(&device, self.outputs_async(device, disparities, confidences))
+    pub fn outputs(&self, disparities: Destination<'_>, confidences: Option<&wgpu::Buffer>) -> Result<Outputs> {
+        block_on(self.outputs_async(disparities, confidences))
     }
 
-    /// As [`Matcher::outputs`], without blocking.
+    /// As [`Matcher::outputs`], awaited.
     ///
     /// # Errors
     /// As [`Matcher::outputs`].
-    pub async fn outputs_async<'c>(
+    pub async fn outputs_async(
         &self,
-        device: impl Into<Context<'c>>,
         disparities: Destination<'_>,
         confidences: Option<&wgpu::Buffer>,
     ) -> Result<Outputs> {
-        let device = &device.into();
         let (width, height) = self.size;
         if let Some(buffer) = confidences {
             check_buffer("the confidences", buffer, packed_bytes(width, height), wgpu::BufferUsages::COPY_DST)?;
@@ -210,7 +199,7 @@ impl Matcher {
                 check_buffer("the disparities", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
                 Disparities::Buffer(buffer.clone())
             }
-            Destination::Texture(view) => Disparities::Texture(self.to_texture(device, view).await?),
+            Destination::Texture(view) => Disparities::Texture(self.to_texture(view).await?),
         };
         let mut buffers = self.luma.to_vec();
         for (name, buffer) in [("the disparities", disparities.buffer()), ("the confidences", confidences)] {
@@ -222,12 +211,12 @@ impl Matcher {
             buffers.push(buffer.clone());
         }
         let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
-        try_recording(device, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
+        try_recording(&self.gpu, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
         Ok(outputs)
     }
 
     /// What brings each of the plan's answers to a texture.
-    async fn to_texture(&self, device: &Context<'_>, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
+    async fn to_texture(&self, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
         let (name, format) = ("the disparities", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
             return Err(Error::Parameter {
@@ -238,14 +227,14 @@ impl Matcher {
         };
         check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
         let stored = &self.map_textures[texel as usize];
-        let (kernel, dispatches) = guarded(device, name, || {
-            let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(device, texel));
+        let (kernel, dispatches) = guarded(&self.gpu, name, || {
+            let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(&self.gpu, texel));
             let width = self.size.0;
-            let dispatch = |answer: &Copy| {
+            let dispatch = |answer: &WordCopy| {
                 let row = |word: u64| (word / u64::from(width)) as u32;
                 let (rows, first_row) = (row(answer.words), row(answer.to_word));
                 let rows = MapRows { width, rows, first_word: answer.from_word as u32, first_row };
-                kernel.prepare(device, rows, &answer.from, view)
+                kernel.prepare(rows, &answer.from, view)
             };
             let dispatches = self.plan.answers().map(dispatch).collect();
             Ok((kernel, dispatches))
@@ -256,15 +245,14 @@ impl Matcher {
         Ok(dispatches)
     }
 
-    /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what
-    /// `queue`, that of the matcher's device, is given after this. That of another device, or of one that is lost, changes
-    /// nothing; wgpu tells the former to its handler of uncaptured errors.
+    /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what the
+    /// queue is given after this. On a lost device nothing changes.
     ///
     /// # Errors
     /// [`Error::Parameter`] for what 32 bits do not hold.
-    pub fn set_brightness(&self, queue: &wgpu::Queue, brightness: Brightness) -> Result<()> {
+    pub fn set_brightness(&self, brightness: Brightness) -> Result<()> {
         brightness.validate()?;
-        queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));
+        self.gpu.queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));
         Ok(())
     }
 
@@ -277,48 +265,22 @@ impl Matcher {
         assert_eq!(outputs.of, self.luma[0], "outputs of another matcher");
         self.plan.record(encoder, outputs, None);
     }
-}
 
-/// Matches one pair on `gpu` and waits for the result.
-///
-/// # Errors
-/// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
-    wait(&gpu.device, compute_async(gpu, left, right, config))
-}
-
-/// As [`compute`], without blocking.
-///
-/// # Errors
-/// As [`compute`].
-pub async fn compute_async(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
-    if left.size() != right.size() {
-        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
-    }
-    let matcher = Matcher::new_async(&gpu.device, left.size(), config).await?;
-    for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
-        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
-    }
-    matcher.run_async(gpu).await
-}
-
-impl Matcher {
-    /// Submits the matching of what [`Self::luma`] holds on `gpu`, and waits for the result.
+    /// Submits the matching of what [`Self::luma`] holds, and waits for the result.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn run(&self, gpu: &Gpu) -> Result<Dense> {
-        wait(&gpu.device, self.run_async(gpu))
+    pub fn run(&self) -> Result<Dense> {
+        block_on(self.run_async())
     }
 
-    /// As [`Matcher::run`], without blocking.
+    /// As [`Matcher::run`], awaited.
     ///
     /// # Errors
     /// As [`Matcher::run`].
-    pub async fn run_async(&self, gpu: &Gpu) -> Result<Dense> {
-        self.run_timed(gpu, None).await
+    pub async fn run_async(&self) -> Result<Dense> {
+        self.run_timed(None).await
     }
 
     /// As [`Self::run`], with what each kernel took by the device's own clock, in the order in which they ran; of the
@@ -326,37 +288,35 @@ impl Matcher {
     ///
     /// # Errors
     /// As [`Self::run`], and [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn profile(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
-        wait(&gpu.device, self.profile_async(gpu))
+    pub async fn profile(&self) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
+        let kernels: Vec<_> = self.plan.kernels().collect();
+        let stopwatch = guarded(&self.gpu, "timestamps", || Stopwatch::new(&self.gpu, kernels.len())).await?;
+        let dense = self.run_timed(Some(&stopwatch)).await?;
+        Ok((dense, kernels.into_iter().zip(stopwatch.read(&self.gpu.queue).await?).collect()))
     }
 
-    /// As [`Matcher::profile`], without blocking.
+    /// Memory of the host for the map of a frame, prepared once like [`Self::outputs`]; for as many frames in flight there
+    /// are as many.
     ///
     /// # Errors
-    /// As [`Matcher::profile`].
-    pub async fn profile_async(&self, gpu: &Gpu) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
-        let kernels: Vec<_> = self.plan.kernels().collect();
-        let stopwatch = guarded(&gpu.device, "timestamps", || Stopwatch::new(&gpu.device, kernels.len())).await?;
-        let dense = self.run_timed(gpu, Some(&stopwatch)).await?;
-        Ok((dense, kernels.into_iter().zip(stopwatch.read(gpu).await?).collect()))
-    }
-
-    async fn run_timed(&self, gpu: &Gpu, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
-        let (width, height) = self.size;
-        let pixels = width as usize * height as usize;
-        let device = &gpu.device;
-        let row_words = width.div_ceil(4) as usize;
-        let [disparities, confidences] = guarded(device, "the disparity map", || {
-            let lengths = [("disparities", pixels), ("confidences", row_words * height as usize)];
-            Ok(lengths.map(|(label, words)| Readback::new(device, label, 4 * words as u64)))
+    /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub async fn readback(&self) -> Result<MapReadback> {
+        let (gpu, size) = (&self.gpu, self.size);
+        let [disparities, confidences] = guarded(gpu, "the disparity map", || {
+            let bytes = [4 * u64::from(size.0) * u64::from(size.1), packed_bytes(size.0, size.1)];
+            Ok([Readback::new(gpu, "disparities", bytes[0]), Readback::new(gpu, "confidences", bytes[1])])
         })
         .await?;
         let destination = Destination::Buffer(disparities.buffer());
-        let outputs = self.outputs_async(device, destination, Some(confidences.buffer())).await?;
-        guarded(device, "dense matching", || {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dense") });
-            self.plan.record(&mut encoder, &outputs, stopwatch);
+        let outputs = self.outputs_async(destination, Some(confidences.buffer())).await?;
+        Ok(MapReadback { size, outputs, disparities, confidences })
+    }
+
+    async fn run_timed(&self, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
+        let (gpu, readback) = (&self.gpu, self.readback().await?);
+        guarded(gpu, "dense matching", || {
+            let mut encoder = gpu.encoder("dense");
+            self.plan.record(&mut encoder, readback.outputs(), stopwatch);
             if let Some(stopwatch) = stopwatch {
                 stopwatch.resolve(&mut encoder);
             }
@@ -364,9 +324,21 @@ impl Matcher {
             Ok(())
         })
         .await?;
-        let disparity = Plane::new(width, height, disparities.read(pixels).await?)?;
-        let words: Vec<u32> = confidences.read(row_words * height as usize).await?;
-        let confidence = unpack(width, height, &words);
-        Ok(Dense { disparity, confidence })
+        readback.read().await
     }
+}
+
+/// Matches one pair on `gpu`.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
+pub async fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    if left.size() != right.size() {
+        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+    }
+    let matcher = Matcher::new_async(gpu, left.size(), config).await?;
+    for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
+    }
+    matcher.run_async().await
 }

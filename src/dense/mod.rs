@@ -14,13 +14,13 @@ pub mod kernels;
 mod matcher;
 mod outputs;
 mod plan;
+mod readback;
 
 pub use config::{
-    Aggregation, Brightness, Cost, DenseConfig, Difference, Direction, Interpolation, MAX_COST, Median, OtherView,
+    Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Difference, Direction, Interpolation, MAX_COST, Median,
     Paths, Penalties, Refinement, Search, SemiGlobal, View, WEIGHT_BITS,
 };
 pub use inputs::Inputs;
-#[cfg(not(target_arch = "wasm32"))]
-pub use matcher::compute;
-pub use matcher::{Dense, Matcher, compute_async};
+pub use matcher::{Dense, Matcher, compute};
 pub use outputs::{Destination, Outputs};
+pub use readback::MapReadback;

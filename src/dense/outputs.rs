@@ -1,6 +1,6 @@
 //! Where a matcher's answers go.
 
-use super::plan::Copy;
+use super::plan::WordCopy;
 use crate::gpu::Dispatch;
 
 /// Where the caller wants the disparities.
@@ -14,6 +14,7 @@ pub enum Destination<'a> {
 }
 
 /// Where the answers go, prepared for a [`super::Matcher`]: see [`super::Matcher::outputs`].
+#[derive(Debug)]
 pub struct Outputs {
     pub(super) disparities: Disparities,
     pub(super) confidences: Option<wgpu::Buffer>,
@@ -21,6 +22,7 @@ pub struct Outputs {
     pub(super) of: wgpu::Buffer,
 }
 
+#[derive(Debug)]
 pub(super) enum Disparities {
     Buffer(wgpu::Buffer),
     /// For each of the plan's answers what brings it to the texture.
@@ -39,7 +41,7 @@ impl Disparities {
 
 impl Outputs {
     /// Records what `copy`, the plan's answer of this `index`, is to be for the caller.
-    pub(super) fn record_disparities(&self, encoder: &mut wgpu::CommandEncoder, copy: &Copy, index: usize) {
+    pub(super) fn record_disparities(&self, encoder: &mut wgpu::CommandEncoder, copy: &WordCopy, index: usize) {
         match &self.disparities {
             Disparities::Buffer(to) => copy.record(encoder, to),
             Disparities::Texture(dispatches) => dispatches[index].record(encoder),
@@ -47,7 +49,7 @@ impl Outputs {
     }
 
     /// Records a copy of confidences, if they are wanted.
-    pub(super) fn record_confidences(&self, encoder: &mut wgpu::CommandEncoder, copy: &Copy) {
+    pub(super) fn record_confidences(&self, encoder: &mut wgpu::CommandEncoder, copy: &WordCopy) {
         if let Some(to) = &self.confidences {
             copy.record(encoder, to);
         }

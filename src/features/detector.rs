@@ -12,138 +12,171 @@ use super::{
         workgroups::Workgroups,
     },
     keypoints::{Keypoint, KeypointList},
+    readback::FeatureReadback,
     too_many,
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::wait;
 use crate::{
     error::Result,
-    gpu::{Context, Gpu, Readback, check_limits, guarded},
+    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer, try_recording},
     image::Luma,
-    luma::{check_packed, upload},
+    luma::{check_packed, check_size, upload},
 };
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
 ///
 /// What it finds stays on the device, in [`Self::keypoints`] and [`Self::descriptors`], for kernels of the application to
-/// read, or to be copied from where it does not want to wait: [`collect`] makes [`Feature`]s of the copies. [`Self::read`]
-/// does all that at once, and waits.
+/// read, or to be copied to the host by a [`Self::readback`] that nothing has to wait for. [`Self::read`] copies no more than was
+/// found, and waits.
+#[derive(Debug)]
 pub struct Detector {
-    rows: IntegralRows,
-    columns: IntegralColumns,
-    hessian: Hessian,
-    nonmax: Nonmax,
-    workgroups: Workgroups,
-    /// None in upright mode.
-    orientation: Option<Orientation>,
-    descriptor: Descriptor,
+    gpu: Gpu,
+    integral: wgpu::Buffer,
+    responses: Vec<wgpu::Buffer>,
+    list: KeypointList,
+    groups: wgpu::Buffer,
+    descriptors: wgpu::Buffer,
+    size: (u32, u32),
+    integral_rows: IntegralRows,
+    /// From the sums along the rows to the descriptors, in order.
+    dispatches: Vec<Dispatch>,
 }
+
+/// A picture that a [`Detector`] reads: see [`Detector::input`].
+#[derive(Debug)]
+pub struct DetectorInput(Dispatch);
 
 /// The values of one descriptor.
 type Values = [f32; DESCRIPTOR_LENGTH];
 
 impl Detector {
-    /// Reads `luma`, a packed picture of `width` x `height` (see [`crate::luma`]).
+    /// Compiles the kernels and allocates all memory for pictures of `size`.
     ///
     /// The device's adapter needs [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`].
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new<'c>(
-        device: impl Into<Context<'c>>,
-        luma: &wgpu::Buffer,
-        width: u32,
-        height: u32,
-        config: &FeatureConfig,
-    ) -> Result<Self> {
-        let device = device.into();
-        wait(&device, Self::new_async(device, luma, width, height, config))
-    }
-
-    /// As [`Detector::new`], without blocking.
-    ///
-    /// # Errors
-    /// As [`Detector::new`].
-    pub async fn new_async<'c>(
-        device: impl Into<Context<'c>>,
-        luma: &wgpu::Buffer,
-        width: u32,
-        height: u32,
-        config: &FeatureConfig,
-    ) -> Result<Self> {
-        let device = &device.into();
+    pub async fn new(gpu: &Gpu, size: (u32, u32), config: &FeatureConfig) -> Result<Self> {
         config.validate()?;
-        check_packed(luma, width, height)?;
-        check_limits(device)?;
-        guarded(device, "finding interest points", || {
-            let rows = IntegralRows::new(device, luma, width, height)?;
-            let integral = rows.sums();
-            let columns = IntegralColumns::new(device, integral, width, height);
-            let hessian = Hessian::new(device, integral, width, height, config)?;
-            let nonmax = Nonmax::new(device, &hessian, width, height, config)?;
-            let list = nonmax.list();
-            let workgroups = Workgroups::new(device, list);
-            let (groups, size) = (workgroups.groups(), (width, height));
-            let orientation = (!config.upright).then(|| Orientation::new(device, integral, list, groups, size));
-            let descriptor = Descriptor::new(device, integral, list, groups, size, config.upright)?;
-            Ok(Self { rows, columns, hessian, nonmax, workgroups, orientation, descriptor })
+        check_size(size)?;
+        check_limits(gpu)?;
+        guarded(gpu, "finding interest points", || {
+            let hessian = Hessian::new(gpu, config);
+            let integral = storage_buffer(gpu, "integral image", IntegralRows::bytes(size))?;
+            let responses = (0..config.octaves)
+                .map(|octave| storage_buffer(gpu, "responses of an octave", hessian.bytes(size, octave)))
+                .collect::<Result<Vec<_>>>()?;
+            let list = KeypointList::new(gpu, config.max_features)?;
+            let groups = Workgroups::groups(gpu);
+            let descriptors = storage_buffer(gpu, "descriptors", Descriptor::bytes(&list))?;
+
+            let mut dispatches = vec![IntegralColumns::new(gpu).prepare(size, &integral)];
+            let mut finer = None;
+            for (octave, responses) in (0..).zip(&responses) {
+                dispatches.push(hessian.prepare(size, octave, &integral, finer, responses));
+                finer = Some(responses);
+            }
+            let nonmax = Nonmax::new(gpu);
+            let suppression =
+                (0..).zip(&responses).map(|(octave, responses)| nonmax.prepare(size, octave, config, responses, &list));
+            dispatches.extend(suppression);
+            dispatches.push(Workgroups::new(gpu).prepare(&list, &groups));
+            if !config.upright {
+                dispatches.push(Orientation::new(gpu).prepare(size, &integral, &list, &groups));
+            }
+            let descriptor = Descriptor::new(gpu, config.upright);
+            dispatches.push(descriptor.prepare(size, &integral, &list, &groups, &descriptors));
+            let (gpu, integral_rows) = (gpu.clone(), IntegralRows::new(gpu));
+            Ok(Self { gpu, integral, responses, list, groups, descriptors, size, integral_rows, dispatches })
         })
         .await
+    }
+
+    /// Prepares the reading of `luma`, a packed picture of the detector's size (see [`crate::luma`]) in a buffer with
+    /// `STORAGE`; the input holds on to the buffer.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for a buffer that does not hold such a picture; [`crate::Error::Unsupported`] with what
+    /// else the device has against it.
+    pub async fn input(&self, luma: &wgpu::Buffer) -> Result<DetectorInput> {
+        check_packed(luma, self.size)?;
+        let prepare = || Ok(self.integral_rows.prepare(self.size, luma, &self.integral));
+        let input = DetectorInput(guarded(&self.gpu, "the picture", prepare).await?);
+        try_recording(&self.gpu, "the picture", |encoder| self.record(encoder, &input)).await?;
+        Ok(input)
+    }
+
+    /// The features of `luma`: prepared, submitted and read.
+    ///
+    /// # Errors
+    /// Those of [`Self::input`] and [`Self::read`].
+    pub async fn detect(&self, luma: &wgpu::Buffer) -> Result<Vec<Feature>> {
+        let input = self.input(luma).await?;
+        submit(&self.gpu, |encoder| self.record(encoder, &input)).await?;
+        self.read().await
     }
 
     /// Bytes of device memory that this detector holds, besides the picture: mostly those for
     /// [`FeatureConfig::max_features`] descriptors.
     pub fn memory(&self) -> u64 {
-        let list = self.nonmax.list();
-        let buffers = [self.rows.sums(), list.found(), list.keypoints(), self.workgroups.groups(), self.descriptors()];
-        buffers.map(wgpu::Buffer::size).iter().sum::<u64>() + self.hessian.memory()
+        let buffers = [&self.integral, self.list.found(), self.list.keypoints(), &self.groups, &self.descriptors];
+        buffers.into_iter().chain(&self.responses).map(wgpu::Buffer::size).sum()
     }
 
     /// How many keypoints were found, and what they are.
     pub fn keypoints(&self) -> &KeypointList {
-        self.nonmax.list()
+        &self.list
     }
 
     /// The descriptors: [`DESCRIPTOR_LENGTH`] values of `f32` for each keypoint, in the order of the list.
     pub fn descriptors(&self) -> &wgpu::Buffer {
-        self.descriptor.descriptors()
+        &self.descriptors
     }
 
-    /// Records everything from the integral image to the descriptors. What was found before is overwritten.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.rows.record(encoder);
-        self.columns.record(encoder);
-        self.hessian.record(encoder);
-        self.nonmax.record(encoder);
-        self.workgroups.record(encoder);
-        if let Some(orientation) = &self.orientation {
-            orientation.record(encoder);
-        }
-        self.descriptor.record(encoder);
+    /// Records everything from the integral image of `input` to the descriptors. What was found before is overwritten.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
+        encoder.clear_buffer(self.list.found(), 0, None);
+        input.0.record(encoder);
+        self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
     }
 
-    /// Waits for the recorded work, once submitted, and returns what it found, sorted by octave,
+    /// Memory of the host for the features of a frame, prepared once, for an application that does not want to wait: for as
+    /// many frames in flight there are as many. It has room for [`FeatureConfig::max_features`], all of which is copied.
+    ///
+    /// # Errors
+    /// [`crate::Error::OutOfMemory`], [`crate::Error::DeviceLost`].
+    pub async fn readback(&self) -> Result<FeatureReadback> {
+        let gpu = &self.gpu;
+        guarded(gpu, "the features", || {
+            let readback = |label, buffer: &wgpu::Buffer| Readback::new(gpu, label, buffer.size());
+            Ok(FeatureReadback {
+                capacity: self.list.capacity(),
+                count: readback("number of keypoints", self.list.found()),
+                keypoints: readback("keypoints", self.list.keypoints()),
+                descriptors: readback("descriptors", &self.descriptors),
+            })
+        })
+        .await
+    }
+
+    /// Records the copy of what was found, after [`Self::record`].
+    pub fn record_readback(&self, encoder: &mut wgpu::CommandEncoder, readback: &FeatureReadback) {
+        readback.count.record(encoder, self.list.found());
+        readback.keypoints.record(encoder, self.list.keypoints());
+        readback.descriptors.record(encoder, &self.descriptors);
+    }
+
+    /// Waits for the recorded work, once submitted, and returns the features that were found, sorted by octave,
     /// layer, row and column.
     ///
     /// Only as much is copied as was found, which takes two submissions.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
-        wait(device, self.read_async(device, queue))
-    }
-
-    /// As [`Detector::read`], without blocking.
-    ///
-    /// # Errors
-    /// As [`Detector::read`].
-    pub async fn read_async(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<Feature>> {
-        let list = self.nonmax.list();
-        let count = submit(device, queue, |encoder| {
-            let count = Readback::new(device, "number of keypoints", size_of::<u32>() as u64);
+    pub async fn read(&self) -> Result<Vec<Feature>> {
+        let (gpu, list) = (&self.gpu, &self.list);
+        let count = submit(gpu, |encoder| {
+            let count = Readback::new(gpu, "number of keypoints", size_of::<u32>() as u64);
             count.record(encoder, list.found());
             count
         })
@@ -157,11 +190,11 @@ impl Detector {
         }
         let found = found as usize;
         // Staging of its own for each call, so that several threads may read.
-        let (keypoints, descriptors) = submit(device, queue, |encoder| {
-            let keypoints = Readback::new(device, "keypoints", (found * size_of::<Keypoint>()) as u64);
-            let descriptors = Readback::new(device, "descriptors", (found * size_of::<Values>()) as u64);
+        let (keypoints, descriptors) = submit(gpu, |encoder| {
+            let keypoints = Readback::new(gpu, "keypoints", (found * size_of::<Keypoint>()) as u64);
+            let descriptors = Readback::new(gpu, "descriptors", (found * size_of::<Values>()) as u64);
             keypoints.record(encoder, list.keypoints());
-            descriptors.record(encoder, self.descriptor.descriptors());
+            descriptors.record(encoder, &self.descriptors);
             (keypoints, descriptors)
         })
         .await?;
@@ -184,33 +217,17 @@ pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]])
 ///
 /// # Errors
 /// Those of [`Detector::new`] and [`Detector::read`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
-    wait(&gpu.device, detect_async(gpu, picture, config))
-}
-
-/// As [`detect`], without blocking.
-///
-/// # Errors
-/// As [`detect`].
-pub async fn detect_async(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
-    let (width, height) = picture.size();
+pub async fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     let buffer = upload(gpu, picture).await?;
-    let detector = Detector::new_async(&gpu.device, &buffer, width, height, config).await?;
-    submit(&gpu.device, &gpu.queue, |encoder| detector.record(encoder)).await?;
-    detector.read_async(&gpu.device, &gpu.queue).await
+    Detector::new(gpu, picture.size(), config).await?.detect(&buffer).await
 }
 
 /// Submits what `record` records; what it returns.
-async fn submit<T>(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    record: impl FnOnce(&mut wgpu::CommandEncoder) -> T,
-) -> Result<T> {
-    guarded(device, "finding interest points", || {
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
+async fn submit<T>(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> T) -> Result<T> {
+    guarded(gpu, "finding interest points", || {
+        let mut encoder = gpu.encoder("features");
         let recorded = record(&mut encoder);
-        queue.submit([encoder.finish()]);
+        gpu.queue.submit([encoder.finish()]);
         Ok(recorded)
     })
     .await

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Binding, ShaderType, shader_struct, storage_buffer},
+    gpu::{Binding, Gpu, ShaderType, shader_struct, storage_buffer},
 };
 
 shader_struct! {
@@ -48,6 +48,7 @@ shader_struct! {
 pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 
 /// Room for the keypoints of a picture, on the device, in buffers with `STORAGE`, `COPY_SRC` and `COPY_DST`.
+#[derive(Debug)]
 pub struct KeypointList {
     found: wgpu::Buffer,
     keypoints: wgpu::Buffer,
@@ -59,11 +60,11 @@ impl KeypointList {
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`] where the device could not bind it.
-    pub fn new(device: &wgpu::Device, capacity: u32) -> Result<Self> {
+    pub fn new(gpu: &Gpu, capacity: u32) -> Result<Self> {
         let bytes = u64::from(capacity) * size_of::<Keypoint>() as u64;
         Ok(Self {
-            found: storage_buffer(device, "number of keypoints", size_of::<u32>() as u64)?,
-            keypoints: storage_buffer(device, "keypoints", bytes)?,
+            found: storage_buffer(gpu, "number of keypoints", size_of::<u32>() as u64)?,
+            keypoints: storage_buffer(gpu, "keypoints", bytes)?,
             capacity,
         })
     }

@@ -8,9 +8,9 @@ mod config;
 mod detector;
 pub mod kernels;
 pub mod keypoints;
+mod readback;
 
 pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
-#[cfg(not(target_arch = "wasm32"))]
-pub use detector::detect;
-pub use detector::{Detector, collect, detect_async};
+pub use detector::{Detector, DetectorInput, collect, detect};
+pub use readback::FeatureReadback;

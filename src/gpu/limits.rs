@@ -1,5 +1,6 @@
 //! What a device must offer, whatever the size of the pictures.
 
+use super::Gpu;
 use crate::error::{Error, Result};
 
 /// A limit of [`wgpu::Limits`] that the kernels need.
@@ -46,8 +47,8 @@ pub(crate) const BUFFER_LIMITS: &str = "max_storage_buffer_binding_size and max_
 ///
 /// # Errors
 /// [`Error::Unsupported`] with the limit's name.
-pub(crate) fn check_limits(device: &wgpu::Device) -> Result<()> {
-    let limits = device.limits();
+pub(crate) fn check_limits(gpu: &Gpu) -> Result<()> {
+    let limits = gpu.device.limits();
     match REQUIRED_LIMITS.iter().find(|limit| (limit.of)(&limits) < limit.least) {
         None => Ok(()),
         Some(limit) => Err(Error::Unsupported(format!(

@@ -1,31 +1,36 @@
-//! The bit of wgpu that every stage shares: choosing a device, building kernels, reading results.
+//! The part of wgpu that every stage shares: a handle on a device, kernels, buffers, and results that are read back.
 
-mod context;
+#[cfg(not(target_arch = "wasm32"))]
+mod block_on;
+mod buffers;
 mod device;
+mod guard;
+mod handle;
 mod kernel;
 mod limits;
 mod readback;
+mod resources;
 mod shader_struct;
+mod stage;
 mod stopwatch;
 mod unroll;
-#[cfg(not(target_arch = "wasm32"))]
-mod wait;
-mod words;
+mod word_texture;
 
-pub use context::Context;
-pub(crate) use device::is_lavapipe;
 #[cfg(not(target_arch = "wasm32"))]
-pub use device::list_adapters;
-pub use device::{DeviceChoice, Gpu, list_adapters_async};
-pub(crate) use kernel::{Bindable, Kernel, buffer_of, guarded, storage_buffer, store, uniform_buffer};
-pub use kernel::{Binding, Dispatch, Stage};
+pub use block_on::block_on;
+pub(crate) use buffers::{buffer_limit, buffer_of, storage_buffer, store, uniform_buffer};
+pub use device::{DeviceChoice, list_adapters};
+pub(crate) use guard::{guarded, try_recording};
+pub use handle::Gpu;
+pub use kernel::Dispatch;
+pub(crate) use kernel::{Bindable, Kernel};
 pub(crate) use limits::{BUFFER_LIMITS, check_limits};
 pub use limits::{Limit, REQUIRED_LIMITS};
 pub(crate) use readback::Readback;
+pub(crate) use resources::{check_buffer, check_texture};
 pub(crate) use shader_struct::shader_struct;
 pub use shader_struct::{Member, ShaderType, Shape};
+pub use stage::{Binding, Stage};
 pub(crate) use stopwatch::Stopwatch;
-#[cfg(not(target_arch = "wasm32"))]
-pub(crate) use wait::wait;
-pub use words::WordTexture;
-pub(crate) use words::{ROW_BITS, in_rows, most_words};
+pub use word_texture::WordTexture;
+pub(crate) use word_texture::{ROW_BITS, in_rows, most_words};

@@ -5,23 +5,27 @@ use std::{
     task::{Poll, Waker},
 };
 
+use super::Gpu;
 use crate::error::{Error, Result};
 
 /// A host-visible copy of a buffer's first bytes: recorded with the work, read after its submission.
+#[derive(Debug)]
 pub(crate) struct Readback {
     staging: wgpu::Buffer,
+    device: wgpu::Device,
 }
 
 impl Readback {
     /// Space for `bytes`.
-    pub(crate) fn new(device: &wgpu::Device, label: &'static str, bytes: u64) -> Self {
+    pub(crate) fn new(gpu: &Gpu, label: &'static str, bytes: u64) -> Self {
+        let device = gpu.device.clone();
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: bytes.next_multiple_of(4).max(4),
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { staging }
+        Self { staging, device }
     }
 
     /// Records the copy of `source`'s first bytes.
@@ -39,14 +43,13 @@ impl Readback {
     /// # Errors
     /// [`Error::DeviceLost`] where the device did not finish the work.
     pub(crate) async fn read<T: bytemuck::Pod>(&self, count: usize) -> Result<Vec<T>> {
-        let lost = |why: &dyn std::fmt::Display| Error::DeviceLost(why.to_string());
         if count == 0 {
             return Ok(Vec::new());
         }
         let bytes = (count * size_of::<T>()) as u64;
         let slice = self.staging.slice(..bytes.next_multiple_of(4));
-        mapped(slice).await.map_err(|e| lost(&e))?;
-        let view = slice.get_mapped_range().map_err(|e| lost(&e))?;
+        mapped(slice, &self.device).await.map_err(Error::DeviceLost)?;
+        let view = slice.get_mapped_range().map_err(|e| Error::DeviceLost(e.to_string()))?;
         let values = bytemuck::pod_collect_to_vec::<u8, T>(&view[..bytes as usize]);
         drop(view);
         self.staging.unmap();
@@ -54,30 +57,92 @@ impl Readback {
     }
 }
 
-/// What a mapping has come to so far, and who waits for it.
+/// The state of a mapping, and the task that waits for it.
 #[derive(Default)]
 struct Mapping {
-    result: Option<std::result::Result<(), wgpu::BufferAsyncError>>,
+    result: Option<std::result::Result<(), String>>,
+    /// The future has its result.
+    is_taken: bool,
     waiting: Option<Waker>,
 }
 
-/// Maps `slice` for reading. Natively whoever polls the device, or submits work to its queue, gets it done.
-fn mapped(slice: wgpu::BufferSlice<'_>) -> impl Future<Output = std::result::Result<(), wgpu::BufferAsyncError>> {
-    let mapping = Arc::new(Mutex::new(Mapping::default()));
-    let change = mapping.clone();
-    slice.map_async(wgpu::MapMode::Read, move |result| {
-        let mut mapping = change.lock().unwrap_or_else(PoisonError::into_inner);
-        mapping.result = Some(result);
+impl Mapping {
+    #[cfg(not(target_arch = "wasm32"))]
+    fn is_pending(shared: &Mutex<Self>) -> bool {
+        let mapping = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        mapping.result.is_none() && !mapping.is_taken
+    }
+
+    /// The first result counts.
+    fn finish(shared: &Mutex<Self>, result: std::result::Result<(), String>) {
+        let mut mapping = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        if !mapping.is_taken {
+            mapping.result.get_or_insert(result);
+        }
         let waiting = mapping.waiting.take();
         drop(mapping);
         waiting.into_iter().for_each(Waker::wake);
-    });
+    }
+}
+
+/// Maps `slice` for reading. A mapping is finished by whoever polls the device: natively the future itself sees to that,
+/// since an application need not.
+fn mapped(
+    slice: wgpu::BufferSlice<'_>,
+    device: &wgpu::Device,
+) -> impl Future<Output = std::result::Result<(), String>> + use<> {
+    let mapping = Arc::new(Mutex::new(Mapping::default()));
+    let finished = mapping.clone();
+    slice.map_async(wgpu::MapMode::Read, move |result| Mapping::finish(&finished, result.map_err(|e| e.to_string())));
+    let mut undriven = Some(device.clone());
     std::future::poll_fn(move |context| {
-        let mut mapping = mapping.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(result) = mapping.result.take() {
+        let take = |waiting: &Waker| {
+            let mut mapping = mapping.lock().unwrap_or_else(PoisonError::into_inner);
+            mapping.waiting = Some(waiting.clone());
+            mapping.is_taken = mapping.result.is_some();
+            mapping.result.take()
+        };
+        if let Some(result) = take(context.waker()) {
             return Poll::Ready(result);
         }
-        mapping.waiting = Some(context.waker().clone());
-        Poll::Pending
+        if let Some(device) = undriven.take() {
+            drive(device, &mapping);
+        }
+        take(context.waker()).map_or(Poll::Pending, Poll::Ready)
     })
 }
+
+/// Has the device finish the mapping: at once if the work is done, else on a thread that waits for it, or on this one
+/// where no thread can be had.
+#[cfg(not(target_arch = "wasm32"))]
+fn drive(device: wgpu::Device, mapping: &Arc<Mutex<Mapping>>) {
+    // A lost device is reported by the wait below.
+    let _ = device.poll(wgpu::PollType::Poll);
+    if !Mapping::is_pending(mapping) {
+        return;
+    }
+    let (waiting_device, waiting_mapping) = (device.clone(), mapping.clone());
+    let thread = std::thread::Builder::new().name("hsad readback".into());
+    if thread.spawn(move || wait(&waiting_device, &waiting_mapping)).is_err() {
+        wait(&device, mapping);
+    }
+}
+
+/// Polls the device until the mapping is finished. A wait is for all that was submitted, so the wait is sliced: work that
+/// was submitted after the mapped buffer's must not delay the mapping.
+#[cfg(not(target_arch = "wasm32"))]
+fn wait(device: &wgpu::Device, mapping: &Mutex<Mapping>) {
+    const SLICE: std::time::Duration = std::time::Duration::from_micros(500);
+    while Mapping::is_pending(mapping) {
+        match device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SLICE) }) {
+            Err(wgpu::PollError::Timeout) => {}
+            // Another thread that polls the device may be the one that delivers, a little later.
+            Ok(_) => std::thread::yield_now(),
+            Err(error) => Mapping::finish(mapping, Err(error.to_string())),
+        }
+    }
+}
+
+/// A browser drives its devices itself.
+#[cfg(target_arch = "wasm32")]
+fn drive(_: wgpu::Device, _: &Arc<Mutex<Mapping>>) {}

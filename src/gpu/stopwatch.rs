@@ -18,7 +18,8 @@ impl Stopwatch {
     ///
     /// # Errors
     /// [`Error::Unsupported`].
-    pub(crate) fn new(device: &wgpu::Device, kernels: usize) -> Result<Self> {
+    pub(crate) fn new(gpu: &Gpu, kernels: usize) -> Result<Self> {
+        let device = &gpu.device;
         if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Err(Error::Unsupported("it has no timestamps (Features::TIMESTAMP_QUERY)".into()));
         }
@@ -38,7 +39,7 @@ impl Stopwatch {
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
-            times: Readback::new(device, label, bytes),
+            times: Readback::new(gpu, label, bytes),
         })
     }
 
@@ -61,9 +62,9 @@ impl Stopwatch {
     ///
     /// # Errors
     /// [`Error::DeviceLost`].
-    pub(crate) async fn read(&self, gpu: &Gpu) -> Result<Vec<Duration>> {
+    pub(crate) async fn read(&self, queue: &wgpu::Queue) -> Result<Vec<Duration>> {
         let ticks: Vec<u64> = self.times.read(2 * self.kernels as usize).await?;
-        let seconds = f64::from(gpu.queue.get_timestamp_period()) / 1e9;
+        let seconds = f64::from(queue.get_timestamp_period()) / 1e9;
         let took = |times: &[u64]| Duration::from_secs_f64(times[1].saturating_sub(times[0]) as f64 * seconds);
         Ok(ticks.chunks_exact(2).map(took).collect())
     }

@@ -5,33 +5,22 @@ use super::{
     kernels::{Belief, BeliefCost, BeliefReduce, BeliefSelect, GridBuffers, MeanShift, Turn, Winner},
     solve,
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::wait;
 use crate::{
     dense::Dense,
     error::Result,
-    gpu::{Context, Dispatch, Gpu, Readback, guarded, storage_buffer},
+    gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
     image::Plane,
     io::Picture,
 };
 
-/// Matches a pair on `gpu` and waits for the result.
+/// Matches a pair on `gpu`.
 ///
 /// # Errors
 /// [`crate::Error::SizesDiffer`]; [`crate::Error::Parameter`] for a configuration that cannot be;
 /// [`crate::Error::TooLarge`] for rows too wide for a strip, or a picture that the device cannot bind; and what the
 /// device says.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
-    wait(&gpu.device, compute_async(gpu, left, right, config))
-}
-
-/// As [`compute`], without blocking for longer than the work on the host takes.
-///
-/// # Errors
-/// As [`compute`].
-pub async fn compute_async(gpu: &Gpu, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
-    within(gpu, left, right, config, MAX_MESSAGE_BYTES).await
+pub async fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
+    compute_within(gpu, left, right, config, MAX_MESSAGE_BYTES).await
 }
 
 /// As [`compute`], in strips whose messages take at most `message_bytes`, of which no more than
@@ -39,18 +28,7 @@ pub async fn compute_async(gpu: &Gpu, left: &Picture, right: &Picture, config: &
 ///
 /// # Errors
 /// As [`compute`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn compute_within(
-    gpu: &Gpu,
-    left: &Picture,
-    right: &Picture,
-    config: &KamencayConfig,
-    message_bytes: u64,
-) -> Result<Dense> {
-    wait(&gpu.device, within(gpu, left, right, config, message_bytes))
-}
-
-async fn within(
+pub async fn compute_within(
     gpu: &Gpu,
     left: &Picture,
     right: &Picture,
@@ -76,14 +54,14 @@ struct Prepared {
 
 impl Prepared {
     async fn new(gpu: &Gpu, problem: &Problem) -> Result<Self> {
-        let (device, parameters) = (&Context::from(&gpu.device), &problem.parameters);
-        guarded(device, "belief propagation", || {
+        let parameters = &problem.parameters;
+        guarded(gpu, "belief propagation", || {
             Ok(Self {
                 views: [upload(gpu, "left view", &problem.left)?, upload(gpu, "right view", &problem.right)?],
-                cost: BeliefCost::new(device, &parameters.cost),
-                reduce: BeliefReduce::new(device),
-                belief: Belief::new(device, &parameters.smoothness, problem.range.count.div_ceil(4)),
-                select: BeliefSelect::new(device),
+                cost: BeliefCost::new(gpu, &parameters.cost),
+                reduce: BeliefReduce::new(gpu),
+                belief: Belief::new(gpu, &parameters.smoothness, problem.range.count.div_ceil(4)),
+                select: BeliefSelect::new(gpu),
             })
         })
         .await
@@ -91,22 +69,22 @@ impl Prepared {
 }
 
 fn upload(gpu: &Gpu, label: &'static str, plane: &Plane<u32>) -> Result<wgpu::Buffer> {
-    let buffer = storage_buffer(&gpu.device, label, 4 * plane.data().len() as u64)?;
+    let buffer = storage_buffer(gpu, label, 4 * plane.data().len() as u64)?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(plane.data()));
     Ok(buffer)
 }
 
 impl Solver for OnDevice<'_> {
     async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>> {
-        let (device, size) = (&Context::from(&self.gpu.device), problem.left.size());
+        let (gpu, size) = (self.gpu, problem.left.size());
         let pixels = problem.left.data().len();
-        let readback = guarded(device, "mean shift", || {
-            let view = upload(self.gpu, "left view", &problem.left)?;
-            let modes = storage_buffer(device, "modes", 4 * pixels as u64)?;
-            let kernel = MeanShift::new(device, &problem.parameters.mean_shift);
-            let dispatch = kernel.prepare(device, size, &view, &modes);
-            let readback = Readback::new(device, "modes", 4 * pixels as u64);
-            submit(self.gpu, &[dispatch], &modes, &readback);
+        let readback = guarded(gpu, "mean shift", || {
+            let view = upload(gpu, "left view", &problem.left)?;
+            let modes = storage_buffer(gpu, "modes", 4 * pixels as u64)?;
+            let kernel = MeanShift::new(gpu, &problem.parameters.mean_shift);
+            let dispatch = kernel.prepare(size, &view, &modes);
+            let readback = Readback::new(gpu, "modes", 4 * pixels as u64);
+            submit(gpu, &[dispatch], &modes, &readback);
             Ok(readback)
         })
         .await?;
@@ -119,29 +97,28 @@ impl Solver for OnDevice<'_> {
             Some(prepared) => prepared,
             none => none.insert(Prepared::new(gpu, problem).await?),
         };
-        let device = &gpu.device;
         let (count, fours) = (problem.range.count, problem.range.count.div_ceil(4));
         let pixels = problem.left.width() as usize * strip.rows as usize;
-        let readback = guarded(device, "belief propagation", || {
+        let readback = guarded(gpu, "belief propagation", || {
             let mut dispatches = Vec::new();
             let nodes = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
             let costs = grids
                 .iter()
-                .map(|&(size, _)| storage_buffer(device, "data costs", 8 * u64::from(fours) * nodes(size)))
+                .map(|&(size, _)| storage_buffer(gpu, "data costs", 8 * u64::from(fours) * nodes(size)))
                 .collect::<Result<Vec<_>>>()?;
             // A grid's messages are needed until those of the next finer one have been sent once.
             let messages = grids
                 .iter()
                 .take(2)
-                .map(|&(size, _)| storage_buffer(device, "messages", 16 * u64::from(fours) * nodes(size)))
+                .map(|&(size, _)| storage_buffer(gpu, "messages", 16 * u64::from(fours) * nodes(size)))
                 .collect::<Result<Vec<_>>>()?;
-            let winners = storage_buffer(device, "winners", size_of::<Winner>() as u64 * pixels as u64)?;
+            let winners = storage_buffer(gpu, "winners", size_of::<Winner>() as u64 * pixels as u64)?;
 
             let [left, right] = &prepared.views;
             let views = [left, right];
-            dispatches.push(prepared.cost.prepare(device, problem.left.size(), strip, problem.range, views, &costs[0]));
+            dispatches.push(prepared.cost.prepare(problem.left.size(), strip, problem.range, views, &costs[0]));
             for (level, &(size, _)) in grids.iter().enumerate().take(grids.len() - 1) {
-                dispatches.push(prepared.reduce.prepare(device, size, fours, &costs[level], &costs[level + 1]));
+                dispatches.push(prepared.reduce.prepare(size, fours, &costs[level], &costs[level + 1]));
             }
             for (level, (size, links)) in grids.iter().enumerate().rev() {
                 let links = upload(gpu, "links", links.words())?;
@@ -154,11 +131,11 @@ impl Solver for OnDevice<'_> {
                 };
                 for turn in 0..problem.parameters.turns {
                     let turn = Turn { parity: turn % 2, from_parents: turn == 0 && !coarsest };
-                    dispatches.push(prepared.belief.prepare(device, *size, turn, buffers));
+                    dispatches.push(prepared.belief.prepare(*size, turn, buffers));
                 }
             }
-            dispatches.push(prepared.select.prepare(device, grids[0].0, count, [&costs[0], &messages[0]], &winners));
-            let readback = Readback::new(device, "winners", winners.size());
+            dispatches.push(prepared.select.prepare(grids[0].0, count, [&costs[0], &messages[0]], &winners));
+            let readback = Readback::new(gpu, "winners", winners.size());
             submit(gpu, &dispatches, &winners, &readback);
             Ok(readback)
         })
@@ -169,8 +146,7 @@ impl Solver for OnDevice<'_> {
 
 /// Runs `dispatches`, then reads `result`.
 fn submit(gpu: &Gpu, dispatches: &[Dispatch], result: &wgpu::Buffer, readback: &Readback) {
-    let label = Some("hybrid method");
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+    let mut encoder = gpu.encoder("Kamencay's method");
     for dispatch in dispatches {
         dispatch.record(&mut encoder);
     }

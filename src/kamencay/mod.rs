@@ -49,8 +49,6 @@ pub use config::{KamencayConfig, KamencayParameters};
 pub use grid::{FAR, MAX_MESSAGE_BYTES, OVERLAP, Strip};
 pub use kernels::{ModeSeeking, Smoothness, WindowCost};
 pub use links::{LinkWeights, Links};
-pub use matcher::compute_async;
-#[cfg(not(target_arch = "wasm32"))]
 pub use matcher::{compute, compute_within};
 pub use method::described;
 pub(crate) use method::{Problem, Solver, solve};

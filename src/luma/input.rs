@@ -6,11 +6,9 @@ use super::{
     kernels::luma_texture::{LumaTexture, TexelFormat},
     packed::{check_packed, packed_bytes},
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::wait;
 use crate::{
     error::{Error, Result},
-    gpu::{Context, Dispatch, check_limits, guarded},
+    gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, try_recording},
 };
 
 /// Where a picture is.
@@ -29,50 +27,32 @@ pub enum Source<'a> {
 }
 
 /// A picture on its way into packed luma.
-pub struct Input(Way);
+#[derive(Debug)]
+pub struct Input(Conversion);
 
-enum Way {
+#[derive(Debug)]
+enum Conversion {
     Copy { from: wgpu::Buffer, to: wgpu::Buffer, bytes: u64 },
     Run(Dispatch),
 }
 
 impl Input {
-    /// Prepares what turns `source`, of `size` pixels, into packed luma in the first bytes of `luma`, which needs `STORAGE`
-    /// and `COPY_DST`. It holds on to both.
+    /// Prepares the conversion of `source`, of `size` pixels, to packed luma in the first bytes of `luma`, which needs
+    /// `STORAGE` and `COPY_DST`. The input holds on to both. A [`crate::Matcher`] has inputs of its own; this one is for a
+    /// [`crate::features::Detector`] alone.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size, a format or a usage that cannot be; [`Error::Unsupported`] with what else the
-    /// device has against it.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn new<'c>(
-        device: impl Into<Context<'c>>,
-        size: (u32, u32),
-        source: Source<'_>,
-        luma: &wgpu::Buffer,
-    ) -> Result<Self> {
-        let device = device.into();
-        wait(&device, Self::new_async(device, size, source, luma))
+    /// [`Error::Parameter`] for an invalid size, format or usage; [`Error::Unsupported`] with what else the device has
+    /// against it.
+    pub async fn new(gpu: &Gpu, size: (u32, u32), source: Source<'_>, luma: &wgpu::Buffer) -> Result<Self> {
+        check_packed(luma, size)?;
+        check_limits(gpu)?;
+        Self::with_kernel(gpu, "the picture", size, source, luma, &OnceLock::new()).await
     }
 
-    /// As [`Input::new`], without blocking.
-    ///
-    /// # Errors
-    /// As [`Input::new`].
-    pub async fn new_async<'c>(
-        device: impl Into<Context<'c>>,
-        size: (u32, u32),
-        source: Source<'_>,
-        luma: &wgpu::Buffer,
-    ) -> Result<Self> {
-        let device = &device.into();
-        check_packed(luma, size.0, size.1)?;
-        check_limits(device)?;
-        Self::with_kernel(device, "the picture", size, source, luma, &OnceLock::new()).await
-    }
-
-    /// The same of the picture of this `name`, with a kernel that is compiled at most once.
+    /// As [`Self::new`] for the picture called `name` in errors, with a kernel that is compiled at most once.
     pub(crate) async fn with_kernel(
-        device: &Context<'_>,
+        gpu: &Gpu,
         name: &'static str,
         size: (u32, u32),
         source: Source<'_>,
@@ -83,7 +63,7 @@ impl Input {
             Source::Luma(from) => {
                 check_buffer(name, from, packed_bytes(size.0, size.1), wgpu::BufferUsages::COPY_SRC)?;
                 let (from, to, bytes) = (from.clone(), luma.clone(), packed_bytes(size.0, size.1));
-                return Self(Way::Copy { from, to, bytes }).tried(device, name).await;
+                return Self(Conversion::Copy { from, to, bytes }).tried(gpu, name).await;
             }
             Source::Texture(view) => (view, view.texture().format()),
             Source::TextureAs(view, format) => {
@@ -104,87 +84,28 @@ impl Input {
             });
         };
         check_texture(name, view.texture(), size, wgpu::TextureUsages::TEXTURE_BINDING)?;
-        let (compiled, dispatch) = guarded(device, name, || {
-            let compiled = kernel.get().cloned().unwrap_or_else(|| LumaTexture::new(device));
-            let dispatch = compiled.prepare(device, size, texel, view, luma);
+        let (compiled, dispatch) = guarded(gpu, name, || {
+            let compiled = kernel.get().cloned().unwrap_or_else(|| LumaTexture::new(gpu));
+            let dispatch = compiled.prepare(size, texel, view, luma);
             Ok((compiled, dispatch))
         })
         .await?;
         // Only now that nothing is wrong with it.
         kernel.get_or_init(|| compiled);
-        Self(Way::Run(dispatch)).tried(device, name).await
+        Self(Conversion::Run(dispatch)).tried(gpu, name).await
     }
 
     /// Itself, if the device has nothing against its being recorded.
-    async fn tried(self, device: &wgpu::Device, name: &str) -> Result<Self> {
-        try_recording(device, name, |encoder| self.record(encoder)).await?;
+    async fn tried(self, gpu: &Gpu, name: &str) -> Result<Self> {
+        try_recording(gpu, name, |encoder| self.record(encoder)).await?;
         Ok(self)
     }
 
     /// Records the conversion.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         match &self.0 {
-            Way::Copy { from, to, bytes } => encoder.copy_buffer_to_buffer(from, 0, to, 0, Some(*bytes)),
-            Way::Run(dispatch) => dispatch.record(encoder),
+            Conversion::Copy { from, to, bytes } => encoder.copy_buffer_to_buffer(from, 0, to, 0, Some(*bytes)),
+            Conversion::Run(dispatch) => dispatch.record(encoder),
         }
     }
-}
-
-/// Records what is never submitted: what the device would have to say when a caller records it, it says here. A buffer of
-/// another device, for one, cannot be told otherwise.
-pub(crate) async fn try_recording(
-    device: &wgpu::Device,
-    what: &str,
-    record: impl FnOnce(&mut wgpu::CommandEncoder),
-) -> Result<()> {
-    guarded(device, what, || {
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("trial") });
-        record(&mut encoder);
-        drop(encoder.finish());
-        Ok(())
-    })
-    .await
-}
-
-/// Refuses a buffer that is too small or may not be used so.
-pub(crate) fn check_buffer(
-    name: &'static str,
-    buffer: &wgpu::Buffer,
-    bytes: u64,
-    usage: wgpu::BufferUsages,
-) -> Result<()> {
-    if buffer.size() < bytes {
-        let value = format!("a buffer of {} bytes", buffer.size());
-        return Err(Error::Parameter { name, value, expected: format!("{bytes} bytes are needed") });
-    }
-    if !buffer.usage().contains(usage) {
-        let value = format!("a buffer with the usages {:?}", buffer.usage());
-        return Err(Error::Parameter { name, value, expected: format!("it needs {usage:?}") });
-    }
-    Ok(())
-}
-
-/// Refuses a texture of which no view has `size` pixels, or that may not be used so.
-///
-/// Which of its mip levels a view shows cannot be told: any that has the size will do.
-pub(crate) fn check_texture(
-    name: &'static str,
-    texture: &wgpu::Texture,
-    (width, height): (u32, u32),
-    usage: wgpu::TextureUsages,
-) -> Result<()> {
-    let refuse = |value, expected| Err(Error::Parameter { name, value, expected });
-    if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
-        let value = format!("a texture of {:?} with {} samples", texture.dimension(), texture.sample_count());
-        return refuse(value, "it must be a plain one of two dimensions".into());
-    }
-    let level = |level: u32| ((texture.width() >> level).max(1), (texture.height() >> level).max(1));
-    if !(0..texture.mip_level_count()).any(|mip| level(mip) == (width, height)) {
-        let value = format!("a texture of {}x{} pixels", texture.width(), texture.height());
-        return refuse(value, format!("the pair has {width}x{height}"));
-    }
-    if !texture.usage().contains(usage) {
-        return refuse(format!("a texture with the usages {:?}", texture.usage()), format!("it needs {usage:?}"));
-    }
-    Ok(())
 }

@@ -8,7 +8,6 @@ pub mod kernels;
 mod packed;
 
 pub use input::{Input, Source};
-pub(crate) use input::{check_buffer, check_texture, try_recording};
 pub use kernels::luma_texture::TexelFormat;
 pub use packed::{MAX_SIDE, pack, packed_bytes, unpack};
 pub(crate) use packed::{check_packed, check_size, upload};

@@ -19,7 +19,7 @@ fn refuse(width: u32, height: u32, expected: String) -> Result<()> {
 }
 
 /// Refuses sizes that no kernel could work on.
-pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
+pub(crate) fn check_size((width, height): (u32, u32)) -> Result<()> {
     if width.min(height) == 0 || width.max(height) > MAX_SIDE {
         return refuse(width, height, format!("its sides must be 1 to {MAX_SIDE}"));
     }
@@ -28,8 +28,8 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
 
 /// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
 /// may read.
-pub(crate) fn check_packed(luma: &wgpu::Buffer, width: u32, height: u32) -> Result<()> {
-    check_size(width, height)?;
+pub(crate) fn check_packed(luma: &wgpu::Buffer, (width, height): (u32, u32)) -> Result<()> {
+    check_size((width, height))?;
     let bytes = packed_bytes(width, height);
     if luma.size() < bytes {
         let given = luma.size();
@@ -54,8 +54,8 @@ pub fn pack(luma: &Luma) -> Vec<u32> {
 /// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
 pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
     let (width, height) = luma.size();
-    let allocate = || storage_buffer(&gpu.device, "luma", packed_bytes(width, height));
-    let buffer = guarded(&gpu.device, "the picture", allocate).await?;
+    let allocate = || storage_buffer(gpu, "luma", packed_bytes(width, height));
+    let buffer = guarded(gpu, "the picture", allocate).await?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
     Ok(buffer)
 }

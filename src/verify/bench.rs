@@ -3,28 +3,22 @@
 use super::dice::Size;
 use crate::{
     error::Result,
-    gpu::{Context, Gpu, Readback, WordTexture, guarded, in_rows, storage_buffer, wait},
+    gpu::{Gpu, Readback, WordTexture, block_on, guarded, in_rows, storage_buffer},
     image::Luma,
     luma::pack,
 };
 
 /// A device that kernels are tried on.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Bench<'g> {
     /// The device.
     pub gpu: &'g Gpu,
-    device: Context<'g>,
 }
 
 impl<'g> Bench<'g> {
     /// On an open device.
     pub fn new(gpu: &'g Gpu) -> Self {
-        Self { gpu, device: (&gpu.device).into() }
-    }
-
-    /// The device, to build kernels on.
-    pub fn device(&self) -> &Context<'g> {
-        &self.device
+        Self { gpu }
     }
 
     /// A storage buffer that holds `values`.
@@ -32,7 +26,7 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// [`crate::Error::TooLarge`].
     pub fn upload<T: bytemuck::NoUninit>(&self, values: &[T]) -> Result<wgpu::Buffer> {
-        let buffer = storage_buffer(self.device(), "input", size_of_val(values) as u64)?;
+        let buffer = storage_buffer(self.gpu, "input", size_of_val(values) as u64)?;
         self.write(&buffer, values);
         Ok(buffer)
     }
@@ -43,8 +37,8 @@ impl<'g> Bench<'g> {
     /// [`crate::Error::TooLarge`].
     pub fn upload_words<T: bytemuck::NoUninit>(&self, values: &[T]) -> Result<WordTexture> {
         let words = (size_of_val(values) as u64).div_ceil(4);
-        let texture = WordTexture::new(self.device(), "input", words)?;
-        let buffer = storage_buffer(self.device(), "input", 4 * in_rows(words))?;
+        let texture = WordTexture::new(self.gpu, "input", words)?;
+        let buffer = storage_buffer(self.gpu, "input", 4 * in_rows(words))?;
         self.write(&buffer, values);
         self.run(|encoder| texture.record(encoder, &buffer));
         Ok(texture)
@@ -63,7 +57,7 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// [`crate::Error::TooLarge`].
     pub fn output(&self, words: u32) -> Result<wgpu::Buffer> {
-        let buffer = storage_buffer(self.device(), "output", 4 * u64::from(words))?;
+        let buffer = storage_buffer(self.gpu, "output", 4 * u64::from(words))?;
         self.poison(&buffer);
         Ok(buffer)
     }
@@ -92,7 +86,7 @@ impl<'g> Bench<'g> {
         (width, height): Size,
         usage: wgpu::TextureUsages,
     ) -> wgpu::Texture {
-        self.device().create_texture(&wgpu::TextureDescriptor {
+        self.gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("a picture"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
@@ -111,7 +105,7 @@ impl<'g> Bench<'g> {
     pub fn download_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>> {
         let (width, height) = (texture.width(), texture.height());
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = storage_buffer(self.device(), "texels", u64::from(row) * u64::from(height))?;
+        let buffer = storage_buffer(self.gpu, "texels", u64::from(row) * u64::from(height))?;
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
         self.run(|encoder| {
             let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
@@ -133,7 +127,7 @@ impl<'g> Bench<'g> {
 
     /// Submits what `record` records.
     pub fn run(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
-        let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self.gpu.encoder("trial");
         record(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
     }
@@ -143,9 +137,9 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// [`crate::Error::DeviceLost`].
     pub fn download<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>> {
-        let readback = Readback::new(self.device(), "result", buffer.size());
+        let readback = Readback::new(self.gpu, "result", buffer.size());
         self.run(|encoder| readback.record(encoder, buffer));
-        wait(self.device(), readback.read(buffer.size() as usize / size_of::<T>()))
+        block_on(readback.read(buffer.size() as usize / size_of::<T>()))
     }
 
     /// What `work` returns, or what the device has to say against it.
@@ -153,6 +147,6 @@ impl<'g> Bench<'g> {
     /// # Errors
     /// Those of `work`; [`crate::Error::Unsupported`], [`crate::Error::OutOfMemory`].
     pub fn guarded<T>(&self, what: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        wait(self.device(), guarded(self.device(), what, work))
+        block_on(guarded(self.gpu, what, work))
     }
 }

@@ -10,7 +10,10 @@ use crate::{
     cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
         Aggregation, Brightness, DenseConfig, Search, View,
-        kernels::{BlockMatch, CELL, Layout, OtherMap, Pad, PadParams, Ranges, Tile, Wanted, halved_config},
+        kernels::{
+            BlockMatch, CELL, ConfirmingMap, Layout, MapBuffer, MapLayout, Pad, PadParams, Ranges, ResultKind, Tile,
+            halved_config,
+        },
     },
     disparity::DisparityRange,
     error::Result,
@@ -67,10 +70,10 @@ impl Trial for PadTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, params) = (bench.device(), self.params);
+        let (gpu, params) = (bench.gpu, self.params);
         let plane = bench.output(params.offset + params.rows * params.stride)?;
-        let brightness = uniform_buffer(device, "brightness", &self.brightness);
-        let pad = Pad::new(device).prepare(device, params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
+        let brightness = uniform_buffer(gpu, "brightness", &self.brightness);
+        let pad = Pad::new(gpu).prepare(params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
         bench.run(|encoder| pad.record(encoder));
         Ok(vec![Array::exact("padded plane", bench.download::<u32>(&plane)?)])
     }
@@ -101,8 +104,8 @@ pub struct BlockMatchTrial {
 }
 
 impl BlockMatchTrial {
-    fn matched(&self, bench: &Bench<'_>, wanted: Wanted) -> Result<Vec<u32>> {
-        let (device, (width, height)) = (bench.device(), self.left.size());
+    fn matched(&self, bench: &Bench<'_>, wanted: ResultKind) -> Result<Vec<u32>> {
+        let (gpu, (width, height)) = (bench.gpu, self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
         let [left, right] = layout.padding();
@@ -111,24 +114,25 @@ impl BlockMatchTrial {
         planes.extend(&right_plane[right.offset as usize..]);
         let texture = bench.upload_words(&planes)?;
         let ranges = match &self.ranges {
-            None => Ranges::whole(device, self.config.searched(width)?),
+            None => Ranges::whole(gpu, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
         let others = match (self.config.consistency, wanted) {
-            (Some(limit), Wanted::Matches) => Some((self.others()?, limit)),
+            (Some(limit), ResultKind::Matches) => Some((self.others()?, limit)),
             _ => None,
         };
         let words = others.as_ref().map(|(others, _)| bench.upload_words(others.data())).transpose()?;
-        let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| OtherMap {
+        let others = words.as_ref().zip(others.as_ref()).map(|(words, (map, limit))| ConfirmingMap {
             words,
             width: map.width(),
             first_row: 0,
             max_difference: *limit,
         });
-        let confidences = if wanted == Wanted::Matches { width.div_ceil(4) * height } else { 0 };
-        let matches = bench.output(width * height + confidences)?;
-        let kernel = BlockMatch::new(device, &self.config, self.view, wanted, self.tile);
-        let dispatch = kernel.prepare(device, &layout, &texture, &ranges, others, (&matches, width * height));
+        let map = MapLayout { width, rows: height };
+        let words = if wanted == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
+        let matches = bench.output(words)?;
+        let kernel = BlockMatch::new(gpu, &self.config, self.view, wanted, self.tile);
+        let dispatch = kernel.prepare(&layout, &texture, &ranges, others, MapBuffer { buffer: &matches, layout: map });
         bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)
     }
@@ -202,9 +206,9 @@ impl Trial for BlockMatchTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let matches = self.matched(bench, Wanted::Matches)?;
+        let matches = self.matched(bench, ResultKind::Matches)?;
         let (disparities, confidences) = matches.split_at(self.left.data().len());
-        let winners = self.matched(bench, Wanted::Winners)?;
+        let winners = self.matched(bench, ResultKind::Winners)?;
         Ok(Self::arrays(signed(disparities), confidences.to_vec(), signed(&winners)))
     }
 

@@ -35,9 +35,9 @@ impl Trial for HalveTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, height)) = (bench.device(), self.0.size());
+        let (gpu, (width, height)) = (bench.gpu, self.0.size());
         let halved = bench.output(width.div_ceil(2).div_ceil(4) * height.div_ceil(2))?;
-        let dispatch = Halve::new(device).prepare(device, (width, height), &bench.upload_luma(&self.0)?, &halved);
+        let dispatch = Halve::new(gpu).prepare((width, height), &bench.upload_luma(&self.0)?, &halved);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("half the picture", bench.download::<u32>(&halved)?)])
     }
@@ -84,10 +84,9 @@ impl Trial for CellRangesTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let device = bench.device();
         let band = CellBand::new(self.size, (0, self.size.1), self.range);
         let ranges = bench.output(band.words() as u32)?;
-        let dispatch = CellRanges::new(device).prepare(device, &band, &bench.upload(self.map.data())?, &ranges);
+        let dispatch = CellRanges::new(bench.gpu).prepare(&band, &bench.upload(self.map.data())?, &ranges);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("ranges", bench.download::<u32>(&ranges)?)])
     }

@@ -51,10 +51,10 @@ impl Trial for LumaTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (width, height) = self.0.size();
-        let stage = RgbaToLuma::new(bench.device(), &bench.upload(self.0.data())?, width, height)?;
-        bench.poison(stage.luma());
-        bench.run(|encoder| stage.record(encoder));
-        Ok(vec![Array::exact("luma", bench.download::<u32>(stage.luma())?)])
+        let luma = bench.output((packed_bytes(width, height) / 4) as u32)?;
+        let dispatch = RgbaToLuma::new(bench.gpu).prepare((width, height), &bench.upload(self.0.data())?, &luma);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("luma", bench.download::<u32>(&luma)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -128,13 +128,13 @@ impl Trial for LumaTextureTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.size());
+        let (gpu, size) = (bench.gpu, self.size());
         let texel = TexelFormat::new(self.format)
             .ok_or_else(|| Error::Unsupported(format!("no luma of textures of format {:?}", self.format)))?;
         let picture = bench.texture(self.format, size, &self.bytes());
-        let luma = storage_buffer(device, "luma", packed_bytes(size.0, size.1))?;
+        let luma = storage_buffer(gpu, "luma", packed_bytes(size.0, size.1))?;
         bench.poison(&luma);
-        let dispatch = LumaTexture::new(device).prepare(device, size, texel, &picture, &luma);
+        let dispatch = LumaTexture::new(gpu).prepare(size, texel, &picture, &luma);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("luma", bench.download::<u32>(&luma)?)])
     }
@@ -164,11 +164,10 @@ impl Trial for RowsTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (width, height) = self.0.size();
-        let stage = IntegralRows::new(bench.device(), &bench.upload_luma(&self.0)?, width, height)?;
-        bench.poison(stage.sums());
-        bench.run(|encoder| stage.record(encoder));
-        Ok(vec![Array::exact("sums", bench.download::<u32>(stage.sums())?)])
+        let sums = bench.output((IntegralRows::bytes(self.0.size()) / 4) as u32)?;
+        let dispatch = IntegralRows::new(bench.gpu).prepare(self.0.size(), &bench.upload_luma(&self.0)?, &sums);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("sums", bench.download::<u32>(&sums)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -200,8 +199,9 @@ impl Trial for ColumnsTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let sums = bench.upload(self.0.data())?;
-        let stage = IntegralColumns::new(bench.device(), &sums, self.0.width() - 1, self.0.height() - 1);
-        bench.run(|encoder| stage.record(encoder));
+        let size = (self.0.width() - 1, self.0.height() - 1);
+        let dispatch = IntegralColumns::new(bench.gpu).prepare(size, &sums);
+        bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("integral image", bench.download::<u32>(&sums)?)])
     }
 

@@ -11,10 +11,11 @@ use crate::{
     dense::{Brightness, Dense, Difference},
     disparity::DisparityRange,
     error::Result,
+    gpu::block_on,
     image::Plane,
     io::Picture,
     kamencay::{
-        FAR, KamencayConfig, KamencayParameters, LinkWeights, Links, MAX_MESSAGE_BYTES, ModeSeeking, OVERLAP,
+        self, FAR, KamencayConfig, KamencayParameters, LinkWeights, Links, MAX_MESSAGE_BYTES, ModeSeeking, OVERLAP,
         Segmentation, Segments, Smoothness, Strip, WindowCost, described,
         kernels::{Belief, BeliefCost, BeliefReduce, BeliefSelect, GridBuffers, MeanShift, Turn, Winner},
     },
@@ -117,10 +118,10 @@ impl Trial for MeanShiftTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, height)) = (bench.device(), self.pixels.size());
+        let (gpu, (width, height)) = (bench.gpu, self.pixels.size());
         let modes = bench.output(width * height)?;
         let pixels = bench.upload(self.pixels.data())?;
-        let dispatch = MeanShift::new(device, &self.seeking).prepare(device, (width, height), &pixels, &modes);
+        let dispatch = MeanShift::new(gpu, &self.seeking).prepare((width, height), &pixels, &modes);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("modes", bench.download::<u32>(&modes)?)])
     }
@@ -172,10 +173,10 @@ impl Trial for BeliefCostTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let Self { views: [left, right], strip, cost, range } = self;
-        let (device, size) = (bench.device(), left.size());
+        let (gpu, size) = (bench.gpu, left.size());
         let costs = costs_output(bench, range.count.next_multiple_of(4) * size.0 * strip.rows)?;
         let views = [&bench.upload(left.data())?, &bench.upload(right.data())?];
-        let dispatch = BeliefCost::new(device, cost).prepare(device, size, *strip, *range, views, &costs);
+        let dispatch = BeliefCost::new(gpu, cost).prepare(size, *strip, *range, views, &costs);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs", words(&bench.download(&costs)?))])
     }
@@ -213,11 +214,11 @@ impl Trial for BeliefReduceTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, height)) = (bench.device(), self.size);
+        let (gpu, (width, height)) = (bench.gpu, self.size);
         let count = self.costs.len() as u32 / (width * height);
         let coarse = costs_output(bench, count * width.div_ceil(2) * height.div_ceil(2))?;
         let fine = bench.upload(&self.costs)?;
-        let dispatch = BeliefReduce::new(device).prepare(device, self.size, count / 4, &fine, &coarse);
+        let dispatch = BeliefReduce::new(gpu).prepare(self.size, count / 4, &fine, &coarse);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs of half the size", words(&bench.download(&coarse)?))])
     }
@@ -286,7 +287,7 @@ impl Trial for BeliefTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.size());
+        let (gpu, size) = (bench.gpu, self.size());
         let fours = self.costs.len() as u32 / (4 * size.0 * size.1);
         let messages = bench.upload(&self.messages)?;
         let buffers = GridBuffers {
@@ -295,7 +296,7 @@ impl Trial for BeliefTrial {
             parents: &bench.upload(&self.parents)?,
             messages: &messages,
         };
-        let dispatch = Belief::new(device, &self.smoothness, fours).prepare(device, size, self.turn, buffers);
+        let dispatch = Belief::new(gpu, &self.smoothness, fours).prepare(size, self.turn, buffers);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("messages", bench.download::<u8>(&messages)?)])
     }
@@ -345,10 +346,10 @@ impl Trial for BeliefSelectTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.size);
+        let (gpu, size) = (bench.gpu, self.size);
         let winners = bench.output(2 * size.0 * size.1)?;
         let volumes = [&bench.upload(&self.costs)?, &bench.upload(&self.messages)?];
-        let dispatch = BeliefSelect::new(device).prepare(device, size, self.disparities, volumes, &winners);
+        let dispatch = BeliefSelect::new(gpu).prepare(size, self.disparities, volumes, &winners);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(Self::arrays(&bench.download(&winners)?))
     }
@@ -414,13 +415,9 @@ impl Trial for KamencayTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        Ok(Self::arrays(crate::kamencay::compute_within(
-            bench.gpu,
-            &self.left,
-            &self.right,
-            &self.config,
-            self.message_bytes,
-        )?))
+        let (config, bytes) = (&self.config, self.message_bytes);
+        let dense = kamencay::compute_within(bench.gpu, &self.left, &self.right, config, bytes);
+        Ok(Self::arrays(block_on(dense)?))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {

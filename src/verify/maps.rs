@@ -12,8 +12,8 @@ use crate::{
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            Consistency, Fill, MAX_RESIDUAL, MapRows, MapTexel, MapTexture, Others, Residual, Support, Views,
-            WeightedMedian,
+            CheckedAgainst, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture,
+            Residual, Support, Views, WeightedMedian,
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -111,13 +111,15 @@ impl Trial for ConsistencyTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.dense.disparity.size());
-        let pixels = size.0 * size.1;
+        let (gpu, size) = (bench.gpu, self.dense.disparity.size());
+        let layout = MapLayout { width: size.0, rows: size.1 };
         let (others, matches) = (bench.upload(&self.words())?, bench.upload(&matches(&self.dense))?);
-        let kernel = Consistency::new(device, self.claims_from.map_or(Others::Disparities, Others::Claims));
-        let dispatch = kernel.prepare(device, size, pixels, self.view, self.max_difference, &others, &matches);
+        let kernel =
+            Consistency::new(gpu, self.claims_from.map_or(CheckedAgainst::Disparities, CheckedAgainst::Claims));
+        let dispatch =
+            kernel.prepare(MapBuffer { buffer: &matches, layout }, size.1, self.view, self.max_difference, &others);
         bench.run(|encoder| dispatch.record(encoder));
-        Ok(arrays(&bench.download(&matches)?, pixels as usize))
+        Ok(arrays(&bench.download(&matches)?, layout.pixels() as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -168,16 +170,16 @@ impl Trial for ResidualTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.disparities.size());
+        let (gpu, size) = (bench.gpu, self.disparities.size());
         let [left, right] = [bench.upload_luma(&self.views[0])?, bench.upload_luma(&self.views[1])?];
         let views = Views {
             luma: [&left, &right],
-            brightness: &uniform_buffer(device, "brightness", &self.brightness),
+            brightness: &uniform_buffer(gpu, "brightness", &self.brightness),
             reference: self.reference,
         };
         let disparities = bench.upload(self.disparities.data())?;
         let residuals = bench.output(size.0.div_ceil(4) * size.1)?;
-        let dispatch = Residual::new(device).prepare(device, size, self.first_row, views, &disparities, &residuals);
+        let dispatch = Residual::new(gpu).prepare(size, self.first_row, views, &disparities, &residuals);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("residuals", bench.download::<u32>(&residuals)?)])
     }
@@ -221,14 +223,14 @@ impl Trial for SupportTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.dense.disparity.size());
-        let pixels = size.0 * size.1;
+        let (gpu, size) = (bench.gpu, self.dense.disparity.size());
+        let layout = MapLayout { width: size.0, rows: size.1 };
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
         let residuals = bench.upload_luma(&self.residuals)?;
-        let dispatch = Support::new(device, self.least).prepare(device, size, pixels, [&from, &residuals], &to);
+        let dispatch = Support::new(gpu, self.least).prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
         bench.run(|encoder| dispatch.record(encoder));
-        Ok(arrays(&bench.download(&to)?, pixels as usize))
+        Ok(arrays(&bench.download(&to)?, layout.pixels() as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -272,9 +274,9 @@ impl Trial for FillTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.disparities.size());
+        let (gpu, size) = (bench.gpu, self.disparities.size());
         let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(size.0 * size.1)?);
-        let dispatch = Fill::new(device).prepare(device, size, self.range, &from, &to);
+        let dispatch = Fill::new(gpu).prepare(size, self.range, &from, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filled disparities", bench.download::<i32>(&to)?)])
     }
@@ -314,17 +316,17 @@ impl Trial for MapTextureTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, height)) = (bench.device(), self.disparities.size());
+        let (gpu, (width, height)) = (bench.gpu, self.disparities.size());
         let from = bench.upload(self.disparities.data())?;
         let texture = bench.output_texture(self.texel.format(), (width, height));
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let kernel = MapTexture::new(device, self.texel);
+        let kernel = MapTexture::new(gpu, self.texel);
         bench.run(|encoder| {
             let rows = height.div_ceil(self.parts);
             for first_row in (0..height).step_by(rows as usize) {
                 let rows = rows.min(height - first_row);
                 let rows = MapRows { width, rows, first_word: width * first_row, first_row };
-                kernel.prepare(device, rows, &from, &view).record(encoder);
+                kernel.prepare(rows, &from, &view).record(encoder);
             }
         });
         Ok(vec![match self.texel {
@@ -378,10 +380,10 @@ impl Trial for MedianTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, size) = (bench.device(), self.disparities.size());
+        let (gpu, size) = (bench.gpu, self.disparities.size());
         let maps = [&bench.upload(self.disparities.data())?, &bench.upload(self.before.data())?];
         let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.0 * size.1)?);
-        let dispatch = WeightedMedian::new(device, self.median).prepare(device, size, (&luma, 0), maps, &to);
+        let dispatch = WeightedMedian::new(gpu, self.median).prepare(size, (&luma, 0), maps, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filtered disparities", bench.download::<i32>(&to)?)])
     }

@@ -77,7 +77,7 @@ pub fn self_test(gpu: &Gpu, choice: &DeviceChoice) -> Result<()> {
     for case in cases(Extent::Quick) {
         if let Some(fault) = case.run(&bench).faults.into_iter().next() {
             let what = format!("{}: {fault}", case.subject.name);
-            return Err(Error::WrongResults { device: gpu.info.name.clone(), what, command: case.command(choice) });
+            return Err(Error::WrongResults { device: gpu.info().name, what, command: case.command(choice) });
         }
     }
     Ok(())

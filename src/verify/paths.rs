@@ -11,7 +11,10 @@ use crate::{
     cpu::dense::{box_mean, census, claim, cost, pad, path, path_winners, select},
     dense::{
         Brightness, Cost, DenseConfig, Difference, Direction, Interpolation, Penalties, View,
-        kernels::{BoxMean, Census, Claim, CostVolume, Path, Places, Select, Selection, VolumeBand, Wanted},
+        kernels::{
+            BoxMean, Census, Claim, CostVolume, LineBuffers, MapBuffer, MapLayout, Path, PathVolumes, ResultKind,
+            Select, Selection, VolumeBand,
+        },
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::Result,
@@ -60,8 +63,8 @@ impl Trial for CensusTrial {
         let size = self.0.size();
         let plane = pad(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
         let transformed = bench.output(size.0 * size.1)?;
-        let kernel = Census::new(bench.device());
-        let dispatch = kernel.prepare(bench.device(), size, &bench.upload(&plane)?, &transformed);
+        let kernel = Census::new(bench.gpu);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
     }
@@ -103,10 +106,10 @@ impl Trial for BoxMeanTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, rows)) = (bench.device(), self.size);
+        let (gpu, (width, rows)) = (bench.gpu, self.size);
         let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
         let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
-        let dispatches = BoxMean::new(device, self.side).prepare(device, &band, 0..rows, &costs, &means);
+        let dispatches = BoxMean::new(gpu, self.side).prepare(&band, 0..rows, &costs, &means);
         bench.run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
         Ok(vec![Array::exact("means", bytes(&bench.download::<u32>(&costs)?))])
     }
@@ -160,8 +163,8 @@ impl Trial for CostTrial {
             VolumeBand { width: reference.width(), first_row: rows.start, rows: rows.len() as u32, range: *range };
         let volume = bench.output(band.row_words() * band.rows)?;
         let views = [&bench.upload(reference.data())?, &bench.upload(other.data())?];
-        let kernel = CostVolume::new(bench.device(), &self.cost, self.view);
-        let dispatch = kernel.prepare(bench.device(), &band, views, &volume);
+        let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
+        let dispatch = kernel.prepare(&band, views, &volume);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
     }
@@ -225,7 +228,7 @@ impl Trial for PathTrial {
         let Self { reference, direction, .. } = self;
         let (width, height) = reference.size();
         let count = self.costs.len() as u32 / (width * height);
-        let kernel = Path::new(bench.device(), &self.penalties, count / 4);
+        let kernel = Path::new(bench.gpu, &self.penalties, count / 4);
         let view = bench.upload(reference.data())?;
         let costs = words(&self.costs);
         let mut path = vec![0; costs.len()];
@@ -247,9 +250,9 @@ impl Trial for PathTrial {
             let paths = bench.upload(&paths)?;
             let band_words = row * first_row as usize..row * (first_row + rows) as usize;
             let costs = bench.upload(&costs[band_words.clone()])?;
+            let lines = LineBuffers { reference: &view, costs: &costs, paths: &paths };
             let goes_on = carried.is_some() && direction.dy != 0;
-            let dispatch =
-                kernel.prepare(bench.device(), &band, *direction, &view, &costs, &paths, row as u32, goes_on);
+            let dispatch = kernel.prepare(&band, *direction, lines, row as u32, goes_on);
             bench.run(|encoder| dispatch.record(encoder));
             let followed = bench.download::<u32>(&paths)?;
             path[band_words].copy_from_slice(&followed[row..row * (rows as usize + 1)]);
@@ -329,32 +332,28 @@ impl Trial for SelectTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (device, (width, rows)) = (bench.device(), self.reference.size());
+        let (gpu, (width, rows)) = (bench.gpu, self.reference.size());
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
-        let (pixels, confidence_words) = (width * rows, width.div_ceil(4) * rows);
-        let places = Places {
-            start: 0,
-            volume_words: band.row_words() * rows,
-            confidence_offset: pixels,
-            key_offset: pixels + confidence_words,
-        };
+        let layout = MapLayout { width, rows };
+        let volumes = PathVolumes { start: 0, volume_words: band.row_words() * rows };
         let selection = Selection {
             stored: self.stored.len() as u32,
             interpolation: self.interpolation,
-            wanted: Wanted::Matches,
+            wanted: ResultKind::Matches,
             keys: true,
             uniqueness: self.uniqueness,
         };
-        let kernel = Select::new(device, &self.penalties, band.words(), selection);
+        let kernel = Select::new(gpu, &self.penalties, band.words(), selection);
         // The kernel expects zeros here.
-        let matches = bench.upload(&vec![0_u32; (2 * pixels + confidence_words) as usize])?;
+        let matches = bench.upload(&vec![0_u32; (layout.words() as u32 + layout.pixels()) as usize])?;
         let (reference, costs) = (bench.upload(self.reference.data())?, bench.upload(&words(&self.costs))?);
-        let volumes = bench.upload(&words(&self.stored.concat()))?;
-        let dispatch = kernel.prepare(device, &band, self.last, places, &reference, &costs, &volumes, &matches);
+        let stored = bench.upload(&words(&self.stored.concat()))?;
+        let lines = LineBuffers { reference: &reference, costs: &costs, paths: &stored };
+        let dispatch = kernel.prepare(&band, self.last, lines, volumes, MapBuffer { buffer: &matches, layout });
         bench.run(|encoder| dispatch.record(encoder));
         let matches = bench.download::<u32>(&matches)?;
-        let (disparities, rest) = matches.split_at(pixels as usize);
-        let (confidences, keys) = rest.split_at(confidence_words as usize);
+        let (map, keys) = matches.split_at(layout.key_offset() as usize);
+        let (disparities, confidences) = map.split_at(layout.confidence_offset() as usize);
         Ok(Self::arrays(signed(disparities), confidences.to_vec(), keys.to_vec()))
     }
 
@@ -382,13 +381,13 @@ pub struct ClaimTrial {
     pub view: View,
     /// In which the disparities lie.
     pub range: DisparityRange,
-    /// How many words stand in front of the winners.
-    pub key_offset: u32,
+    /// Rows that the map has room for beyond those of the winners.
+    pub spare_rows: u32,
 }
 
 impl ClaimTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let (view, range, key_offset) = (dice.view(), dice.range(60), dice.below(7));
+        let (view, range, spare_rows) = (dice.view(), dice.range(60), dice.below(7));
         let few = dice.coin();
         let winners = Plane::from_fn(size.0, size.1, |_, _| {
             // With few costs many claims are equally good.
@@ -396,13 +395,13 @@ impl ClaimTrial {
             let disparity = range.min + dice.below(range.count) as i32;
             (dice.below(8) > 0).then_some((cost, disparity))
         });
-        Self { winners, view, range, key_offset }
+        Self { winners, view, range, spare_rows }
     }
 }
 
 impl Trial for ClaimTrial {
     fn parameters(&self) -> String {
-        format!("{:?} {:?}, winners from word {}", self.view, self.range, self.key_offset)
+        format!("{:?} {:?}, {} rows to spare", self.view, self.range, self.spare_rows)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -411,15 +410,16 @@ impl Trial for ClaimTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (width, rows) = self.winners.size();
-        // Something else in front of the keys.
-        let mut matches = vec![7; self.key_offset as usize];
+        let layout = MapLayout { width, rows: rows + self.spare_rows };
+        // A map in front of the keys.
+        let mut matches = vec![7; layout.key_offset() as usize];
         matches.extend(self.keys());
         // The kernel expects zeros here.
         let claims = bench.upload(&vec![0_u32; (width * rows) as usize])?;
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
-        let kernel = Claim::new(bench.device());
+        let kernel = Claim::new(bench.gpu);
         let matches = bench.upload(&matches)?;
-        let dispatch = kernel.prepare(bench.device(), &band, self.view, self.key_offset, &matches, &claims);
+        let dispatch = kernel.prepare(&band, self.view, MapBuffer { buffer: &matches, layout }, &claims);
         bench.run(|encoder| dispatch.record(encoder));
         let disparity = |claim: u32| match claim {
             0 => NONE,

@@ -12,6 +12,7 @@ use crate::{
     dense::{Brightness, Dense, DenseConfig, Matcher},
     disparity::DisparityRange,
     error::Result,
+    gpu::block_on,
     image::Luma,
     luma::pack,
 };
@@ -86,11 +87,11 @@ impl Trial for DenseTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let matcher = Matcher::with_band_rows(bench.device(), self.left.size(), &self.config, self.band_rows)?;
+        let matcher = block_on(Matcher::with_band_rows(bench.gpu, self.left.size(), &self.config, self.band_rows))?;
         for (view, luma) in [&self.left, &self.right].into_iter().zip(matcher.luma()) {
             bench.write(luma, &pack(view));
         }
-        Ok(Self::arrays(matcher.run(bench.gpu)?))
+        Ok(Self::arrays(matcher.run()?))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {

@@ -33,6 +33,7 @@ use crate::{
         },
         keypoints::{DISPATCH_WIDTH, Keypoint, KeypointList},
     },
+    gpu::block_on,
     image::{Luma, Plane},
 };
 
@@ -129,14 +130,20 @@ impl Trial for HessianTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (width, height) = self.picture.size();
+        let size = self.picture.size();
         let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
         let config = FeatureConfig { octaves: self.octaves, step: self.step, ..FeatureConfig::default() };
-        let stage = Hessian::new(bench.device(), &integral, width, height, &config)?;
-        (0..self.octaves).for_each(|octave| bench.poison(stage.responses(octave)));
-        bench.run(|encoder| stage.record(encoder));
-        let octave = |(octave, name)| Ok(Array::exact(name, bench.download::<i32>(stage.responses(octave))?));
-        (0..self.octaves).zip(OCTAVES).map(octave).collect()
+        let kernel = Hessian::new(bench.gpu, &config);
+        let output = |octave| bench.output((kernel.bytes(size, octave) / 4) as u32);
+        let responses = (0..self.octaves).map(output).collect::<Result<Vec<_>>>()?;
+        let finer = |octave: u32| octave.checked_sub(1).map(|finer| &responses[finer as usize]);
+        bench.run(|encoder| {
+            for (octave, responses) in (0..).zip(&responses) {
+                kernel.prepare(size, octave, &integral, finer(octave), responses).record(encoder);
+            }
+        });
+        let octave = |(responses, name)| Ok(Array::exact(name, bench.download::<i32>(responses)?));
+        responses.iter().zip(OCTAVES).map(octave).collect()
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -157,7 +164,7 @@ pub struct NonmaxTrial {
     pub size: Size,
     /// What is looked for.
     pub config: FeatureConfig,
-    /// The responses of each octave, as [`Hessian::responses`] has them.
+    /// The responses of each octave, as [`Hessian::prepare`] leaves them.
     pub responses: Vec<Vec<i32>>,
 }
 
@@ -177,18 +184,16 @@ impl NonmaxTrial {
     /// # Errors
     /// What the device says.
     pub fn keypoints(&self, bench: &Bench<'_>) -> Result<(u32, Vec<Keypoint>)> {
-        let (device, (width, height)) = (bench.device(), self.size);
-        let unused = bench.upload(&[0_u32])?;
-        let hessian = Hessian::new(device, &unused, width, height, &self.config)?;
+        let list = KeypointList::new(bench.gpu, self.config.max_features)?;
+        bench.poison(list.keypoints());
+        bench.write(list.found(), &[0_u32]);
+        let kernel = Nonmax::new(bench.gpu);
         for (octave, responses) in (0..).zip(&self.responses) {
-            bench.write(hessian.responses(octave), responses);
+            let dispatch = kernel.prepare(self.size, octave, &self.config, &bench.upload(responses)?, &list);
+            bench.run(|encoder| dispatch.record(encoder));
         }
-        let stage = Nonmax::new(device, &hessian, width, height, &self.config)?;
-        bench.poison(stage.list().found());
-        bench.poison(stage.list().keypoints());
-        bench.run(|encoder| stage.record(encoder));
-        let found = bench.download::<u32>(stage.list().found())?[0];
-        let mut keypoints: Vec<Keypoint> = bench.download(stage.list().keypoints())?;
+        let found = bench.download::<u32>(list.found())?[0];
+        let mut keypoints: Vec<Keypoint> = bench.download(list.keypoints())?;
         keypoints.truncate(found.min(self.config.max_features) as usize);
         keypoints.sort_by_key(Keypoint::key);
         Ok((found, keypoints))
@@ -300,12 +305,13 @@ impl Trial for WorkgroupsTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let list = KeypointList::new(bench.device(), self.capacity)?;
-        let stage = Workgroups::new(bench.device(), &list);
+        let list = KeypointList::new(bench.gpu, self.capacity)?;
         bench.write(list.found(), &[self.found]);
-        bench.poison(stage.groups());
-        bench.run(|encoder| stage.record(encoder));
-        Ok(vec![Array::exact("workgroups", bench.download::<u32>(stage.groups())?)])
+        let groups = Workgroups::groups(bench.gpu);
+        bench.poison(&groups);
+        let dispatch = Workgroups::new(bench.gpu).prepare(&list, &groups);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("workgroups", bench.download::<u32>(&groups)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -313,14 +319,16 @@ impl Trial for WorkgroupsTrial {
     }
 }
 
-/// A list that holds `keypoints`, on the device, and its workgroups.
-fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, Workgroups)> {
+/// A list that holds `keypoints`, on the device, and the number of its workgroups.
+fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu::Buffer)> {
     let count = keypoints.len() as u32;
-    let list = KeypointList::new(bench.device(), count)?;
+    let list = KeypointList::new(bench.gpu, count)?;
     bench.write(list.found(), &[count]);
     bench.write(list.keypoints(), keypoints);
-    let workgroups = Workgroups::new(bench.device(), &list);
-    Ok((list, workgroups))
+    let groups = Workgroups::groups(bench.gpu);
+    let dispatch = Workgroups::new(bench.gpu).prepare(&list, &groups);
+    bench.run(|encoder| dispatch.record(encoder));
+    Ok((list, groups))
 }
 
 /// Places anywhere in a picture and around it, of any scale and orientation.
@@ -369,13 +377,10 @@ impl OrientationTrial {
     pub fn oriented(&self, bench: &Bench<'_>) -> Result<Vec<Keypoint>> {
         // What is not written would be out of range.
         let poisoned = |keypoint: &Keypoint| Keypoint { orientation: f32::NAN, ..*keypoint };
-        let (list, workgroups) = list(bench, &self.keypoints.iter().map(poisoned).collect::<Vec<_>>())?;
+        let (list, groups) = list(bench, &self.keypoints.iter().map(poisoned).collect::<Vec<_>>())?;
         let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
-        let stage = Orientation::new(bench.device(), &integral, &list, workgroups.groups(), self.picture.size());
-        bench.run(|encoder| {
-            workgroups.record(encoder);
-            stage.record(encoder);
-        });
+        let dispatch = Orientation::new(bench.gpu).prepare(self.picture.size(), &integral, &list, &groups);
+        bench.run(|encoder| dispatch.record(encoder));
         bench.download(list.keypoints())
     }
 
@@ -458,16 +463,13 @@ impl Trial for DescriptorTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (list, workgroups) = list(bench, &self.keypoints)?;
+        let (list, groups) = list(bench, &self.keypoints)?;
         let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
-        let (groups, size) = (workgroups.groups(), self.picture.size());
-        let stage = Descriptor::new(bench.device(), &integral, &list, groups, size, self.upright)?;
-        bench.poison(stage.descriptors());
-        bench.run(|encoder| {
-            workgroups.record(encoder);
-            stage.record(encoder);
-        });
-        Ok(self.arrays(bench.download(stage.descriptors())?))
+        let descriptors = bench.output((Descriptor::bytes(&list) / 4) as u32)?;
+        let kernel = Descriptor::new(bench.gpu, self.upright);
+        let dispatch = kernel.prepare(self.picture.size(), &integral, &list, &groups, &descriptors);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(self.arrays(bench.download(&descriptors)?))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
@@ -526,7 +528,7 @@ impl Trial for FeaturesTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        Ok(Self::arrays(&detect(bench.gpu, &self.picture, &self.config)?, self.config.upright))
+        Ok(Self::arrays(&block_on(detect(bench.gpu, &self.picture, &self.config))?, self.config.upright))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {

@@ -1,13 +1,13 @@
 //! Detection of interest points in one picture after the other.
 
 use crate::{
+    backend::Backend,
     cpu,
     error::Result,
     features::{Detector, Feature, FeatureConfig},
     gpu::Gpu,
     image::Luma,
     luma::{pack, upload},
-    pair::Backend,
 };
 
 /// Finds interest points and keeps the last detector: building one takes longer than using it, and most pictures have
@@ -46,19 +46,15 @@ impl<'b> DetectorCache<'b> {
             }
             None => SizedDetector::new(gpu, luma, config).await?,
         };
-        let SizedDetector { detector, .. } = self.last.insert(detector);
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("features") });
-        detector.record(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        detector.read_async(&gpu.device, &gpu.queue).await
+        let SizedDetector { detector, luma, .. } = self.last.insert(detector);
+        detector.detect(luma).await
     }
 }
 
 impl SizedDetector {
     async fn new(gpu: &Gpu, luma: &Luma, config: &FeatureConfig) -> Result<Self> {
         let (size, buffer) = (luma.size(), upload(gpu, luma).await?);
-        let detector = Detector::new_async(&gpu.device, &buffer, size.0, size.1, config).await?;
+        let detector = Detector::new(gpu, size, config).await?;
         Ok(Self { size, config: config.clone(), luma: buffer, detector })
     }
 }

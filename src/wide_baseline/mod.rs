@@ -15,12 +15,12 @@ use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
 use crate::{
+    backend::Backend,
     error::Result,
     features::{Feature, FeatureConfig},
     filter::gaussian,
     image::Luma,
     matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
-    pair::Backend,
 };
 use detector_cache::DetectorCache;
 
@@ -137,21 +137,7 @@ type Indexed = (Seed, [usize; 2]);
 ///
 /// # Errors
 /// [`crate::Error::Parameter`]; and as [`Backend::features`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn match_views(
-    backend: &Backend,
-    first: &Luma,
-    second: &Luma,
-    config: &WideBaselineConfig,
-) -> Result<WideBaselineMatches> {
-    backend.wait(match_views_async(backend, first, second, config))
-}
-
-/// As [`match_views`], without blocking for longer than the work on the host takes.
-///
-/// # Errors
-/// As [`match_views`].
-pub async fn match_views_async(
+pub async fn match_views(
     backend: &Backend,
     first: &Luma,
     second: &Luma,
@@ -317,7 +303,8 @@ mod tests {
         let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
         let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
         let config = WideBaselineConfig { adapt, ..WideBaselineConfig::default() };
-        let found = match_views(&backend, &picture.luma(), &changed.picture.luma(), &config).unwrap();
+        let found =
+            pollster::block_on(match_views(&backend, &picture.luma(), &changed.picture.luma(), &config)).unwrap();
         let truth = Truth::stereo(Plane::filled(200, 160, 0.0), None).unwrap().changed(&changed);
         let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
         let judged = Judged::new(&matches, &truth, 1.5).unwrap();
@@ -358,7 +345,12 @@ mod tests {
         let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
         let (flat, tiny) = (Luma::filled(60, 50, 7), Luma::filled(1, 1, 0));
         for (first, second) in [(&flat, &flat), (&flat, &tiny), (&tiny, &flat)] {
-            assert!(match_views(&backend, first, second, &WideBaselineConfig::default()).unwrap().matches.is_empty());
+            assert!(
+                pollster::block_on(match_views(&backend, first, second, &WideBaselineConfig::default()))
+                    .unwrap()
+                    .matches
+                    .is_empty()
+            );
         }
     }
 }

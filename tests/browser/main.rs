@@ -18,10 +18,10 @@ use std::{
 
 use devtools::Browser;
 use hsad::{
+    backend::Backend,
     config::Preset,
     gpu::DeviceChoice,
     io::{Picture, load},
-    pair::Backend,
     pipeline,
 };
 use serde_json::json;

@@ -8,7 +8,7 @@ use crate::common::{hsad, hsad_without_driver};
 
 #[test]
 fn lists_adapters_and_the_cpu() {
-    let adapters = hsad::gpu::list_adapters();
+    let adapters = hsad::gpu::block_on(hsad::gpu::list_adapters());
     let output = hsad().arg("devices").assert().success().get_output().stdout.clone();
     let text = String::from_utf8(output).unwrap();
     let lines: Vec<&str> = text.lines().collect();

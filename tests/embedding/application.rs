@@ -33,7 +33,7 @@ impl Application {
         let unhandled = Arc::new(Mutex::new(Vec::new()));
         let list = unhandled.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| list.lock().unwrap().push(error.to_string())));
-        Self { gpu: Gpu { device, queue, info: adapter.get_info() }, unhandled }
+        Self { gpu: Gpu::new(device, queue), unhandled }
     }
 
     pub fn device(&self) -> &wgpu::Device {

@@ -6,7 +6,7 @@ use hsad::{
     dense::{Brightness, Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
-    gpu::{Gpu, REQUIRED_LIMITS},
+    gpu::{REQUIRED_LIMITS, block_on},
     luma::{Input, Source},
     wgpu::{Buffer, BufferUsages, Features, Limits, TextureFormat, TextureUsages},
 };
@@ -19,8 +19,7 @@ const BYTES: u64 = 4 * 40 * 30;
 #[test]
 fn resources_that_will_not_do() {
     let application = Application::new();
-    let device = application.device();
-    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let matcher = Matcher::new(&application.gpu, SIZE, &config()).unwrap();
     let elsewhere = Application::new();
 
     let readable = TextureUsages::TEXTURE_BINDING;
@@ -31,7 +30,7 @@ fn resources_that_will_not_do() {
         for (left, right, name) in
             [(source, Source::Texture(&good), "the left view"), (Source::Texture(&good), source, "the right view")]
         {
-            let error = matcher.inputs(device, left, right).err();
+            let error = matcher.inputs(left, right).err();
             let error = error.unwrap_or_else(|| panic!("{source:?} is accepted")).to_string();
             for part in [&[name], expected].concat() {
                 assert!(error.contains(part), "{part}: {error}");
@@ -55,7 +54,7 @@ fn resources_that_will_not_do() {
     input(Source::Texture(&elsewhere.texture(rgba, SIZE, readable, &[])), &["device"]);
 
     let output = |destination: Destination<'_>, confidences: Option<&Buffer>, expected: &[&str]| {
-        let error = matcher.outputs(device, destination, confidences).err();
+        let error = matcher.outputs(destination, confidences).err();
         let error = error.unwrap_or_else(|| panic!("{destination:?} is accepted")).to_string();
         assert!(expected.iter().all(|part| error.contains(part)), "{expected:?}: {error}");
     };
@@ -88,15 +87,16 @@ fn resources_that_will_not_do() {
 #[test]
 fn luma_that_no_kernel_can_read() {
     let application = Application::new();
-    let device = application.device();
+    let gpu = &application.gpu;
+    let detector = block_on(Detector::new(gpu, SIZE, &FeatureConfig::default())).unwrap();
     let view = application.texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
     let unusable = application.buffer(BYTES, BufferUsages::COPY_DST);
     let small = application.buffer(1196, BufferUsages::STORAGE);
     let elsewhere = Application::new();
     let foreign = elsewhere.buffer(BYTES, BufferUsages::STORAGE);
     for (luma, expected) in [(&unusable, "needs STORAGE"), (&small, "than the 1196 given"), (&foreign, "device")] {
-        let input = Input::new(device, SIZE, Source::Texture(&view), luma).err().expect("an error");
-        let detector = Detector::new(device, luma, SIZE.0, SIZE.1, &FeatureConfig::default()).err().expect("an error");
+        let input = block_on(Input::new(gpu, SIZE, Source::Texture(&view), luma)).expect_err("an error");
+        let detector = block_on(detector.input(luma)).expect_err("an error");
         for error in [input, detector] {
             assert!(error.to_string().contains(expected), "{expected}: {error}");
         }
@@ -111,14 +111,14 @@ fn a_buffer_that_is_too_large_names_its_limits() {
     let mut limits = Limits::downlevel_defaults();
     limits.max_storage_buffer_binding_size = 16 << 10;
     let application = Application::with(Features::empty(), limits);
-    let device = application.device();
+    let gpu = &application.gpu;
     for (size, preset) in [((400, 30), Preset::Fast), ((400, 30), Preset::Balanced), ((200, 200), Preset::Balanced)] {
         let config = preset.config().dense(DisparityRange::new(0, 128).unwrap(), Brightness::SAME);
-        let error = Matcher::new(device, size, &config).err().expect("an error").to_string();
+        let error = Matcher::new(gpu, size, &config).expect_err("an error").to_string();
         assert!(error.contains("at most 16384: ") && error.contains("max_storage_buffer_binding_size"), "{error}");
     }
-    let luma = application.buffer(200 * 200, BufferUsages::STORAGE);
-    let error = Detector::new(device, &luma, 200, 200, &FeatureConfig::default()).err().expect("an error").to_string();
+    let detector = block_on(Detector::new(gpu, (200, 200), &FeatureConfig::default()));
+    let error = detector.expect_err("an error").to_string();
     assert!(error.contains("max_storage_buffer_binding_size"), "{error}");
     application.assert_quiet();
 }
@@ -141,12 +141,11 @@ fn a_limit_that_is_too_low_is_named() {
         change(&mut limits);
         let has = (limit.of)(&limits);
         let application = Application::with(Features::empty(), limits);
-        let luma = application.buffer(BYTES, BufferUsages::STORAGE);
         let existing = || application.device().get_internal_counters().hal.buffers.read();
         let before = existing();
-        let matcher = Matcher::new(application.device(), SIZE, &config()).err().expect("an error");
-        let detector = Detector::new(application.device(), &luma, SIZE.0, SIZE.1, &FeatureConfig::default());
-        for error in [matcher, detector.err().expect("an error")] {
+        let matcher = Matcher::new(&application.gpu, SIZE, &config()).expect_err("an error");
+        let detector = block_on(Detector::new(&application.gpu, SIZE, &FeatureConfig::default()));
+        for error in [matcher, detector.expect_err("an error")] {
             assert!(matches!(error, Error::Unsupported(_)));
             let text = error.to_string();
             assert!(text.contains(&format!("limit {name} is {has}, and {} are needed", limit.least)), "{text}");
@@ -160,36 +159,35 @@ fn a_limit_that_is_too_low_is_named() {
 fn a_lost_device_is_an_error_and_another_one_goes_on() {
     let application = Application::new();
     let [left, right] = pair(SIZE, 8);
-    let matcher = Matcher::new(application.device(), SIZE, &config()).unwrap();
-    let before = matcher.run(&application.gpu).unwrap();
+    let gpu = &application.gpu;
+    let matcher = Matcher::new(gpu, SIZE, &config()).unwrap();
+    let before = matcher.run().unwrap();
     let map = application.buffer(BYTES, BufferUsages::COPY_DST);
-    let luma = application.buffer(BYTES, BufferUsages::STORAGE);
     let view = application.texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
     let features = FeatureConfig::default();
-    let detector = Detector::new(application.device(), matcher.luma()[0], SIZE.0, SIZE.1, &features).unwrap();
+    let detector = block_on(Detector::new(gpu, SIZE, &features)).unwrap();
     application.device().destroy();
 
-    let device = application.device();
     let view = Source::Texture(&view);
     let errors = [
-        Matcher::new(device, SIZE, &config()).err(),
-        matcher.run(&application.gpu).err(),
-        matcher.inputs(device, view, view).err(),
-        matcher.outputs(device, Destination::Buffer(&map), None).err(),
-        Detector::new(device, &luma, SIZE.0, SIZE.1, &features).err(),
-        detector.read(device, &application.gpu.queue).err(),
-        hsad::dense::compute(&application.gpu, &left, &right, &config()).err(),
-        hsad::features::detect(&application.gpu, &left, &features).err(),
+        Matcher::new(gpu, SIZE, &config()).err(),
+        matcher.run().err(),
+        matcher.inputs(view, view).err(),
+        matcher.outputs(Destination::Buffer(&map), None).err(),
+        block_on(matcher.readback()).err(),
+        block_on(Detector::new(gpu, SIZE, &features)).err(),
+        block_on(detector.input(matcher.luma()[0])).err(),
+        block_on(detector.read()).err(),
+        block_on(detector.readback()).err(),
+        block_on(hsad::dense::compute(gpu, &left, &right, &config())).err(),
+        block_on(hsad::features::detect(gpu, &left, &features)).err(),
     ];
     for (index, error) in errors.into_iter().enumerate() {
         assert!(matches!(error, Some(Error::DeviceLost(_))), "{index}: {error:?}");
     }
     application.assert_quiet();
 
-    let Gpu { device, .. } = &Application::new().gpu;
-    let another = Matcher::new(device, SIZE, &config()).unwrap();
+    let another = Matcher::new(&Application::new().gpu, SIZE, &config()).unwrap();
     assert_eq!(another.memory(), matcher.memory());
-    let application = Application::new();
-    let matcher = Matcher::new(application.device(), SIZE, &config()).unwrap();
-    assert_eq!(matcher.run(&application.gpu).unwrap(), before);
+    assert_eq!(another.run().unwrap(), before);
 }

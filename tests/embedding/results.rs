@@ -6,6 +6,7 @@ use hsad::{
     dense::{Brightness, Dense, DenseConfig, Destination, Matcher, kernels::MapTexel},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
+    gpu::block_on,
     image::Luma,
     luma::{Source, pack},
     wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
@@ -36,23 +37,23 @@ fn assert_answers(what: &str, disparities: &[i32], confidences: &[u32], expected
 #[test]
 fn textures_in_and_out_in_bands_and_not() {
     let application = Application::new();
-    let (device, bench) = (application.device(), application.bench());
+    let (gpu, bench) = (&application.gpu, application.bench());
     let views = pair(SIZE, 1);
     for config in configs() {
         let expected = compute(&views[0], &views[1], &config).unwrap();
         for band_rows in [u32::MAX, 20] {
-            let matcher = Matcher::with_band_rows(device, SIZE, &config, band_rows).unwrap();
+            let matcher = block_on(Matcher::with_band_rows(gpu, SIZE, &config, band_rows)).unwrap();
             // Two formats that are read differently.
             let [left, right] = [TextureFormat::Bgra8UnormSrgb, TextureFormat::R8Unorm];
             let textures = [(&views[0], left), (&views[1], right)]
                 .map(|(view, format)| bench.texture(format, SIZE, &texels(view, format)));
             let [left, right] = textures.each_ref().map(Source::Texture);
-            let inputs = matcher.inputs(device, left, right).unwrap();
+            let inputs = matcher.inputs(left, right).unwrap();
             for texel in MapTexel::ALL {
                 let map = bench.output_texture(texel.format(), SIZE);
                 let view = map.create_view(&wgpu::TextureViewDescriptor::default());
                 let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
-                let outputs = matcher.outputs(device, Destination::Texture(&view), Some(&confidences)).unwrap();
+                let outputs = matcher.outputs(Destination::Texture(&view), Some(&confidences)).unwrap();
                 bench.run(|encoder| {
                     inputs.record(encoder);
                     matcher.record(encoder, &outputs);
@@ -78,17 +79,17 @@ fn textures_in_and_out_in_bands_and_not() {
 #[test]
 fn frames_take_turns_in_one_encoder() {
     let application = Application::new();
-    let (device, bench) = (application.device(), application.bench());
+    let (gpu, bench) = (&application.gpu, application.bench());
     let frames = [pair(SIZE, 2), pair(SIZE, 3)];
-    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let matcher = Matcher::new(gpu, SIZE, &config()).unwrap();
     let prepared = frames.each_ref().map(|[left, right]| {
         let left = bench.upload_luma(left).unwrap();
         let right = bench.texture(TextureFormat::Rgba8Unorm, SIZE, &texels(right, TextureFormat::Rgba8Unorm));
-        let inputs = matcher.inputs(device, Source::Luma(&left), Source::Texture(&right)).unwrap();
+        let inputs = matcher.inputs(Source::Luma(&left), Source::Texture(&right)).unwrap();
         // The buffer has one word more than needed, which must not change.
         let map = bench.output(SIZE.0 * SIZE.1 + 1).unwrap();
         let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
-        let outputs = matcher.outputs(device, Destination::Buffer(&map), Some(&confidences)).unwrap();
+        let outputs = matcher.outputs(Destination::Buffer(&map), Some(&confidences)).unwrap();
         (inputs, outputs, map, confidences)
     });
     bench.run(|encoder| {
@@ -111,9 +112,9 @@ fn frames_take_turns_in_one_encoder() {
 #[test]
 fn a_view_may_have_another_format_than_its_texture() {
     let application = Application::new();
-    let (device, bench) = (application.device(), application.bench());
+    let (gpu, bench) = (&application.gpu, application.bench());
     let views = pair(SIZE, 4);
-    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let matcher = Matcher::new(gpu, SIZE, &config()).unwrap();
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
     let srgb = TextureFormat::Rgba8UnormSrgb;
     let textures = views.each_ref().map(|view| {
@@ -124,7 +125,7 @@ fn a_view_may_have_another_format_than_its_texture() {
         texture.create_view(&wgpu::TextureViewDescriptor { format: Some(srgb), ..Default::default() })
     });
     let [left, right] = textures.each_ref().map(|view| Source::TextureAs(view, srgb));
-    let inputs = matcher.inputs(device, left, right).unwrap();
+    let inputs = matcher.inputs(left, right).unwrap();
     bench.run(|encoder| inputs.record(encoder));
     for (luma, view) in matcher.luma().into_iter().zip(&views) {
         assert_eq!(bench.download::<u32>(luma).unwrap(), pack(view));
@@ -135,29 +136,29 @@ fn a_view_may_have_another_format_than_its_texture() {
 #[test]
 fn recording_creates_nothing_and_submits_nothing() {
     let application = Application::new();
-    let (device, bench) = (application.device(), application.bench());
+    let (gpu, bench) = (&application.gpu, application.bench());
     let views = pair(SIZE, 5);
     let format = TextureFormat::Rgba8UnormSrgb;
     let textures = views.each_ref().map(|view| bench.texture(format, SIZE, &texels(view, format)));
     let [left, right] = textures.each_ref().map(Source::Texture);
     for config in configs() {
-        let matcher = Matcher::new(device, SIZE, &config).unwrap();
-        let inputs = matcher.inputs(device, left, right).unwrap();
-        let before = existing(device);
+        let matcher = Matcher::new(gpu, SIZE, &config).unwrap();
+        let inputs = matcher.inputs(left, right).unwrap();
+        let before = existing(&gpu.device);
         let map = bench.output_texture(TextureFormat::R32Float, SIZE);
         let view = map.create_view(&wgpu::TextureViewDescriptor::default());
-        let outputs = matcher.outputs(device, Destination::Texture(&view), None).unwrap();
+        let outputs = matcher.outputs(Destination::Texture(&view), None).unwrap();
         // The counters see the created objects.
-        assert_ne!(existing(device), before);
+        assert_ne!(existing(&gpu.device), before);
 
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let before = existing(device);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let before = existing(&gpu.device);
         for _ in 0..2 {
             inputs.record(&mut encoder);
             matcher.record(&mut encoder, &outputs);
         }
         let commands = encoder.finish();
-        assert_eq!(existing(device), before);
+        assert_eq!(existing(&gpu.device), before);
         // Nothing was written: every texel keeps its value.
         assert!(bench.download_texture::<u32>(&map).unwrap().iter().all(|&texel| texel == u32::MAX));
         application.gpu.queue.submit([commands]);
@@ -191,7 +192,7 @@ fn existing(device: &wgpu::Device) -> [isize; 12] {
 #[test]
 fn memory_is_what_the_device_gives() {
     let application = Application::new();
-    let device = application.device();
+    let (gpu, device) = (&application.gpu, application.device());
     let taken = || {
         let counters = device.get_internal_counters().hal;
         (counters.buffer_memory.read() + counters.texture_memory.read()) as f64
@@ -204,14 +205,13 @@ fn memory_is_what_the_device_gives() {
     let size = (640, 480);
     for config in configs() {
         let before = taken();
-        let matcher = Matcher::new(device, size, &config).unwrap();
+        let matcher = Matcher::new(gpu, size, &config).unwrap();
         check(&format!("{:?}", config.aggregation), before, matcher.memory());
     }
-    let luma = application.buffer(u64::from(size.0 * size.1), BufferUsages::STORAGE);
     for max_features in [500, 65_536] {
         let before = taken();
         let config = FeatureConfig { max_features, ..FeatureConfig::default() };
-        let detector = Detector::new(device, &luma, size.0, size.1, &config).unwrap();
+        let detector = block_on(Detector::new(gpu, size, &config)).unwrap();
         check(&format!("{max_features} features"), before, detector.memory());
     }
 }
@@ -220,14 +220,14 @@ fn memory_is_what_the_device_gives() {
 #[test]
 fn matchers_take_the_memory_that_is_told() {
     let readme = include_str!("../../README.md");
-    let device = &Application::new().gpu.device;
+    let gpu = &Application::new().gpu;
     for (size, count) in [((640, 480), 128), ((768, 512), 64), ((1920, 1080), 256)] {
         let start = format!("| {}x{}, {count} | ", size.0, size.1);
         let row = readme.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
         let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
         let range = DisparityRange::new(0, count).unwrap();
         let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
-            let matcher = Matcher::new(device, size, &preset.config().dense(range, Brightness::SAME)).unwrap();
+            let matcher = Matcher::new(gpu, size, &preset.config().dense(range, Brightness::SAME)).unwrap();
             (matcher.memory() as f64 / 1e6).round()
         });
         assert_eq!(told, measured, "{start}");
@@ -240,16 +240,16 @@ fn brightness_changes_without_another_matcher() {
     let bench = application.bench();
     let [left, right] = pair(SIZE, 6);
     for config in configs() {
-        let matcher = Matcher::with_band_rows(application.device(), SIZE, &config, 40).unwrap();
+        let matcher = block_on(Matcher::with_band_rows(&application.gpu, SIZE, &config, 40)).unwrap();
         for (view, luma) in [&left, &right].into_iter().zip(matcher.luma()) {
             bench.write(luma, &pack(view));
         }
         for brightness in [Brightness { gain: 300, offset: -4000 }, Brightness { gain: 100, offset: 9 }] {
-            matcher.set_brightness(&application.gpu.queue, brightness).unwrap();
+            matcher.set_brightness(brightness).unwrap();
             let expected = compute(&left, &right, &DenseConfig { brightness, ..config.clone() }).unwrap();
-            assert_eq!(matcher.run(&application.gpu).unwrap(), expected);
+            assert_eq!(matcher.run().unwrap(), expected);
         }
-        let refused = matcher.set_brightness(&application.gpu.queue, Brightness { gain: 1 << 21, offset: 0 });
+        let refused = matcher.set_brightness(Brightness { gain: 1 << 21, offset: 0 });
         assert!(refused.unwrap_err().to_string().starts_with("the gain is 2097152"));
     }
     application.assert_quiet();
@@ -261,13 +261,13 @@ fn a_map_goes_to_a_buffer_that_can_be_mapped() {
     let application = Application::new();
     let device = application.device();
     let [left, right] = pair(SIZE, 7);
-    let matcher = Matcher::new(device, SIZE, &config()).unwrap();
+    let matcher = Matcher::new(&application.gpu, SIZE, &config()).unwrap();
     for (view, luma) in [&left, &right].into_iter().zip(matcher.luma()) {
         application.bench().write(luma, &pack(view));
     }
     let bytes = 4 * u64::from(SIZE.0) * u64::from(SIZE.1);
     let map = application.buffer(bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-    let outputs = matcher.outputs(device, Destination::Buffer(&map), None).unwrap();
+    let outputs = matcher.outputs(Destination::Buffer(&map), None).unwrap();
     application.bench().run(|encoder| matcher.record(encoder, &outputs));
     map.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();

@@ -5,10 +5,10 @@ use std::thread;
 use hsad::{
     config::Preset,
     cpu::dense::compute,
-    dense::{self, Brightness, Destination, Inputs, Matcher, Outputs},
+    dense::{self, Brightness, Destination, Inputs, MapReadback, Matcher, Outputs},
     disparity::DisparityRange,
-    features::{Detector, FeatureConfig},
-    gpu::Context,
+    features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
+    gpu::{Gpu, block_on},
     image::Luma,
     luma::{Input, Source},
     wgpu::{Features, Limits, PipelineCacheDescriptor, TextureFormat, TextureUsages},
@@ -26,7 +26,10 @@ fn everything_goes_to_other_threads() {
     assert_shared::<Outputs>();
     assert_shared::<Input>();
     assert_shared::<Detector>();
-    assert_shared::<Context<'_>>();
+    assert_shared::<DetectorInput>();
+    assert_shared::<MapReadback>();
+    assert_shared::<FeatureReadback>();
+    assert_shared::<Gpu>();
 }
 
 /// Two threads build, run and drop matchers at the same time on one device.
@@ -43,7 +46,7 @@ fn threads_share_a_device() {
                 let [left, right] = views;
                 let expected = compute(left, right, config).unwrap();
                 for _ in 0..5 {
-                    assert_eq!(dense::compute(&application.gpu, left, right, config).unwrap(), expected);
+                    assert_eq!(block_on(dense::compute(&application.gpu, left, right, config)).unwrap(), expected);
                 }
             });
         }
@@ -56,14 +59,14 @@ fn threads_share_a_device() {
 fn errors_stay_with_their_thread() {
     let application = Application::new();
     thread::scope(|scope| {
-        let device = application.device();
+        let gpu = &application.gpu;
         scope.spawn(move || {
             for _ in 0..20 {
-                assert!(Matcher::new(device, (1 << 19, 1 << 19), &config()).is_err());
+                assert!(Matcher::new(gpu, (1 << 19, 1 << 19), &config()).is_err());
             }
         });
         for _ in 0..3 {
-            Matcher::new(device, SIZE, &config()).unwrap();
+            Matcher::new(gpu, SIZE, &config()).unwrap();
         }
     });
     application.assert_quiet();
@@ -79,27 +82,25 @@ fn the_pipeline_cache_of_the_application_is_used() {
         // SAFETY: no initial data is passed that would have to come from such a cache.
         unsafe { application.device().create_pipeline_cache(&descriptor) }
     });
-    let device = applications[0].device();
-    let [own, foreign] = caches.each_ref().map(|cache| Context { device, cache: Some(cache) });
-    let matcher = Matcher::new(own, SIZE, &config()).unwrap();
+    let [own, foreign] = caches.map(|cache| applications[0].gpu.clone().with_cache(cache));
+    let matcher = Matcher::new(&own, SIZE, &config()).unwrap();
     let black = Luma::filled(SIZE.0, SIZE.1, 0);
-    assert_eq!(matcher.run(&applications[0].gpu).unwrap(), compute(&black, &black, &config()).unwrap());
+    assert_eq!(matcher.run().unwrap(), compute(&black, &black, &config()).unwrap());
 
     let picture = applications[0].texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
     let map = applications[0].texture(TextureFormat::R32Float, SIZE, TextureUsages::STORAGE_BINDING, &[]);
     let picture = Source::Texture(&picture);
     let refused = [
-        Matcher::new(foreign, SIZE, &config()).err(),
-        matcher.inputs(foreign, picture, picture).err(),
-        matcher.outputs(foreign, Destination::Texture(&map), None).err(),
-        Detector::new(foreign, matcher.luma()[0], SIZE.0, SIZE.1, &FeatureConfig::default()).err(),
+        Matcher::new(&foreign, SIZE, &config()).err(),
+        block_on(Detector::new(&foreign, SIZE, &FeatureConfig::default())).err(),
+        block_on(Input::new(&foreign, SIZE, picture, matcher.luma()[0])).err(),
     ];
     for error in refused {
         let error = error.expect("an error").to_string();
         assert!(error.contains("PipelineCache") && error.contains("device"), "{error}");
     }
     // The failure leaves no state behind.
-    matcher.inputs(own, picture, picture).unwrap();
-    matcher.outputs(own, Destination::Texture(&map), None).unwrap();
+    matcher.inputs(picture, picture).unwrap();
+    matcher.outputs(Destination::Texture(&map), None).unwrap();
     applications.iter().for_each(Application::assert_quiet);
 }

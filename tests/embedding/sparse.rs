@@ -3,6 +3,7 @@
 use hsad::{
     dense::Matcher,
     features::{DESCRIPTOR_LENGTH, Detector, FeatureConfig, collect, detect, keypoints::Keypoint},
+    gpu::block_on,
     luma::Source,
     verify::smooth_noise,
     wgpu::TextureFormat,
@@ -15,19 +16,22 @@ use crate::application::{Application, config};
 #[test]
 fn features_of_a_texture_are_read_from_their_buffers() {
     let application = Application::new();
-    let (device, bench) = (application.device(), application.bench());
+    let (gpu, bench) = (&application.gpu, application.bench());
     let size = (311, 239);
     let luma = smooth_noise(size.0, size.1, 7);
     let view = bench.texture(TextureFormat::R8Unorm, size, luma.data());
-    let matcher = Matcher::new(device, size, &config()).unwrap();
-    let inputs = matcher.inputs(device, Source::Texture(&view), Source::Texture(&view)).unwrap();
+    let matcher = Matcher::new(gpu, size, &config()).unwrap();
+    let inputs = matcher.inputs(Source::Texture(&view), Source::Texture(&view)).unwrap();
     let features = FeatureConfig { upright: false, max_features: 5000, ..FeatureConfig::default() };
-    let detector = Detector::new(device, matcher.luma()[0], size.0, size.1, &features).unwrap();
+    let detector = block_on(Detector::new(gpu, size, &features)).unwrap();
+    let input = block_on(detector.input(matcher.luma()[0])).unwrap();
+    let readback = block_on(detector.readback()).unwrap();
     bench.run(|encoder| {
         inputs.record(encoder);
-        detector.record(encoder);
+        detector.record(encoder, &input);
+        detector.record_readback(encoder, &readback);
     });
-    let expected = detect(&application.gpu, &luma, &features).unwrap();
+    let expected = block_on(detect(gpu, &luma, &features)).unwrap();
 
     let list = detector.keypoints();
     let found = bench.download::<u32>(list.found()).unwrap()[0] as usize;
@@ -35,6 +39,7 @@ fn features_of_a_texture_are_read_from_their_buffers() {
     let keypoints = bench.download::<Keypoint>(list.keypoints()).unwrap();
     let descriptors = bench.download::<[f32; DESCRIPTOR_LENGTH]>(detector.descriptors()).unwrap();
     assert_eq!(collect(&keypoints[..found], &descriptors[..found]), expected);
-    assert_eq!(detector.read(device, &application.gpu.queue).unwrap(), expected);
+    assert_eq!(block_on(detector.read()).unwrap(), expected);
+    assert_eq!(block_on(readback.read()).unwrap(), expected);
     application.assert_quiet();
 }

@@ -11,7 +11,10 @@ use hsad::{
     wgpu,
 };
 
-pub use hsad::verify::{SIZES, smooth_noise as picture};
+pub use hsad::{
+    gpu::block_on,
+    verify::{SIZES, smooth_noise as picture},
+};
 
 /// The device of all tests.
 pub fn gpu() -> &'static Gpu {

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use hsad::{
     Error,
+    backend::Backend,
     config::{Config, Preset},
     disparity::{NONE, SCALE, coverage},
     gpu::DeviceChoice,
     io::{Picture, color, load},
-    pair::Backend,
     pipeline::{self, Outcome, RangeSource},
 };
 use wasm_bindgen::{Clamped, prelude::*};

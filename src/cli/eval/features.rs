@@ -12,9 +12,10 @@ use std::{
 use clap::Args;
 use hsad::{
     Error, Result,
+    backend::Backend,
     eval::{Judged, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
+    gpu::block_on,
     io::{atomic::write_whole, png},
-    pair::Backend,
     wide_baseline::{WideBaselineConfig, match_views},
 };
 use serde_json::json;
@@ -324,7 +325,7 @@ impl Features {
         let truth = views.truth.clone().changed(&changed);
         let (matches, points) = match finder {
             Finder::Hsad(backend, config) => {
-                let found = match_views(backend, &views.first.luma(), &changed.picture.luma(), config)?;
+                let found = block_on(match_views(backend, &views.first.luma(), &changed.picture.luma(), config))?;
                 let points = found.features.each_ref().map(|view| view.iter().map(Point::from).collect::<Vec<_>>());
                 (found.matches.iter().map(PointMatch::from).collect(), Some(points))
             }

@@ -6,7 +6,8 @@ use super::{
 };
 use crate::{
     dense::{
-        Aggregation, Dense, DenseConfig, OtherView, Paths, Refinement, Search, SemiGlobal, View, kernels::halved_config,
+        Aggregation, CrossCheck, Dense, DenseConfig, Paths, Refinement, Search, SemiGlobal, View,
+        kernels::halved_config,
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
@@ -40,9 +41,9 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
         Aggregation::Paths(semi_global) => {
             let paths = all_paths(left, right, view, &config, semi_global);
             dense = select(&paths, left.size(), &config);
-            others = config.consistency.map(|_| match semi_global.other_view {
-                OtherView::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
-                OtherView::Searched => {
+            others = config.consistency.map(|_| match semi_global.cross_check {
+                CrossCheck::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
+                CrossCheck::Searched => {
                     let paths = all_paths(left, right, view.other(), &config, semi_global);
                     path_winners(&paths, left.size(), &config)
                         .map(|winner| winner.map_or(NONE, |(_, disparity)| disparity * SCALE))

@@ -15,7 +15,7 @@ pub use interpolation::Interpolation;
 pub use paths::{Direction, Paths};
 pub use penalties::Penalties;
 pub use refinement::{Median, Refinement};
-pub use semi_global::{OtherView, SemiGlobal};
+pub use semi_global::{CrossCheck, SemiGlobal};
 pub use view::View;
 
 use crate::{

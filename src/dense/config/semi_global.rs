@@ -19,12 +19,12 @@ pub struct SemiGlobal {
     /// From how many sides a pixel is reached.
     pub paths: Paths,
     /// Where the disparities of the other view come from, that a check compares with.
-    pub other_view: OtherView,
+    pub cross_check: CrossCheck,
 }
 
 /// Where the disparities of the other view come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OtherView {
+pub enum CrossCheck {
     /// From a search of its own, for as much work again.
     Searched,
     /// From the winners of the reference view: see [`super::Claim`].

@@ -1,18 +1,16 @@
 //! Block matching: SAD, winner-take-all, uniqueness and sub-pixel. `shaders/dense/block_match.wgsl`.
 
 use super::{
-    answer::{Wanted, answer_constants},
     cells::{HALF_GRAIN, Ranges},
+    map_buffer::MapBuffer,
     pad::PadParams,
+    selection::{ResultKind, selection_constants},
 };
 use crate::{
     dense::config::{DenseConfig, View},
     disparity::{DisparityRange, SCALE},
     error::Result,
-    gpu::{
-        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, is_lavapipe,
-        shader_struct, uniform_buffer,
-    },
+    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
 };
 
 /// The pixels that one thread matches, and the tiles that a workgroup does.
@@ -42,8 +40,8 @@ impl Tile {
     pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
 
     /// The tile for `device`.
-    pub fn of(device: &wgpu::Device) -> Self {
-        if is_lavapipe(device) { Self::SOFTWARE } else { Self::HARDWARE }
+    pub fn of(gpu: &Gpu) -> Self {
+        if gpu.is_lavapipe() { Self::SOFTWARE } else { Self::HARDWARE }
     }
 }
 
@@ -67,6 +65,7 @@ shader_struct! {
 }
 
 /// The block-matching kernel for one view, one window and one interpolation.
+#[derive(Debug)]
 pub struct BlockMatch {
     kernel: Kernel,
     view: View,
@@ -83,7 +82,7 @@ fn margin(radius: u32) -> u32 {
 
 impl BlockMatch {
     /// What the kernel is made of.
-    pub fn stage(config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Stage {
+    pub fn stage(config: &DenseConfig, view: View, wanted: ResultKind, tile: Tile) -> Stage {
         let radius = config.radius();
         let constant = |value: u32| i64::from(value);
         // To the left the words that a step brings come in front, to the right behind.
@@ -119,30 +118,27 @@ impl BlockMatch {
                 ("SCALE_BITS", SCALE.ilog2().into()),
             ]
             .into_iter()
-            .chain(answer_constants(config.interpolation, wanted, config.index_bits()))
+            .chain(selection_constants(config.interpolation, wanted, config.index_bits()))
             .collect(),
         }
     }
 
     /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
-    pub fn new(device: &Context<'_>, config: &DenseConfig, view: View, wanted: Wanted, tile: Tile) -> Self {
-        let kernel = Kernel::new(device, &Self::stage(config, view, wanted, tile));
+    pub fn new(gpu: &Gpu, config: &DenseConfig, view: View, wanted: ResultKind, tile: Tile) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(config, view, wanted, tile));
         let grain = if config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
         Self { kernel, view, uniqueness: config.uniqueness, grain, tile }
     }
 
-    /// Matches the padded `planes` of `layout` at the disparities that `ranges` name, writing a fixed-point disparity for each pixel of
-    /// the band to `matches` and, if wanted, a confidence (0 to 255) for each from word
-    /// `confidence_offset` on, four a word and each row in words of its own. Where there are `others`, a match that they
-    /// contradict is none.
+    /// Matches the padded `planes` of `layout` at the disparities that `ranges` name. The map goes to the beginning of
+    /// `matches`; of winners there are no confidences. Where there are `others`, a match that they contradict is none.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
-        others: Option<OtherMap<'_>>,
-        (matches, confidence_offset): (&wgpu::Buffer, u32),
+        others: Option<ConfirmingMap<'_>>,
+        matches: MapBuffer<'_>,
     ) -> Dispatch {
         let [reference_start, searched_start] = layout.starts(self.view);
         let params = Params {
@@ -156,24 +152,22 @@ impl BlockMatch {
             cell_shift: ranges.shift,
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
-            confidence_offset,
+            confidence_offset: matches.layout.confidence_offset(),
             max_difference: others.map_or(u32::MAX, |others| others.max_difference + self.grain),
             others_first_row: others.map_or(0, |others| others.first_row),
             others_width: others.map_or(1, |others| others.width),
         };
         let Tile { quads, height, across, down } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
-        let params = uniform_buffer(device, "block_match", &params);
         // Where there are none, something has to be bound.
         let others = others.map_or(planes, |others| others.words);
-        let bound: [&dyn Bindable; 5] = [&params, &planes.view, &ranges.buffer, &others.view, matches];
-        self.kernel.dispatch(device, &bound, groups)
+        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &others.view, matches.buffer], groups)
     }
 }
 
 /// The other view's winners, which confirm matches: coarse to fine those of pictures of half the size.
 #[derive(Clone, Copy, Debug)]
-pub struct OtherMap<'a> {
+pub struct ConfirmingMap<'a> {
     /// A fixed-point disparity a pixel, row by row.
     pub words: &'a WordTexture,
     /// Pixels of a row.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::volume_band::VolumeBand;
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -20,6 +20,7 @@ shader_struct! {
 }
 
 /// The kernel of the mean cost, for windows of one size.
+#[derive(Debug)]
 pub struct BoxMean(Kernel);
 
 impl BoxMean {
@@ -38,8 +39,8 @@ impl BoxMean {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, side: u32) -> Self {
-        Self(Kernel::new(device, &Self::stage(side)))
+    pub fn new(gpu: &Gpu, side: u32) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(side)))
     }
 
     /// Averages the costs of the pixels of `band` over their windows, each disparity's by itself: first along the rows, from
@@ -47,7 +48,6 @@ impl BoxMean {
     /// band are left then. Where windows reach beyond the band, it goes on with its last pixels.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         band: &VolumeBand,
         wanted: Range<u32>,
         costs: &wgpu::Buffer,
@@ -74,7 +74,7 @@ impl BoxMean {
         };
         [(along_rows, costs, means), (along_columns, means, costs)].map(|(params, from, to)| {
             let groups = [words.div_ceil(WORKGROUP[0]), params.lines.div_ceil(WORKGROUP[1]), 1];
-            self.0.dispatch(device, &[&uniform_buffer(device, "box_mean", &params), from, to], groups)
+            self.0.dispatch(&params, &[from, to], groups)
         })
     }
 }

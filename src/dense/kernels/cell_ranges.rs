@@ -3,7 +3,7 @@
 use super::cells::{CELL, CellBand, REACH};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 /// Disparities that are searched beyond the rest, at either end: with fewer a winner has no rival two disparities away,
@@ -40,6 +40,7 @@ shader_struct! {
 }
 
 /// The kernel that finds each cell's range.
+#[derive(Debug)]
 pub struct CellRanges(Kernel);
 
 impl CellRanges {
@@ -68,19 +69,13 @@ impl CellRanges {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Writes to `ranges` what is to be searched in each cell of `band`, of whose `map` the rows that it names
     /// are there, a word a pixel.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        band: &CellBand,
-        map: &wgpu::Buffer,
-        ranges: &wgpu::Buffer,
-    ) -> Dispatch {
+    pub fn prepare(&self, band: &CellBand, map: &wgpu::Buffer, ranges: &wgpu::Buffer) -> Dispatch {
         let params = Params {
             width: band.map_width,
             rows: band.map_rows,
@@ -91,6 +86,6 @@ impl CellRanges {
             disparities: band.range.count,
         };
         let groups = [band.columns.div_ceil(CELLS), band.rows.div_ceil(CELLS), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "cell_ranges", &params), map, ranges], groups)
+        self.0.dispatch(&params, &[map, ranges], groups)
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     dense::config::DenseConfig,
     disparity::{DisparityRange, SCALE},
-    gpu::buffer_of,
+    gpu::{Gpu, buffer_of},
 };
 
 /// The side of a cell in pixels.
@@ -24,9 +24,9 @@ pub struct Ranges {
 
 impl Ranges {
     /// One range for all pixels.
-    pub fn whole(device: &wgpu::Device, range: DisparityRange) -> Self {
+    pub fn whole(gpu: &Gpu, range: DisparityRange) -> Self {
         let words = [0, range.count];
-        let buffer = buffer_of(device, "the whole range", bytemuck::bytes_of(&words), wgpu::BufferUsages::STORAGE);
+        let buffer = buffer_of(gpu, "the whole range", bytemuck::bytes_of(&words), wgpu::BufferUsages::STORAGE);
         Self { buffer, shift: 31, columns: 1 }
     }
 

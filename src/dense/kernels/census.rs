@@ -1,7 +1,7 @@
 //! The census transform, with the luma beside it. `shaders/dense/census.wgsl`.
 
-use super::{pad::PadParams, walk::rows_a_thread};
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use super::{pad::PadParams, rows_per_thread::rows_per_thread};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
@@ -14,6 +14,7 @@ shader_struct! {
 }
 
 /// The census kernel.
+#[derive(Debug)]
 pub struct Census {
     kernel: Kernel,
     rows: u32,
@@ -35,9 +36,9 @@ impl Census {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        let rows = rows_a_thread(device);
-        Self { kernel: Kernel::new(device, &Self::stage(rows)), rows }
+    pub fn new(gpu: &Gpu) -> Self {
+        let rows = rows_per_thread(gpu);
+        Self { kernel: Kernel::new(gpu, &Self::stage(rows)), rows }
     }
 
     /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
@@ -60,15 +61,9 @@ impl Census {
 
     /// Transforms the rows that stand in `padded` as [`Self::padding`] says: a word a pixel, the 24 bits of its window above
     /// its luma.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        (width, rows): (u32, u32),
-        padded: &wgpu::Buffer,
-        census: &wgpu::Buffer,
-    ) -> Dispatch {
+    pub fn prepare(&self, (width, rows): (u32, u32), padded: &wgpu::Buffer, census: &wgpu::Buffer) -> Dispatch {
         let params = Params { width, rows, stride: Self::stride(width) };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&uniform_buffer(device, "census", &params), padded, census], groups)
+        self.kernel.dispatch(&params, &[padded, census], groups)
     }
 }

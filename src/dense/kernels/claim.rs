@@ -1,9 +1,9 @@
 //! What the other view sees, told from one view's winners. `shaders/dense/claim.wgsl`.
 
-use super::volume_band::VolumeBand;
+use super::{map_buffer::MapBuffer, volume_band::VolumeBand};
 use crate::{
     dense::config::{SUM_INDEX_BITS, View},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [64, 4];
@@ -19,6 +19,7 @@ shader_struct! {
 }
 
 /// The kernel that lets each pixel claim its partner.
+#[derive(Debug)]
 pub struct Claim(Kernel);
 
 impl Claim {
@@ -37,29 +38,21 @@ impl Claim {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Lets the pixels of a band of `view`, whose keys stand from word `key_offset` of `matches` on, claim
-    /// their partners in `claims`, which are 0 before.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        band: &VolumeBand,
-        view: View,
-        key_offset: u32,
-        matches: &wgpu::Buffer,
-        claims: &wgpu::Buffer,
-    ) -> Dispatch {
+    /// Lets the pixels of a band of `view`, whose keys stand behind `matches`, claim their partners in `claims`, which are 0
+    /// before.
+    pub fn prepare(&self, band: &VolumeBand, view: View, matches: MapBuffer<'_>, claims: &wgpu::Buffer) -> Dispatch {
         let params = Params {
             width: band.width,
             rows: band.rows,
             min_disparity: band.range.min,
             direction: view.direction(),
-            key_offset,
+            key_offset: matches.layout.key_offset(),
         };
         let groups = [band.width.div_ceil(WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "claim", &params), matches, claims], groups)
+        self.0.dispatch(&params, &[matches.buffer, claims], groups)
     }
 }

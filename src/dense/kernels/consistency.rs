@@ -1,9 +1,10 @@
 //! Left-right consistency. `shaders/dense/consistency.wgsl`.
 
+use super::map_buffer::MapBuffer;
 use crate::{
     dense::config::{SUM_INDEX_BITS, View},
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
@@ -21,7 +22,7 @@ shader_struct! {
 
 /// What is known of the other view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Others {
+pub enum CheckedAgainst {
     /// A fixed-point disparity a pixel.
     Disparities,
     /// The claims of [`super::Claim`], where index 0 is this disparity.
@@ -29,14 +30,15 @@ pub enum Others {
 }
 
 /// The left-right consistency kernel.
+#[derive(Debug)]
 pub struct Consistency {
     kernel: Kernel,
-    others: Others,
+    others: CheckedAgainst,
 }
 
 impl Consistency {
     /// What the kernel is made of.
-    pub fn stage(others: Others) -> Stage {
+    pub fn stage(others: CheckedAgainst) -> Stage {
         Stage {
             name: "consistency",
             source: concat!(
@@ -50,39 +52,35 @@ impl Consistency {
                 ("SCALE", SCALE.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
                 ("NONE", NONE.into()),
-                ("CLAIMS", (others != Others::Disparities).into()),
+                ("CLAIMS", (others != CheckedAgainst::Disparities).into()),
                 ("INDEX_BITS", SUM_INDEX_BITS.into()),
             ],
         }
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, others: Others) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(others)), others }
+    pub fn new(gpu: &Gpu, others: CheckedAgainst) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(others)), others }
     }
 
-    /// Takes away from `matches` of `view` (`width` x `rows` disparities, and from word
-    /// `confidence_offset` on as many confidences, four a word and each row in words of its own) what the other view's disparities contradict by
-    /// more than `max_difference` / 256 px.
-    #[expect(clippy::too_many_arguments, reason = "four sizes and two buffers, each of one kind")]
+    /// Takes away from the first `rows` of `matches` of `view` what the other view's disparities contradict by more than
+    /// `max_difference` / 256 px.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
-        (width, rows): (u32, u32),
-        confidence_offset: u32,
+        matches: MapBuffer<'_>,
+        rows: u32,
         view: View,
         max_difference: u32,
         others: &wgpu::Buffer,
-        matches: &wgpu::Buffer,
     ) -> Dispatch {
         let min_disparity = match self.others {
-            Others::Disparities => 0,
-            Others::Claims(min_disparity) => min_disparity,
+            CheckedAgainst::Disparities => 0,
+            CheckedAgainst::Claims(min_disparity) => min_disparity,
         };
+        let (width, confidence_offset) = (matches.layout.width, matches.layout.confidence_offset());
         let direction = view.direction();
         let params = Params { width, rows, direction, max_difference, confidence_offset, min_disparity };
-        let params = uniform_buffer(device, "consistency", &params);
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, others, matches], groups)
+        self.kernel.dispatch(&params, &[others, matches.buffer], groups)
     }
 }

@@ -3,7 +3,7 @@
 use super::volume_band::VolumeBand;
 use crate::{
     dense::config::{Cost, MAX_COST, View, WEIGHT_BITS},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
@@ -19,6 +19,7 @@ shader_struct! {
 }
 
 /// The kernel of the matching cost, for one view as the reference.
+#[derive(Debug)]
 pub struct CostVolume(Kernel);
 
 impl CostVolume {
@@ -52,15 +53,14 @@ impl CostVolume {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, cost: &Cost, view: View) -> Self {
-        Self(Kernel::new(device, &Self::stage(cost, view)))
+    pub fn new(gpu: &Gpu, cost: &Cost, view: View) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(cost, view)))
     }
 
     /// Compares the pixels of a band of `reference` with those of `other`, both as
     /// [`super::Census`] leaves them.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         band: &VolumeBand,
         [reference, other]: [&wgpu::Buffer; 2],
         volume: &wgpu::Buffer,
@@ -73,6 +73,6 @@ impl CostVolume {
             words: band.words(),
         };
         let groups = [band.width.div_ceil(8 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "cost", &params), reference, other, volume], groups)
+        self.0.dispatch(&params, &[reference, other, volume], groups)
     }
 }

@@ -2,10 +2,7 @@
 
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
-    gpu::{
-        Bindable, Binding, Context, Dispatch, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct,
-        uniform_buffer,
-    },
+    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -32,6 +29,7 @@ shader_struct! {
 }
 
 /// The kernel that fills holes.
+#[derive(Debug)]
 pub struct Fill(Kernel);
 
 impl Fill {
@@ -60,14 +58,13 @@ impl Fill {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Copies `disparities` to `filled`, with the holes of each row filled by disparities of `range`.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         range: DisparityRange,
         disparities: &WordTexture,
@@ -75,8 +72,6 @@ impl Fill {
     ) -> Dispatch {
         let params = Params { width, height, least: range.min * SCALE, most: range.last() * SCALE };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        let params = uniform_buffer(device, "fill", &params);
-        let bound: [&dyn Bindable; 3] = [&params, &disparities.view, filled];
-        self.0.dispatch(device, &bound, groups)
+        self.0.dispatch(&params, &[&disparities.view, filled], groups)
     }
 }

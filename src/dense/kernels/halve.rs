@@ -1,6 +1,6 @@
 //! A picture of half the size. `shaders/dense/halve.wgsl`.
 
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -12,6 +12,7 @@ shader_struct! {
 }
 
 /// The halving kernel.
+#[derive(Debug)]
 pub struct Halve(Kernel);
 
 impl Halve {
@@ -26,21 +27,15 @@ impl Halve {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Writes packed `luma` of a picture of this size, at half the size, to `halved`.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        (width, height): (u32, u32),
-        luma: &wgpu::Buffer,
-        halved: &wgpu::Buffer,
-    ) -> Dispatch {
+    pub fn prepare(&self, (width, height): (u32, u32), luma: &wgpu::Buffer, halved: &wgpu::Buffer) -> Dispatch {
         let words = width.div_ceil(2).div_ceil(4);
         let groups = [words.div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
-        let params = uniform_buffer(device, "halve", &Params { width, height });
-        self.0.dispatch(device, &[&params, luma, halved], groups)
+        let params = Params { width, height };
+        self.0.dispatch(&params, &[luma, halved], groups)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     disparity::SCALE,
-    gpu::{Bindable, Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 8];
@@ -57,7 +57,7 @@ pub struct MapRows {
 }
 
 /// The kernel for one of the formats.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct MapTexture(Kernel);
 
 impl MapTexture {
@@ -89,21 +89,15 @@ impl MapTexture {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, texel: MapTexel) -> Self {
-        Self(Kernel::new(device, &Self::stage(texel)))
+    pub fn new(gpu: &Gpu, texel: MapTexel) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(texel)))
     }
 
     /// Copies rows of `disparities` to `map`.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        rows: MapRows,
-        disparities: &wgpu::Buffer,
-        map: &wgpu::TextureView,
-    ) -> Dispatch {
+    pub fn prepare(&self, rows: MapRows, disparities: &wgpu::Buffer, map: &wgpu::TextureView) -> Dispatch {
         let MapRows { width, rows, first_word, first_row } = rows;
-        let params = uniform_buffer(device, "map", &Params { width, rows, first_word, first_row });
-        let bound: [&dyn Bindable; 3] = [&params, disparities, map];
-        self.0.dispatch(device, &bound, [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1])
+        let params = Params { width, rows, first_word, first_row };
+        let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(&params, &[disparities, map], groups)
     }
 }

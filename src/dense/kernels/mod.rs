@@ -1,6 +1,5 @@
 //! The kernels of dense matching, one per stage, and the layouts of the memory that they share.
 
-mod answer;
 mod block_match;
 mod box_mean;
 mod cell_ranges;
@@ -11,36 +10,41 @@ mod consistency;
 mod cost;
 mod fill;
 mod halve;
+mod line_buffers;
+mod map_buffer;
 mod map_texture;
 mod pad;
 mod path;
 mod residual;
+mod rows_per_thread;
 mod select;
+mod selection;
 mod support;
 mod volume_band;
-mod walk;
 mod weighted_median;
 
-pub use answer::Wanted;
-pub use block_match::{BlockMatch, Layout, OtherMap, Tile};
+pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
 pub use cell_ranges::{BLOCK, CellRanges, LEAST, MARGIN};
 pub use cells::{CELL, CellBand, Ranges};
 pub(crate) use cells::{HALF_GRAIN, REACH, halved_config};
 pub use census::Census;
 pub use claim::Claim;
-pub use consistency::{Consistency, Others};
+pub use consistency::{CheckedAgainst, Consistency};
 pub use cost::CostVolume;
 pub use fill::{Fill, surface};
 pub use halve::Halve;
+pub use line_buffers::{LineBuffers, PathVolumes};
+pub use map_buffer::{MapBuffer, MapLayout};
 pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
 pub use path::Path;
 pub use residual::{MAX_RESIDUAL, Residual, Views};
-pub use select::{Places, Select, Selection};
+pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
+pub use select::{Select, Selection};
+pub use selection::ResultKind;
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use volume_band::VolumeBand;
-pub use walk::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use weighted_median::WeightedMedian;
 
 use super::config::{Aggregation, Cost, DenseConfig, Difference, Interpolation, Penalties, Refinement, Search, View};
@@ -52,23 +56,23 @@ use crate::{disparity::DisparityRange, gpu::Stage};
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
-    stages.extend([Others::Disparities, Others::Claims(0)].map(Consistency::stage));
+    stages.extend([CheckedAgainst::Disparities, CheckedAgainst::Claims(0)].map(Consistency::stage));
     let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
     for window in (3..=31).step_by(2) {
         for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
             for view in [View::Left, View::Right] {
-                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Matches, tile));
-                stages.push(BlockMatch::stage(&blocks(window), view, Wanted::Winners, tile));
+                stages.push(BlockMatch::stage(&blocks(window), view, ResultKind::Matches, tile));
+                stages.push(BlockMatch::stage(&blocks(window), view, ResultKind::Winners, tile));
             }
         }
     }
     let coarse_to_fine = Aggregation::Window { side: 7, search: Search::CoarseToFine };
     let coarse_to_fine = DenseConfig { aggregation: coarse_to_fine, ..blocks(7) };
-    stages.extend(View::BOTH.map(|view| BlockMatch::stage(&coarse_to_fine, view, Wanted::Matches, Tile::HARDWARE)));
+    stages.extend(View::BOTH.map(|view| BlockMatch::stage(&coarse_to_fine, view, ResultKind::Matches, Tile::HARDWARE)));
     let interpolations = [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular];
     stages.extend(interpolations.map(|interpolation| {
         let config = DenseConfig { interpolation, ..blocks(3) };
-        BlockMatch::stage(&config, View::Left, Wanted::Matches, Tile::HARDWARE)
+        BlockMatch::stage(&config, View::Left, ResultKind::Matches, Tile::HARDWARE)
     }));
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part };
@@ -79,12 +83,14 @@ pub fn stages() -> Vec<Stage> {
     // Where there are no paths, no penalties are left in the code, and nothing is summed up.
     for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
         for interpolation in interpolations {
-            stages.extend([(Wanted::Matches, true), (Wanted::Matches, false), (Wanted::Winners, false)].map(
-                |(wanted, keys)| {
-                    let selection = Selection { stored, interpolation, wanted, keys, uniqueness: 0 };
-                    Select::stage(&penalties, 2, selection)
-                },
-            ));
+            stages.extend(
+                [(ResultKind::Matches, true), (ResultKind::Matches, false), (ResultKind::Winners, false)].map(
+                    |(wanted, keys)| {
+                        let selection = Selection { stored, interpolation, wanted, keys, uniqueness: 0 };
+                        Select::stage(&penalties, 2, selection)
+                    },
+                ),
+            );
         }
     }
     stages.extend([Residual::stage(), Fill::stage()]);

@@ -2,7 +2,7 @@
 
 use crate::{
     dense::config::Brightness,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [64, 4];
@@ -41,6 +41,7 @@ shader_struct! {
 }
 
 /// The padding kernel.
+#[derive(Debug)]
 pub struct Pad(Kernel);
 
 impl Pad {
@@ -63,15 +64,14 @@ impl Pad {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Pads packed `luma` into `padded`, as `params` say, with the change of `brightness` that a uniform buffer holds
     /// when it runs.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         params: PadParams,
         brightness: &wgpu::Buffer,
         luma: &wgpu::Buffer,
@@ -80,6 +80,6 @@ impl Pad {
         let PadParams { width, height, first_word, first_row, rows, stride, offset } = params;
         let params = Params { width, height, first_word, first_row, rows, stride, offset };
         let groups = [stride.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "pad", &params), brightness, luma, padded], groups)
+        self.0.dispatch(&params, &[brightness, luma, padded], groups)
     }
 }

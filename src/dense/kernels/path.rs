@@ -1,9 +1,9 @@
 //! A path of semi-global matching. `shaders/dense/path.wgsl`.
 
-use super::volume_band::VolumeBand;
+use super::{line_buffers::LineBuffers, volume_band::VolumeBand};
 use crate::{
     dense::config::{Direction, Penalties},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: u32 = 16;
@@ -66,6 +66,7 @@ pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static
 }
 
 /// The kernel of a path, for one number of disparities.
+#[derive(Debug)]
 pub struct Path(Kernel);
 
 impl Path {
@@ -84,26 +85,21 @@ impl Path {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, penalties: &Penalties, words: u32) -> Self {
-        Self(Kernel::new(device, &Self::stage(penalties, words)))
+    pub fn new(gpu: &Gpu, penalties: &Penalties, words: u32) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(penalties, words)))
     }
 
-    /// Follows all lines of a direction through a band of `costs`. The path's costs stand from word `start` of `paths` on;
-    /// with `goes_on` the row before it in the path's direction holds where lines come from.
-    #[expect(clippy::too_many_arguments, reason = "three buffers, each of one kind, and places in them")]
+    /// Follows all lines of a direction through a band. The path's costs stand from word `start` of the paths on; with
+    /// `goes_on` the row before it in the path's direction holds where lines come from.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         band: &VolumeBand,
         direction: Direction,
-        reference: &wgpu::Buffer,
-        costs: &wgpu::Buffer,
-        paths: &wgpu::Buffer,
+        LineBuffers { reference, costs, paths }: LineBuffers<'_>,
         start: u32,
         goes_on: bool,
     ) -> Dispatch {
         let params = Params::new(band, direction, start, goes_on);
-        let uniforms = uniform_buffer(device, "path", &params);
-        self.0.dispatch(device, &[&uniforms, reference, costs, paths], params.groups())
+        self.0.dispatch(&params, &[reference, costs, paths], params.groups())
     }
 }

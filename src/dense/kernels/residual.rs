@@ -3,7 +3,7 @@
 use crate::{
     dense::config::{Brightness, View},
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
@@ -32,6 +32,7 @@ pub struct Views<'b> {
 }
 
 /// The kernel of the photometric residuals.
+#[derive(Debug)]
 pub struct Residual(Kernel);
 
 impl Residual {
@@ -64,15 +65,14 @@ impl Residual {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Compares the `views` at the disparities of `width` x `rows` pixels, which are those of the pictures from `first_row`
     /// on. The residuals are packed as luma is.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, rows): (u32, u32),
         first_row: u32,
         views: Views<'_>,
@@ -81,8 +81,7 @@ impl Residual {
     ) -> Dispatch {
         let Views { luma: [left, right], brightness, reference } = views;
         let params = Params { width, rows, first_row, direction: reference.direction() };
-        let params = uniform_buffer(device, "residual", &params);
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, brightness, left, right, disparities, residuals], groups)
+        self.0.dispatch(&params, &[brightness, left, right, disparities, residuals], groups)
     }
 }

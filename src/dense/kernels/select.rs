@@ -1,13 +1,15 @@
 //! The last path, and from the costs of all paths to disparities. `shaders/dense/select.wgsl`.
 
 use super::{
-    answer::{Wanted, answer_constants},
+    line_buffers::{LineBuffers, PathVolumes},
+    map_buffer::MapBuffer,
     path::{Params, line_constants},
+    selection::{ResultKind, selection_constants},
     volume_band::VolumeBand,
 };
 use crate::{
     dense::config::{Direction, Interpolation, Penalties, SUM_INDEX_BITS},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage},
 };
 
 /// What is selected, and from what.
@@ -18,27 +20,15 @@ pub struct Selection {
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
     /// Matches or winners.
-    pub wanted: Wanted,
+    pub wanted: ResultKind,
     /// Whether the winners' keys are wanted as well.
     pub keys: bool,
     /// Per cent by which the rival's cost must exceed the winner's.
     pub uniqueness: u32,
 }
 
-/// Where in their buffers things stand, in words.
-#[derive(Clone, Copy, Debug)]
-pub struct Places {
-    /// The band's first row in the first path's volume.
-    pub start: u32,
-    /// From one path's volume to the next.
-    pub volume_words: u32,
-    /// The confidences.
-    pub confidence_offset: u32,
-    /// The winners' keys.
-    pub key_offset: u32,
-}
-
 /// The kernel that follows the last path, sums the costs of all of them up, and decides.
+#[derive(Debug)]
 pub struct Select {
     kernel: Kernel,
     selection: Selection,
@@ -49,7 +39,7 @@ impl Select {
     pub fn stage(penalties: &Penalties, words: u32, selection: Selection) -> Stage {
         let mut constants = line_constants(penalties, words);
         constants.extend([("STORED", selection.stored.into()), ("KEYS", selection.keys.into())]);
-        constants.extend(answer_constants(selection.interpolation, selection.wanted, SUM_INDEX_BITS));
+        constants.extend(selection_constants(selection.interpolation, selection.wanted, SUM_INDEX_BITS));
         Stage {
             name: "select",
             source: concat!(
@@ -64,35 +54,29 @@ impl Select {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, penalties: &Penalties, words: u32, selection: Selection) -> Self {
-        Self { kernel: Kernel::new(device, &Self::stage(penalties, words, selection)), selection }
+    pub fn new(gpu: &Gpu, penalties: &Penalties, words: u32, selection: Selection) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(penalties, words, selection)), selection }
     }
 
-    /// Follows the last path, in `direction`, through a band of `costs`, as [`super::Path::prepare`] does, and decides. Its
-    /// own costs are not stored. `matches` must be 0 before; the results stand there
-    /// as [`super::BlockMatch::prepare`] leaves them, then the winners' keys.
-    #[expect(clippy::too_many_arguments, reason = "four buffers, each of one kind")]
+    /// Follows the last path, in `direction`, through a band, as [`super::Path::prepare`] does, and decides. The path's own
+    /// costs are not stored. The `matches` must be 0 before; the results stand there as their layout says, the winners' keys
+    /// behind them.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         band: &VolumeBand,
         direction: Direction,
-        places: Places,
-        reference: &wgpu::Buffer,
-        costs: &wgpu::Buffer,
-        paths: &wgpu::Buffer,
-        matches: &wgpu::Buffer,
+        LineBuffers { reference, costs, paths }: LineBuffers<'_>,
+        volumes: PathVolumes,
+        matches: MapBuffer<'_>,
     ) -> Dispatch {
-        let Places { start, volume_words, confidence_offset, key_offset } = places;
         let params = Params {
-            volumes_start: start,
-            volume_words,
+            volumes_start: volumes.start,
+            volume_words: volumes.volume_words,
             uniqueness: self.selection.uniqueness,
-            confidence_offset,
-            key_offset,
+            confidence_offset: matches.layout.confidence_offset(),
+            key_offset: matches.layout.key_offset(),
             ..Params::new(band, direction, 0, false)
         };
-        let uniforms = uniform_buffer(device, "select", &params);
-        self.kernel.dispatch(device, &[&uniforms, reference, costs, paths, matches], params.groups())
+        self.kernel.dispatch(&params, &[reference, costs, paths, matches.buffer], params.groups())
     }
 }

@@ -1,9 +1,12 @@
 //! Disparities that their neighbours share. `shaders/dense/support.wgsl`.
 
-use super::walk::rows_a_thread;
+use super::{
+    map_buffer::{MapBuffer, MapLayout},
+    rows_per_thread::rows_per_thread,
+};
 use crate::{
     disparity::{NONE, SCALE},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -26,6 +29,7 @@ shader_struct! {
 }
 
 /// The kernel that takes speckles away.
+#[derive(Debug)]
 pub struct Support {
     kernel: Kernel,
     rows: u32,
@@ -56,24 +60,17 @@ impl Support {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, least: u32) -> Self {
-        let rows = rows_a_thread(device);
-        Self { kernel: Kernel::new(device, &Self::stage(least, rows)), rows }
+    pub fn new(gpu: &Gpu, least: u32) -> Self {
+        let rows = rows_per_thread(gpu);
+        Self { kernel: Kernel::new(gpu, &Self::stage(least, rows)), rows }
     }
 
-    /// Copies `matches` (disparities, then confidences from word `confidence_offset` on, four a word and
-    /// each row in words of its own) to `supported` without what too few neighbours share. The `residuals` are those of
-    /// [`super::Residual`].
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        (width, height): (u32, u32),
-        confidence_offset: u32,
-        [matches, residuals]: [&wgpu::Buffer; 2],
-        supported: &wgpu::Buffer,
-    ) -> Dispatch {
-        let params = uniform_buffer(device, "support", &Params { width, height, confidence_offset });
+    /// Copies `matches` to `supported`, a map of the same layout, without the disparities that too few neighbours share. The
+    /// `residuals` are those of [`super::Residual`].
+    pub fn prepare(&self, matches: MapBuffer<'_>, residuals: &wgpu::Buffer, supported: &wgpu::Buffer) -> Dispatch {
+        let MapLayout { width, rows: height } = matches.layout;
+        let params = Params { width, height, confidence_offset: matches.layout.confidence_offset() };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, matches, residuals, supported], groups)
+        self.kernel.dispatch(&params, &[matches.buffer, residuals, supported], groups)
     }
 }

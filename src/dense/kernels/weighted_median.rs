@@ -1,10 +1,10 @@
 //! The weighted median of a map. `shaders/dense/weighted_median.wgsl`.
 
-use super::walk::rows_a_thread;
+use super::rows_per_thread::rows_per_thread;
 use crate::{
     dense::config::Median,
     disparity::NONE,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -21,6 +21,7 @@ shader_struct! {
 }
 
 /// The kernel of a weighted median.
+#[derive(Debug)]
 pub struct WeightedMedian {
     kernel: Kernel,
     rows: u32,
@@ -51,27 +52,22 @@ impl WeightedMedian {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, median: Median) -> Self {
-        let rows = rows_a_thread(device);
-        Self { kernel: Kernel::new(device, &Self::stage(median, rows)), rows }
+    pub fn new(gpu: &Gpu, median: Median) -> Self {
+        let rows = rows_per_thread(gpu);
+        Self { kernel: Kernel::new(gpu, &Self::stage(median, rows)), rows }
     }
 
     /// Filters `disparities` into `filtered`, by the packed `luma` of their view, in which their first row is row
     /// `first_row`; `before` is the map before its holes were filled.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         (luma, first_row): (&wgpu::Buffer, u32),
         [disparities, before]: [&wgpu::Buffer; 2],
         filtered: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = uniform_buffer(
-            device,
-            "weighted median",
-            &Params { width, height, luma_start: first_row * width.div_ceil(4) },
-        );
+        let params = Params { width, height, luma_start: first_row * width.div_ceil(4) };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(device, &[&params, luma, disparities, before, filtered], groups)
+        self.kernel.dispatch(&params, &[luma, disparities, before, filtered], groups)
     }
 }

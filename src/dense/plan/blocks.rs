@@ -4,14 +4,19 @@
 //! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band
 //! finds the ranges of its cells and the other view's winners first, at half the size: see [`super::coarse`].
 
-use super::{Plan, coarse_to_fine::Coarse, match_words, other_view::OtherView, refine::plan_refinement};
+use super::{
+    BandLimits, Plan,
+    coarse_to_fine::Coarse,
+    other_winners::OtherWinners,
+    refine::{Unrefined, plan_refinement},
+};
 use crate::{
     dense::{
         config::{DenseConfig, Search, View},
-        kernels::{BlockMatch, CELL, Layout, Pad, Ranges, Tile, Views, Wanted},
+        kernels::{BlockMatch, CELL, Layout, MapBuffer, MapLayout, Pad, Ranges, ResultKind, Tile, Views},
     },
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Context, in_rows, most_words},
+    gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -21,34 +26,33 @@ const MAX_BAND_ROWS: u32 = 8192;
 /// that takes seconds, and slow ones do 10^9 of them in about one.
 const MAX_BAND_WORK: u64 = 1 << 30;
 
-/// The plan for packed `left` and `right` of `size`, in bands for which no buffer needs more than `limit` bytes, nor more
-/// than `band_rows` rows.
+/// The plan for packed `left` and `right` of `size`, in bands within `limits`.
 pub(in crate::dense) fn plan(
-    device: &Context<'_>,
+    gpu: &Gpu,
     size: (u32, u32),
     config: &DenseConfig,
     search: Search,
     [left, right]: [&wgpu::Buffer; 2],
-    (limit, band_rows): (u64, u32),
+    limits: BandLimits,
 ) -> Result<Plan> {
     let (width, height) = size;
-    let tile = Tile::of(device);
-    let most_rows = band_rows;
+    let tile = Tile::of(gpu);
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
-    let band_rows = band_rows_within((limit, 4 * most_words(device)), size, config, tile, (unit, band_rows))?;
+    let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
     let view = config.reference;
-    let pad = Pad::new(device);
-    let block_match = BlockMatch::new(device, config, view, Wanted::Matches, tile);
+    let pad = Pad::new(gpu);
+    let block_match = BlockMatch::new(gpu, config, view, ResultKind::Matches, tile);
 
-    let mut plan = Plan::new(device, config, height.div_ceil(band_rows) as usize);
-    let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
-    let (match_words, confidence_offset) = match_words(width, band_rows);
-    let planes = plan.words(device, "padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
-    let matches = plan.buffer(device, "matches", match_words)?;
-    let whole_range = Ranges::whole(device, config.searched(width)?);
-    let (coarse, other_view) = match search {
-        Search::Whole => (None, OtherView::new(device, &mut plan, config, confidence_offset.into())?),
-        Search::CoarseToFine => (Some(Coarse::new(device, &mut plan, size, config, [left, right], band_rows)?), None),
+    let mut plan = Plan::new(gpu, config, height.div_ceil(band_rows) as usize);
+    let whole = config.refinement.map(|_| plan.collect(size)).transpose()?;
+    let map = MapLayout { width, rows: band_rows };
+    let planes = plan.words("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
+    let matches = plan.buffer("matches", map.words())?;
+    let matches = MapBuffer { buffer: &matches, layout: map };
+    let whole_range = Ranges::whole(gpu, config.searched(width)?);
+    let (coarse, other_winners) = match search {
+        Search::Whole => (None, OtherWinners::new(gpu, &mut plan, config, map)?),
+        Search::CoarseToFine => (Some(Coarse::new(gpu, &mut plan, size, config, [left, right], band_rows)?), None),
     };
 
     for first_row in (0..height).step_by(band_rows as usize) {
@@ -56,23 +60,23 @@ pub(in crate::dense) fn plan(
         let layout = Layout::new(size, first_row, rows, config, tile)?;
         let (ranges, others) = match &coarse {
             None => (&whole_range, None),
-            Some(coarse) => coarse.plan(device, &mut plan, &pad, &block_match, (first_row, rows))?,
+            Some(coarse) => coarse.plan(&mut plan, &pad, &block_match, (first_row, rows))?,
         };
         for ((params, view), picture) in layout.padding().into_iter().zip(View::BOTH).zip([left, right]) {
-            plan.run(pad.prepare(device, params, &plan.brightness(view), picture, &planes.0));
+            plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
-        let others = match &other_view {
+        let others = match &other_winners {
             None => others,
-            Some(view) => Some(view.plan(device, &mut plan, (&layout, &planes.1), ranges, 0)),
+            Some(view) => Some(view.plan(&mut plan, (&layout, &planes.1), ranges, 0)),
         };
-        plan.run(block_match.prepare(device, &layout, &planes.1, ranges, others, (&matches, confidence_offset)));
-        plan.hand_out(&matches, confidence_offset, width, (first_row, rows));
+        plan.run(block_match.prepare(&layout, &planes.1, ranges, others, matches));
+        plan.hand_out(matches, first_row, rows);
     }
-    if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
+    if let (Some(map), Some(refinement)) = (&whole, &config.refinement) {
         let views = Views { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
-        plan_refinement(device, &mut plan, size, refinement, range, views, &whole, (limit, most_rows))?;
+        plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }
@@ -80,11 +84,12 @@ pub(in crate::dense) fn plan(
 /// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes, every
 /// texture within `texture_limit`, and its work within a second or so.
 fn band_rows_within(
-    (limit, texture_limit): (u64, u64),
+    BandLimits { bytes: limit, rows: wanted }: BandLimits,
+    texture_limit: u64,
     size: (u32, u32),
     config: &DenseConfig,
     tile: Tile,
-    (unit, wanted): (u32, u32),
+    unit: u32,
 ) -> Result<u32> {
     let (width, height) = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
@@ -93,9 +98,10 @@ fn band_rows_within(
     let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
         let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tile)?.words());
-        let matches = 4 * match_words(width, rows).0;
+        let map = MapLayout { width, rows };
+        let matches = 4 * map.words();
         // Those of the other view, which stand in a texture.
-        let winners = if config.consistency.is_some() { 4 * in_rows(match_words(width, rows).1.into()) } else { 0 };
+        let winners = if config.consistency.is_some() { 4 * in_rows(map.pixels().into()) } else { 0 };
         let over = [(planes, limit.min(texture_limit)), (matches, limit), (winners, limit.min(texture_limit))]
             .into_iter()
             .find(|(needed, limit)| needed > limit);

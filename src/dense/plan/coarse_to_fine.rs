@@ -3,23 +3,25 @@
 //! halving, once -> and in each band of rows: padding -> the other view's winners -> block matching of the reference view
 //! -> the ranges of its cells.
 
-use super::{Plan, match_words, other_view::OtherView};
+use super::{Plan, other_winners::OtherWinners};
 use crate::{
     dense::{
         config::{DenseConfig, View},
         kernels::{
-            BlockMatch, CELL, CellBand, CellRanges, Halve, Layout, OtherMap, Pad, REACH, Ranges, Tile, halved_config,
+            BlockMatch, CELL, CellBand, CellRanges, ConfirmingMap, Halve, Layout, MapBuffer, MapLayout, Pad, REACH,
+            Ranges, Tile, halved_config,
         },
     },
     disparity::DisparityRange,
     error::Result,
-    gpu::{Context, WordTexture},
+    gpu::{Gpu, WordTexture},
     luma::packed_bytes,
 };
 
 /// The kernels and the memory of the search at half the size.
 pub(super) struct Coarse {
     size: (u32, u32),
+    tile: Tile,
     range: DisparityRange,
     half: DenseConfig,
     cell_ranges: CellRanges,
@@ -27,7 +29,7 @@ pub(super) struct Coarse {
     halves: [wgpu::Buffer; 2],
     planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
-    other_view: Option<OtherView>,
+    other_winners: Option<OtherWinners>,
     /// What is searched at half the size, and in the cells.
     whole: Ranges,
     ranges: Ranges,
@@ -36,7 +38,7 @@ pub(super) struct Coarse {
 impl Coarse {
     /// Allocates memory for bands of `band_rows` rows, and plans the halving of `pictures`.
     pub(super) fn new(
-        device: &Context<'_>,
+        gpu: &Gpu,
         plan: &mut Plan,
         size: (u32, u32),
         config: &DenseConfig,
@@ -48,30 +50,31 @@ impl Coarse {
         let half_size = (width.div_ceil(2), height.div_ceil(2));
         let half = halved_config(config, range);
         let half = DenseConfig { range: half.searched(half_size.0)?, ..half };
-        let halve = Halve::new(device);
+        let halve = Halve::new(gpu);
         let [left, right] = pictures.map(|picture| -> Result<wgpu::Buffer> {
-            let halved = plan.buffer(device, "half the picture", packed_bytes(half_size.0, half_size.1) / 4)?;
-            plan.run(halve.prepare(device, size, picture, &halved));
+            let halved = plan.buffer("half the picture", packed_bytes(half_size.0, half_size.1) / 4)?;
+            plan.run(halve.prepare(size, picture, &halved));
             Ok(halved)
         });
         // No band looks at more rows than one in the midst of the picture.
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.1);
-        let tile = Tile::of(device);
-        let planes = plan.words(device, "padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
-        let map = plan.buffer(device, "map of half the size", match_words(half_size.0, most_rows).0)?;
+        let tile = Tile::of(gpu);
+        let planes = plan.words("padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
+        let map_layout = MapLayout { width: half_size.0, rows: most_rows };
+        let map = plan.buffer("map of half the size", map_layout.words())?;
         let words = CellBand::new(size, (0, band_rows), range).words();
-        let ranges = Ranges::of_cells(plan.buffer(device, "ranges of cells", words)?, width);
-        let most_pixels = u64::from(half_size.0) * u64::from(most_rows);
+        let ranges = Ranges::of_cells(plan.buffer("ranges of cells", words)?, width);
         Ok(Self {
             size,
+            tile,
             range,
-            whole: Ranges::whole(device, half.range),
+            whole: Ranges::whole(gpu, half.range),
             half,
-            cell_ranges: CellRanges::new(device),
+            cell_ranges: CellRanges::new(gpu),
             halves: [left?, right?],
             planes,
             map,
-            other_view: OtherView::new(device, plan, config, most_pixels)?,
+            other_winners: OtherWinners::new(gpu, plan, config, map_layout)?,
             ranges,
         })
     }
@@ -80,34 +83,25 @@ impl Coarse {
     /// are asked for.
     pub(super) fn plan(
         &self,
-        device: &wgpu::Device,
         plan: &mut Plan,
         pad: &Pad,
         block_match: &BlockMatch,
         rows: (u32, u32),
-    ) -> Result<(&Ranges, Option<OtherMap<'_>>)> {
+    ) -> Result<(&Ranges, Option<ConfirmingMap<'_>>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
-        let tile = Tile::of(device);
-        let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, tile)?;
+        let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, self.tile)?;
         for ((params, view), half) in layout.padding().into_iter().zip(View::BOTH).zip(&self.halves) {
-            plan.run(pad.prepare(device, params, &plan.brightness(view), half, &self.planes.0));
+            plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
         let others = self
-            .other_view
+            .other_winners
             .as_ref()
-            .map(|other_view| other_view.plan(device, plan, (&layout, &self.planes.1), &self.whole, band.map_start));
-        let confidence_offset = match_words(band.map_width, band.map_rows).1;
-        plan.run(block_match.prepare(
-            device,
-            &layout,
-            &self.planes.1,
-            &self.whole,
-            None,
-            (&self.map, confidence_offset),
-        ));
-        plan.run(self.cell_ranges.prepare(device, &band, &self.map, &self.ranges.buffer));
+            .map(|other| other.plan(plan, (&layout, &self.planes.1), &self.whole, band.map_start));
+        let map = MapBuffer { buffer: &self.map, layout: MapLayout { width: band.map_width, rows: band.map_rows } };
+        plan.run(block_match.prepare(&layout, &self.planes.1, &self.whole, None, map));
+        plan.run(self.cell_ranges.prepare(&band, &self.map, &self.ranges.buffer));
         Ok((&self.ranges, others))
     }
 }

@@ -2,70 +2,61 @@
 
 pub(super) mod blocks;
 mod coarse_to_fine;
-mod other_view;
+mod other_winners;
 mod refine;
 pub(super) mod semi_global;
+mod word_copy;
 
 use super::{
     config::{Brightness, DenseConfig, View},
+    kernels::MapBuffer,
     outputs::Outputs,
 };
 use crate::{
     error::Result,
-    gpu::{Dispatch, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
+    gpu::{Dispatch, Gpu, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
 };
 
+use word_copy::CopyTarget;
+pub(super) use word_copy::WordCopy;
+
+/// How large a band may be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BandLimits {
+    /// Bytes of a buffer at most.
+    pub(super) bytes: u64,
+    /// Rows at most.
+    pub(super) rows: u32,
+}
+
 /// One thing to do.
+#[derive(Debug)]
 pub(super) enum Step {
     /// Runs a kernel.
     Run(Dispatch),
     /// Copies words.
-    Copy(Copy),
+    Copy(WordCopy),
     /// Copies a buffer's first words to a texture.
     ToTexture(wgpu::Buffer, WordTexture),
     /// Sets a whole buffer to 0.
     Clear(wgpu::Buffer),
 }
 
-/// Words of a buffer that go elsewhere.
-pub(super) struct Copy {
-    pub(super) from: wgpu::Buffer,
-    pub(super) from_word: u64,
-    pub(super) to: Target,
-    pub(super) to_word: u64,
-    pub(super) words: u64,
-}
-
-impl Copy {
-    /// Records it, into `to`.
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
-        encoder.copy_buffer_to_buffer(&self.from, 4 * self.from_word, to, 4 * self.to_word, Some(4 * self.words));
-    }
-}
-
-/// Where words go.
-pub(super) enum Target {
-    /// To a buffer of the plan.
-    Buffer(wgpu::Buffer),
-    /// To the caller's disparities, a word a pixel.
-    Disparities,
-    /// To the caller's confidences, four a word.
-    Confidences,
-}
-
 /// The disparities and the confidences of a whole view, as the caller gets them. Only copied, since they may be
 /// more than a kernel can bind.
-#[derive(Clone)]
-pub(super) struct Whole {
+#[derive(Clone, Debug)]
+pub(super) struct WholeMap {
     pub(super) disparities: wgpu::Buffer,
     pub(super) confidences: wgpu::Buffer,
 }
 
 /// The steps, and how much memory they share.
+#[derive(Debug)]
 pub(super) struct Plan {
+    gpu: Gpu,
     steps: Vec<Step>,
     /// Where the answers of all bands come together, if something is done with them then.
-    whole: Option<Whole>,
+    whole: Option<WholeMap>,
     /// How the brightness of the left and of the right view is changed.
     brightness: [wgpu::Buffer; 2],
     pub(super) bytes: u64,
@@ -75,10 +66,9 @@ pub(super) struct Plan {
 
 impl Plan {
     /// No steps yet, for so many bands.
-    pub(super) fn new(device: &wgpu::Device, config: &DenseConfig, bands: usize) -> Self {
-        let brightness =
-            [Brightness::SAME, config.brightness].map(|change| uniform_buffer(device, "brightness", &change));
-        Self { steps: Vec::new(), whole: None, brightness, bytes: 0, bands }
+    pub(super) fn new(gpu: &Gpu, config: &DenseConfig, bands: usize) -> Self {
+        let brightness = [Brightness::SAME, config.brightness].map(|change| uniform_buffer(gpu, "brightness", &change));
+        Self { gpu: gpu.clone(), steps: Vec::new(), whole: None, brightness, bytes: 0, bands }
     }
 
     /// How the brightness of a view is changed: a [`Brightness`] in a uniform buffer, one for all bands.
@@ -88,9 +78,9 @@ impl Plan {
     }
 
     /// Memory for so many words, for the plan's lifetime.
-    pub(super) fn buffer(&mut self, device: &wgpu::Device, label: &'static str, words: u64) -> Result<wgpu::Buffer> {
+    pub(super) fn buffer(&mut self, label: &'static str, words: u64) -> Result<wgpu::Buffer> {
         self.bytes += 4 * words;
-        storage_buffer(device, label, 4 * words)
+        storage_buffer(&self.gpu, label, 4 * words)
     }
 
     pub(super) fn run(&mut self, dispatch: Dispatch) {
@@ -98,24 +88,14 @@ impl Plan {
     }
 
     /// The same in a texture.
-    pub(super) fn word_texture(
-        &mut self,
-        device: &wgpu::Device,
-        label: &'static str,
-        words: u64,
-    ) -> Result<WordTexture> {
+    pub(super) fn word_texture(&mut self, label: &'static str, words: u64) -> Result<WordTexture> {
         self.bytes += 4 * in_rows(words);
-        WordTexture::new(device, label, words)
+        WordTexture::new(&self.gpu, label, words)
     }
 
     /// Memory for so many words in a buffer that has whole rows of a texture, and in a texture.
-    pub(super) fn words(
-        &mut self,
-        device: &wgpu::Device,
-        label: &'static str,
-        words: u64,
-    ) -> Result<(wgpu::Buffer, WordTexture)> {
-        Ok((self.buffer(device, label, in_rows(words))?, self.word_texture(device, label, words)?))
+    pub(super) fn words(&mut self, label: &'static str, words: u64) -> Result<(wgpu::Buffer, WordTexture)> {
+        Ok((self.buffer(label, in_rows(words))?, self.word_texture(label, words)?))
     }
 
     /// The first words of a buffer, which has whole rows of the texture, on their way there.
@@ -127,42 +107,46 @@ impl Plan {
         self.steps.push(Step::Clear(buffer.clone()));
     }
 
-    pub(super) fn copy(&mut self, copy: Copy) {
+    pub(super) fn copy(&mut self, copy: WordCopy) {
         self.steps.push(Step::Copy(copy));
     }
 
     /// Brings the answers of all bands together in one map of `size` before anyone gets them.
-    pub(super) fn collect(&mut self, device: &wgpu::Device, (width, height): (u32, u32)) -> Result<Whole> {
+    pub(super) fn collect(&mut self, (width, height): (u32, u32)) -> Result<WholeMap> {
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
             self.bytes += bytes;
-            store(device, label, bytes)
+            store(&self.gpu, label, bytes)
         };
         let disparities = whole("all disparities", width)?;
         let confidences = whole("all confidences", width.div_ceil(4))?;
-        let whole = Whole { disparities, confidences };
+        let whole = WholeMap { disparities, confidences };
         self.whole = Some(whole.clone());
         Ok(whole)
     }
 
-    /// The answers for a band of rows that stand in `matches`, on their way to the caller or to the whole map.
-    pub(super) fn hand_out(&mut self, matches: &wgpu::Buffer, confidence_offset: u32, width: u32, rows: (u32, u32)) {
-        let (first_row, count) = (u64::from(rows.0), u64::from(rows.1));
+    /// Copies the map of `rows` rows of a band, which begins in `first_row`, to the caller or to the whole map.
+    pub(super) fn hand_out(&mut self, matches: MapBuffer<'_>, first_row: u32, rows: u32) {
+        let (width, buffer) = (matches.layout.width, matches.buffer);
         let [disparities, confidences] = match &self.whole {
-            None => [Target::Disparities, Target::Confidences],
-            Some(Whole { disparities, confidences }) => [disparities, confidences].map(|b| Target::Buffer(b.clone())),
+            None => [CopyTarget::Disparities, CopyTarget::Confidences],
+            Some(WholeMap { disparities, confidences }) => {
+                [disparities, confidences].map(|b| CopyTarget::Buffer(b.clone()))
+            }
         };
-        let parts = [(disparities, 0, width), (confidences, confidence_offset, width.div_ceil(4))];
-        for (to, from_word, row) in parts {
-            let (from, from_word, row) = (matches.clone(), from_word.into(), u64::from(row));
-            self.copy(Copy { from, from_word, to, to_word: row * first_row, words: row * count });
+        let confidence_offset = u64::from(matches.layout.confidence_offset());
+        for (to, from_word, row_words) in
+            [(disparities, 0, u64::from(width)), (confidences, confidence_offset, u64::from(width.div_ceil(4)))]
+        {
+            let (to_word, words) = (row_words * u64::from(first_row), row_words * u64::from(rows));
+            self.copy(WordCopy { from: buffer.clone(), from_word, to, to_word, words });
         }
     }
 
     /// What is copied to the caller's disparities, in order: together a word for each pixel.
-    pub(super) fn answers(&self) -> impl Iterator<Item = &Copy> {
+    pub(super) fn answers(&self) -> impl Iterator<Item = &WordCopy> {
         self.steps.iter().filter_map(|step| match step {
-            Step::Copy(copy) if matches!(copy.to, Target::Disparities) => Some(copy),
+            Step::Copy(copy) if matches!(copy.to, CopyTarget::Disparities) => Some(copy),
             _ => None,
         })
     }
@@ -187,20 +171,14 @@ impl Plan {
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
                 Step::Copy(copy) => match &copy.to {
-                    Target::Buffer(buffer) => copy.record(encoder, buffer),
-                    Target::Disparities => {
+                    CopyTarget::Buffer(buffer) => copy.record(encoder, buffer),
+                    CopyTarget::Disparities => {
                         outputs.record_disparities(encoder, copy, answer);
                         answer += 1;
                     }
-                    Target::Confidences => outputs.record_confidences(encoder, copy),
+                    CopyTarget::Confidences => outputs.record_confidences(encoder, copy),
                 },
             }
         }
     }
-}
-
-/// Words of a band's disparities and confidences, and where among them the latter begin.
-pub(super) fn match_words(width: u32, rows: u32) -> (u64, u32) {
-    let pixels = width * rows;
-    (u64::from(pixels) + u64::from(rows) * u64::from(width.div_ceil(4)), pixels)
 }

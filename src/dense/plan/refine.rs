@@ -1,120 +1,143 @@
-//! Refinement: what makes a whole map of one with holes and speckles.
+//! Refinement: from a map with holes and speckles to a whole one.
 //!
-//! residuals and support -> weighted medians of what is left -> filling -> a weighted median of what was filled ->
-//! weighted medians of all -> a plain median.
+//! residuals and support -> weighted medians of what is left -> filling -> a weighted median of the filled pixels ->
+//! weighted medians of all pixels -> a plain median.
 
-use super::{Copy, Plan, Target, Whole, match_words};
+use super::{BandLimits, CopyTarget, Plan, WholeMap, WordCopy};
 use crate::{
     dense::{
         config::{Median, Refinement, View},
-        kernels::{Fill, Residual, SUPPORT_RADIUS, Support, Views, WeightedMedian},
+        kernels::{Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, Views, WeightedMedian},
     },
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Context, in_rows, most_words},
+    gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
 };
 
-/// Refines the `whole` map of a view, and hands the result out.
-///
-/// Where the map does not fit in buffers of `limit` bytes, or has more than `most_rows` rows, that is done in
-/// windows of rows, each with so many more around it that what is handed out is the same.
-#[expect(clippy::too_many_arguments, reason = "what is refined, how, and within which limits")]
-pub(super) fn plan_refinement(
-    device: &Context<'_>,
-    plan: &mut Plan,
-    (width, height): (u32, u32),
-    refinement: &Refinement,
-    range: DisparityRange,
-    views: Views<'_>,
-    whole: &Whole,
-    (limit, most_rows): (u64, u32),
-) -> Result<()> {
-    let around =
-        SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
-    // A map with holes is a texture as well.
-    let fitting = (limit / (4 * match_words(width, 1).0)).min(most_words(device) / u64::from(width));
-    let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);
-    let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * around) }.min(most_rows);
-    if rows == 0 {
-        return Err(Error::TooLarge {
-            what: format!("the refinement of rows {width} px wide"),
-            needed: 4 * match_words(width, 2 * around + 1).0,
-            limit,
-            way_out: format!("refine less, scale the pictures down, or use a device with more of {BUFFER_LIMITS}"),
-        });
+/// A map to be refined.
+pub(super) struct Unrefined<'a> {
+    /// The map of all bands.
+    pub(super) map: &'a WholeMap,
+    /// Width and height of the map.
+    pub(super) size: (u32, u32),
+    /// The disparities that were searched: filled pixels stay within.
+    pub(super) range: DisparityRange,
+    /// Both views, and the one whose map it is.
+    pub(super) views: Views<'a>,
+}
+
+/// The weighted medians of a refinement. Most of its filters are alike: each kernel is compiled once.
+struct Medians(Vec<(Median, WeightedMedian)>);
+
+impl Medians {
+    fn new(gpu: &Gpu, refinement: &Refinement) -> Self {
+        let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
+        for median in refinement.before().chain(refinement.after()) {
+            if kernels.iter().all(|(known, _)| *known != median) {
+                kernels.push((median, WeightedMedian::new(gpu, median)));
+            }
+        }
+        Self(kernels)
     }
-    let window_rows = (rows + 2 * around).min(height);
-    let (words, _) = match_words(width, window_rows);
-    let pixels = u64::from(width) * u64::from(window_rows);
-    let words = words.max(in_rows(pixels));
-    let given = plan.buffer(device, "disparities to refine", words)?;
-    let supported = plan.buffer(device, "supported disparities", words)?;
+
+    fn get(&self, median: Median) -> &WeightedMedian {
+        let found = self.0.iter().find(|(known, _)| *known == median);
+        &found.expect("a kernel for each filter of the refinement").1
+    }
+}
+
+/// Plans the refinement of a map of all bands, and hands the result out.
+///
+/// Where the map does not fit in buffers within `limits`, it is refined in windows of rows, each with a halo of so many
+/// rows that the result is the same.
+pub(super) fn plan_refinement(
+    gpu: &Gpu,
+    plan: &mut Plan,
+    refinement: &Refinement,
+    Unrefined { map, size: (width, height), range, views }: Unrefined<'_>,
+    limits: BandLimits,
+) -> Result<()> {
+    let halo = SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
+    let rows = window_rows(gpu, (width, height), halo, limits)?;
+    let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
+    let pixels = u64::from(largest.pixels());
+    let words = largest.words().max(in_rows(pixels));
+    let given = plan.buffer("disparities to refine", words)?;
+    let supported = plan.buffer("supported disparities", words)?;
     let with_holes = match refinement.fill {
-        true => Some(plan.word_texture(device, "disparities with holes", pixels)?),
+        true => Some(plan.word_texture("disparities with holes", pixels)?),
         false => None,
     };
-    let filtered = plan.buffer(device, "filtered disparities", pixels)?;
-    let residuals = plan.buffer(device, "residuals", u64::from(width.div_ceil(4)) * u64::from(window_rows))?;
-    let (residual, support, fill) =
-        (Residual::new(device), Support::new(device, refinement.support), Fill::new(device));
+    let filtered = plan.buffer("filtered disparities", pixels)?;
+    let residuals = plan.buffer("residuals", u64::from(width.div_ceil(4)) * u64::from(largest.rows))?;
+    let (residual, support, fill) = (Residual::new(gpu), Support::new(gpu, refinement.support), Fill::new(gpu));
+    let medians = Medians::new(gpu, refinement);
     let [left, right] = views.luma;
     let luma = if views.reference == View::Left { left } else { right };
-    // Most filters are alike: each kernel is compiled once, and a filter is its place here.
-    let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
-    let mut place = |median: Median| {
-        kernels.iter().position(|(known, _)| *known == median).unwrap_or_else(|| {
-            kernels.push((median, WeightedMedian::new(device, median)));
-            kernels.len() - 1
-        })
-    };
-    let before: Vec<usize> = refinement.before().map(&mut place).collect();
-    let after: Vec<usize> = refinement.after().map(&mut place).collect();
 
     for first_row in (0..height).step_by(rows as usize) {
-        let kept = rows.min(height - first_row);
-        let top = first_row.saturating_sub(around);
-        let size = (width, (first_row + kept + around).min(height) - top);
-        let (_, confidence_offset) = match_words(width, size.1);
-        for (from, row, to_word) in
-            [(&whole.disparities, width, 0), (&whole.confidences, width.div_ceil(4), confidence_offset)]
-        {
-            let row = u64::from(row);
-            let (from_word, words) = (row * u64::from(top), row * u64::from(size.1));
-            let to = Target::Buffer(given.clone());
-            plan.copy(Copy { from: from.clone(), from_word, to, to_word: to_word.into(), words });
+        let result_rows = rows.min(height - first_row);
+        let top = first_row.saturating_sub(halo);
+        let layout = MapLayout { width, rows: (first_row + result_rows + halo).min(height) - top };
+        let (size, confidence_offset) = ((width, layout.rows), u64::from(layout.confidence_offset()));
+        let parts = [(&map.disparities, width, 0), (&map.confidences, width.div_ceil(4), confidence_offset)];
+        for (from, row_words, to_word) in parts {
+            let row_words = u64::from(row_words);
+            let (from_word, words) = (row_words * u64::from(top), row_words * u64::from(layout.rows));
+            let to = CopyTarget::Buffer(given.clone());
+            plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
         }
-        plan.run(residual.prepare(device, size, top, views, &given, &residuals));
-        plan.run(support.prepare(device, size, confidence_offset, [&given, &residuals], &supported));
+        plan.run(residual.prepare(size, top, views, &given, &residuals));
+        plan.run(support.prepare(MapBuffer { buffer: &given, layout }, &residuals, &supported));
 
         // The map that a filter reads, and two others. The confidences stand behind the supported disparities and
         // stay there.
         let mut maps = [&supported, &given, &filtered];
-        let filter = |place: usize, [disparities, before, to]: [&wgpu::Buffer; 3]| {
-            kernels[place].1.prepare(device, size, (luma, top), [disparities, before], to)
+        let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
+            medians.get(median).prepare(size, (luma, top), [disparities, before], to)
         };
-        for &place in &before {
-            plan.run(filter(place, [maps[0], maps[0], maps[1]]));
+        for median in refinement.before() {
+            plan.run(filter(median, [maps[0], maps[0], maps[1]]));
             maps.swap(0, 1);
         }
         if let Some(with_holes) = &with_holes {
             plan.fill_texture(maps[0], with_holes);
-            plan.run(fill.prepare(device, size, range, with_holes, maps[1]));
-            // Those with holes stay until they are filtered by.
+            plan.run(fill.prepare(size, range, with_holes, maps[1]));
+            // The map with holes stays: the filters after it tell filled pixels by it.
             maps.swap(0, 1);
         }
-        for &place in &after {
-            plan.run(filter(place, maps));
+        for median in refinement.after() {
+            plan.run(filter(median, maps));
             maps.swap(0, 2);
         }
-        let (skipped, cw) = (u64::from(first_row - top), width.div_ceil(4));
-        for (from, start, row, to) in
-            [(maps[0], 0, width, Target::Disparities), (&supported, confidence_offset, cw, Target::Confidences)]
-        {
-            let row = u64::from(row);
-            let from_word = u64::from(start) + row * skipped;
-            let (to_word, words) = (row * u64::from(first_row), row * u64::from(kept));
-            plan.copy(Copy { from: from.clone(), from_word, to, to_word, words });
+        let skipped = u64::from(first_row - top);
+        for (from, start, row_words, to) in [
+            (maps[0], 0, width, CopyTarget::Disparities),
+            (&supported, confidence_offset, width.div_ceil(4), CopyTarget::Confidences),
+        ] {
+            let row_words = u64::from(row_words);
+            let from_word = start + row_words * skipped;
+            let (to_word, words) = (row_words * u64::from(first_row), row_words * u64::from(result_rows));
+            plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
         }
     }
     Ok(())
+}
+
+/// The rows of the result that are refined at once, beside `halo` rows on either side.
+fn window_rows(gpu: &Gpu, (width, height): (u32, u32), halo: u32, limits: BandLimits) -> Result<u32> {
+    let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words();
+    // A map with holes is a texture as well.
+    let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / u64::from(width));
+    let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);
+    let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * halo) }.min(limits.rows);
+    if rows > 0 {
+        return Ok(rows);
+    }
+    Err(Error::TooLarge {
+        what: format!("the refinement of rows {width} px wide"),
+        needed: row_bytes(2 * halo + 1),
+        limit: limits.bytes,
+        way_out: format!("refine less, scale the pictures down, or use a device with more of {BUFFER_LIMITS}"),
+    })
 }

@@ -1,378 +1,412 @@
-//! Semi-global matching: the plan.
+//! Matching by census, luma and gradient costs, semi-globally along paths or by blocks.
 //!
-//! For each view in turn: cost -> its mean over a window, if wanted -> a path in each direction -> selection, then the
-//! consistency of both.
-//! Where the volumes do not fit in a buffer, the pair is matched in bands of rows, from the top to the
-//! bottom, with each path going on from band to band. Paths from below need to be known before: they
-//! are followed once from the bottom to the top, of which only the row below each band is kept, and
-//! then again within each band. The costs of as many more rows around a band as its windows reach are computed with
-//! it. So no result depends on where the bands are cut.
+//! For each view in turn: costs -> their mean over a window, if wanted -> a path in each direction -> selection, then the
+//! left-right consistency of both.
+//!
+//! Where the volumes do not fit in a buffer, the pair is matched in bands of rows, from the top to the bottom, with each
+//! path going on from band to band. Paths from below need to be known before: they are followed once from the bottom to
+//! the top, of which only the row below each band is kept, and then again within each band. The costs of a band are
+//! computed with a halo of as many rows as the windows reach. So no result depends on where the bands are cut.
 
-use super::{Copy, Plan, Target, match_words, refine::plan_refinement};
+use super::{
+    BandLimits, CopyTarget, Plan, WordCopy,
+    refine::{Unrefined, plan_refinement},
+};
 use crate::{
     dense::{
-        config::{DenseConfig, Direction, OtherView, SemiGlobal, View},
+        config::{CrossCheck, DenseConfig, Direction, SemiGlobal, View},
         kernels::{
-            BoxMean, Census, Claim, Consistency, CostVolume, Others, Pad, Path, Places, Select, Selection, Views,
-            VolumeBand, Wanted,
+            BoxMean, Census, CheckedAgainst, Claim, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout, Pad,
+            Path, PathVolumes, ResultKind, Select, Selection, Views, VolumeBand,
         },
     },
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Context},
+    gpu::{BUFFER_LIMITS, Gpu},
 };
 
-/// What both views share: the pictures, memory for the transforms and volumes of a band, and kernels.
-struct Shared {
+/// The plan for packed luma of `size`, left and right, in bands within `limits`.
+pub(in crate::dense) fn plan(
+    gpu: &Gpu,
     size: (u32, u32),
-    band_rows: u32,
-    /// How many rows around a band its windows reach.
+    config: &DenseConfig,
+    semi_global: &SemiGlobal,
+    luma: [&wgpu::Buffer; 2],
+    limits: BandLimits,
+) -> Result<Plan> {
+    let width = size.0;
+    let range = config.searched(width)?;
+    let bands = Bands::new(size, range, semi_global, limits)?;
+    let mut plan = Plan::new(gpu, config, bands.count());
+    let whole = config.refinement.map(|_| plan.collect(size)).transpose()?;
+    let workspace = Workspace::new(gpu, &mut plan, bands, semi_global, luma)?;
+    let layout = MapLayout { width, rows: workspace.bands.rows };
+    let is_claimed = config.consistency.is_some() && semi_global.cross_check == CrossCheck::Claimed;
+    let side = |plan: &mut Plan, view, wanted, keys| {
+        let selection = Selection {
+            stored: workspace.bands.directions.len() as u32,
+            interpolation: config.interpolation,
+            wanted,
+            keys,
+            uniqueness: config.uniqueness,
+        };
+        Side::new(gpu, plan, &workspace.bands, semi_global, view, selection)
+    };
+    let reference = side(&mut plan, config.reference, ResultKind::Matches, is_claimed)?;
+    let check = match config.consistency {
+        None => None,
+        Some(max_difference) if is_claimed => {
+            let claims = plan.buffer("claims", layout.pixels().into())?;
+            let check = Consistency::new(gpu, CheckedAgainst::Claims(range.min));
+            Some((max_difference, check, OtherDisparities::Claimed(Claim::new(gpu), claims)))
+        }
+        Some(max_difference) => {
+            let other = side(&mut plan, config.reference.other(), ResultKind::Winners, false)?;
+            let check = Consistency::new(gpu, CheckedAgainst::Disparities);
+            Some((max_difference, check, OtherDisparities::Searched(other)))
+        }
+    };
+    let searched = match &check {
+        Some((_, _, OtherDisparities::Searched(other))) => Some(other),
+        _ => None,
+    };
+
+    if workspace.bands.directions.iter().any(|direction| direction.dy < 0) {
+        for index in (1..workspace.bands.count()).rev() {
+            workspace.transform(&mut plan, index);
+            for side in [Some(&reference), searched].into_iter().flatten() {
+                side.follow_from_below(&mut plan, &workspace, index);
+            }
+        }
+    }
+    for index in 0..workspace.bands.count() {
+        let band = workspace.bands.band(index);
+        workspace.transform(&mut plan, index);
+        for side in [Some(&reference), searched].into_iter().flatten() {
+            side.match_band(&mut plan, &workspace, index);
+        }
+        let matches = MapBuffer { buffer: &reference.matches, layout };
+        if let Some((max_difference, consistency, others)) = &check {
+            let others = match others {
+                OtherDisparities::Searched(other) => &other.matches,
+                OtherDisparities::Claimed(claim, claims) => {
+                    plan.clear(claims);
+                    plan.run(claim.prepare(&band, config.reference, matches, claims));
+                    claims
+                }
+            };
+            plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, others));
+        }
+        plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
+    }
+    if let (Some(map), Some(refinement)) = (&whole, &config.refinement) {
+        let views = Views { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
+        plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
+    }
+    Ok(plan)
+}
+
+/// Where the disparities of the other view come from, with which a left-right check compares.
+enum OtherDisparities {
+    /// From a search of its own.
+    Searched(Side),
+    /// From the winners of the reference view.
+    Claimed(Claim, wgpu::Buffer),
+}
+
+/// How a pair is cut into bands of rows.
+struct Bands {
+    size: (u32, u32),
+    range: DisparityRange,
+    /// Rows of each band but perhaps the last.
+    rows: u32,
+    /// How many rows around a band the windows of its costs reach.
     radius: u32,
-    /// The left and the right picture, each with how its brightness is changed.
+    /// The direction of the path that is followed last, while disparities are selected.
+    last: Direction,
+    /// The directions of the paths that are stored.
+    directions: &'static [Direction],
+}
+
+impl Bands {
+    fn new(size: (u32, u32), range: DisparityRange, semi_global: &SemiGlobal, limits: BandLimits) -> Result<Self> {
+        let (last, directions) = semi_global.paths.last_and_stored();
+        let radius = semi_global.radius();
+        let rows = band_rows_within(limits, size, range, (directions.len() as u64, radius))?;
+        Ok(Self { size, range, rows, radius, last, directions })
+    }
+
+    fn count(&self) -> usize {
+        self.size.1.div_ceil(self.rows) as usize
+    }
+
+    fn first_row(&self, index: usize) -> u32 {
+        index as u32 * self.rows
+    }
+
+    /// The rows in front of a band in its transforms, and behind it: as many as windows reach, and one where lines come
+    /// from.
+    fn halo(&self) -> u32 {
+        self.radius + 1
+    }
+
+    /// The volume of a band, as its transforms hold it.
+    fn band(&self, index: usize) -> VolumeBand {
+        let rows = self.rows.min(self.size.1 - self.first_row(index));
+        VolumeBand { width: self.size.0, first_row: self.halo(), rows, range: self.range }
+    }
+
+    /// Words of a row of a volume.
+    fn row_words(&self) -> u64 {
+        self.band(0).row_words().into()
+    }
+
+    /// Words of the volume of a stored path: a band, a row in front of it and one behind.
+    fn path_words(&self) -> u64 {
+        self.row_words() * (u64::from(self.rows) + 2)
+    }
+}
+
+/// What both views share: the pictures, memory for the transforms and volumes of a band, and kernels.
+struct Workspace {
+    bands: Bands,
+    /// Packed luma of the left and of the right view, each with the change of its brightness.
     pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
     pad: Pad,
     transform: Census,
     padded: wgpu::Buffer,
     census: [wgpu::Buffer; 2],
-    /// Those of a band and of the rows around it; when they are averaged, those of the band alone.
+    /// Matching costs of the band and its halo rows; after averaging, of the band only.
     costs: wgpu::Buffer,
-    /// What averages them, and as much memory again.
+    /// The averaging of costs, and memory for costs that are averaged along the rows only.
     box_mean: Option<(BoxMean, wgpu::Buffer)>,
-    /// A volume for each path that is stored, each with a row in front of it and one behind.
+    /// The volumes of the stored paths, one after the other.
     paths: wgpu::Buffer,
-    path_words: u64,
-    /// None where nothing is stored.
+    /// None where no path is stored.
     path: Option<Path>,
+}
+
+impl Workspace {
+    fn new(
+        gpu: &Gpu,
+        plan: &mut Plan,
+        bands: Bands,
+        semi_global: &SemiGlobal,
+        [left, right]: [&wgpu::Buffer; 2],
+    ) -> Result<Self> {
+        let (width, height) = bands.size;
+        let cost_words = bands.row_words() * u64::from((bands.rows + 2 * bands.radius).min(height));
+        let transformed_rows = bands.rows + 2 * bands.halo();
+        let padding = Census::padding(bands.size, 0, transformed_rows);
+        let transformed = u64::from(width) * u64::from(transformed_rows);
+        let box_mean = match semi_global.window {
+            1 => None,
+            side => Some((BoxMean::new(gpu, side), plan.buffer("means of costs", cost_words)?)),
+        };
+        let penalties = semi_global.followed_with();
+        Ok(Self {
+            pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
+            pad: Pad::new(gpu),
+            transform: Census::new(gpu),
+            padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
+            census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
+            costs: plan.buffer("costs", cost_words)?,
+            box_mean,
+            paths: plan.buffer("paths", bands.path_words() * bands.directions.len() as u64)?,
+            path: (!bands.directions.is_empty()).then(|| Path::new(gpu, &penalties, bands.band(0).words())),
+            bands,
+        })
+    }
+
+    /// Transforms the rows of band `index` of both views, with their halo.
+    fn transform(&self, plan: &mut Plan, index: usize) {
+        let (size, halo) = (self.bands.size, self.bands.halo());
+        let rows = self.bands.band(index).rows + 2 * halo;
+        let first_row = self.bands.first_row(index).cast_signed() - halo.cast_signed();
+        for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
+            let padding = Census::padding(size, first_row, rows);
+            plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
+            plan.run(self.transform.prepare((size.0, rows), &self.padded, census));
+        }
+    }
+
+    /// The memory of a path of a view.
+    fn lines(&self, view: View) -> LineBuffers<'_> {
+        let [reference, _] = self.census_of(view);
+        LineBuffers { reference, costs: &self.costs, paths: &self.paths }
+    }
+
+    /// The transforms of a view and of the other.
+    fn census_of(&self, view: View) -> [&wgpu::Buffer; 2] {
+        let [left, right] = &self.census;
+        match view {
+            View::Left => [left, right],
+            View::Right => [right, left],
+        }
+    }
 }
 
 /// One view's kernels, and what it keeps from one band to the next.
 struct Side {
     view: View,
     cost: CostVolume,
-    last: Direction,
-    /// The directions of the paths that are stored.
-    directions: &'static [Direction],
     select: Select,
-    /// The last rows so far of the paths from above; and for each band but the first, the first rows of the
-    /// paths from below. None where there is one band.
+    /// The last rows so far of the paths from above, and for each band but the first, the first rows of the paths from
+    /// below. None where there is one band.
     above: Option<wgpu::Buffer>,
     below: Vec<wgpu::Buffer>,
-    /// In which buffer its answers stand.
+    /// The map of the band.
     matches: wgpu::Buffer,
 }
 
-/// The plan for packed `left` and `right` of `size`, in bands for which no buffer needs more than `limit` bytes, nor more
-/// than `band_rows` rows.
-pub(in crate::dense) fn plan(
-    device: &Context<'_>,
-    size: (u32, u32),
-    config: &DenseConfig,
-    semi_global: &SemiGlobal,
-    views: [&wgpu::Buffer; 2],
-    (limit, band_rows): (u64, u32),
-) -> Result<Plan> {
-    let (width, height) = size;
-    let range = config.searched(width)?;
-    let (last, directions) = semi_global.paths.last_and_stored();
-    let radius = semi_global.radius();
-    let most_rows = band_rows;
-    let band_rows = band_rows_within(limit, size, range, (directions.len() as u64, radius), band_rows)?;
-    // The transforms of a band have those rows more in front of it that windows reach, and one where lines come from; and
-    // as many behind.
-    let around = radius + 1;
-    let rows = |first_row: u32| band_rows.min(height - first_row);
-    let band = |first_row: u32| VolumeBand { width, first_row: around, rows: rows(first_row), range };
-    let bands: Vec<VolumeBand> = (0..height).step_by(band_rows as usize).map(band).collect();
-    let row_words = u64::from(bands[0].row_words());
-
-    let mut plan = Plan::new(device, config, bands.len());
-    let whole = config.refinement.map(|_| plan.collect(device, size)).transpose()?;
-    let path_words = row_words * (u64::from(band_rows) + 2);
-    let cost_words = row_words * u64::from((band_rows + 2 * radius).min(height));
-    let padding = Census::padding(size, 0, band_rows + 2 * around);
-    let transformed = u64::from(width) * u64::from(band_rows + 2 * around);
-    let penalties = semi_global.followed_with();
-    let box_mean = match semi_global.window {
-        1 => None,
-        side => Some((BoxMean::new(device, side), plan.buffer(device, "means of costs", cost_words)?)),
-    };
-    let shared = Shared {
-        size,
-        band_rows,
-        radius,
-        pictures: [(views[0].clone(), plan.brightness(View::Left)), (views[1].clone(), plan.brightness(View::Right))],
-        pad: Pad::new(device),
-        transform: Census::new(device),
-        padded: plan.buffer(device, "padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
-        census: [plan.buffer(device, "census, left", transformed)?, plan.buffer(device, "census, right", transformed)?],
-        costs: plan.buffer(device, "costs", cost_words)?,
-        box_mean,
-        paths: plan.buffer(device, "paths", path_words * directions.len() as u64)?,
-        path_words,
-        path: (!directions.is_empty()).then(|| Path::new(device, &penalties, bands[0].words())),
-    };
-    let (match_words, confidence_offset) = match_words(width, band_rows);
-    let claimed = config.consistency.is_some() && semi_global.other_view == OtherView::Claimed;
-    let key_words = if claimed { u64::from(confidence_offset) } else { 0 };
-    let offsets = [confidence_offset, match_words as u32];
-    let mut side = |view: View, wanted: Wanted| -> Result<Side> {
-        let mut rows = |label, dy| {
-            let paths = directions.iter().filter(|direction| direction.dy == dy).count();
-            plan.buffer(device, label, row_words * paths as u64)
-        };
-        let above = (bands.len() > 1).then(|| rows("paths from above", 1)).transpose()?;
-        let below = (1..bands.len()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
-        let matches = match wanted {
-            Wanted::Matches => plan.buffer(device, "matches", match_words + key_words)?,
-            Wanted::Winners => plan.buffer(device, "winners of the other view", confidence_offset.into())?,
-        };
-        let selection = Selection {
-            stored: directions.len() as u32,
-            interpolation: config.interpolation,
-            wanted,
-            keys: claimed,
-            uniqueness: config.uniqueness,
-        };
-        Ok(Side {
-            view,
-            cost: CostVolume::new(device, &semi_global.cost, view),
-            directions,
-            select: Select::new(device, &penalties, bands[0].words(), selection),
-            last,
-            above,
-            below,
-            matches,
-        })
-    };
-    let mut sides = vec![side(config.reference, Wanted::Matches)?];
-    if config.consistency.is_some() && !claimed {
-        sides.push(side(config.reference.other(), Wanted::Winners)?);
-    }
-
-    if directions.iter().any(|direction| direction.dy < 0) {
-        for index in (1..bands.len()).rev() {
-            shared.transform(device, &mut plan, index);
-            for side in &sides {
-                side.follow_from_below(device, &mut plan, &shared, &bands, index);
-            }
-        }
-    }
-    let others = if claimed { Others::Claims(range.min) } else { Others::Disparities };
-    let check = config.consistency.map(|limit| (Consistency::new(device, others), limit));
-    let claims = match claimed {
-        true => Some((Claim::new(device), plan.buffer(device, "claims", confidence_offset.into())?)),
-        false => None,
-    };
-    for (index, band) in bands.iter().enumerate() {
-        shared.transform(device, &mut plan, index);
-        for side in &sides {
-            side.match_band(device, &mut plan, &shared, &bands, index, offsets);
-        }
-        let (matches, view) = (&sides[0].matches, config.reference);
-        if let Some((claim, claims)) = &claims {
-            plan.clear(claims);
-            plan.run(claim.prepare(device, band, view, offsets[1], matches, claims));
-        }
-        let others = claims.as_ref().map(|(_, claims)| claims).or(sides.get(1).map(|other| &other.matches));
-        if let (Some((consistency, limit)), Some(others)) = (&check, others) {
-            let size = (width, band.rows);
-            plan.run(consistency.prepare(device, size, confidence_offset, view, *limit, others, matches));
-        }
-        plan.hand_out(matches, confidence_offset, width, (index as u32 * band_rows, band.rows));
-    }
-    if let (Some(whole), Some(refinement)) = (whole, &config.refinement) {
-        let views = Views { luma: views, brightness: &plan.brightness(View::Right), reference: config.reference };
-        plan_refinement(device, &mut plan, size, refinement, range, views, &whole, (limit, most_rows))?;
-    }
-    Ok(plan)
-}
-
-impl Shared {
-    /// Transforms the rows of band `index` of both views, with those around them.
-    fn transform(&self, device: &wgpu::Device, plan: &mut Plan, index: usize) {
-        let first_row = index as u32 * self.band_rows;
-        let around = self.radius + 1;
-        let rows = self.band_rows.min(self.size.1 - first_row) + 2 * around;
-        for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
-            let padding = Census::padding(self.size, first_row.cast_signed() - around.cast_signed(), rows);
-            plan.run(self.pad.prepare(device, padding, brightness, picture, &self.padded));
-            plan.run(self.transform.prepare(device, (self.size.0, rows), &self.padded, census));
-        }
-    }
-}
+/// Rows of volumes that a path enters a band from, or leaves it by: a buffer, and which row of it.
+type PathRow<'b> = (&'b wgpu::Buffer, u64);
 
 impl Side {
-    /// The transforms of this view and of the other.
-    fn census<'m>(&self, shared: &'m Shared) -> [&'m wgpu::Buffer; 2] {
-        let [left, right] = &shared.census;
-        match self.view {
-            View::Left => [left, right],
-            View::Right => [right, left],
-        }
+    fn new(
+        gpu: &Gpu,
+        plan: &mut Plan,
+        bands: &Bands,
+        semi_global: &SemiGlobal,
+        view: View,
+        selection: Selection,
+    ) -> Result<Self> {
+        let mut rows = |label, dy| {
+            let paths = bands.directions.iter().filter(|direction| direction.dy == dy).count();
+            plan.buffer(label, bands.row_words() * paths as u64)
+        };
+        let above = (bands.count() > 1).then(|| rows("paths from above", 1)).transpose()?;
+        let below = (1..bands.count()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
+        let layout = MapLayout { width: bands.size.0, rows: bands.rows };
+        let key_words = if selection.keys { u64::from(layout.pixels()) } else { 0 };
+        let matches = match selection.wanted {
+            ResultKind::Matches => plan.buffer("matches", layout.words() + key_words)?,
+            ResultKind::Winners => plan.buffer("winners of the other view", layout.pixels().into())?,
+        };
+        let (cost, penalties) = (CostVolume::new(gpu, &semi_global.cost, view), semi_global.followed_with());
+        let select = Select::new(gpu, &penalties, bands.band(0).words(), selection);
+        Ok(Self { view, cost, select, above, below, matches })
     }
 
     /// Compares the pixels of band `index`, and averages over their windows.
-    fn find_costs(&self, device: &wgpu::Device, plan: &mut Plan, shared: &Shared, bands: &[VolumeBand], index: usize) {
-        let band = &bands[index];
-        let first_row = index as u32 * shared.band_rows;
-        let above = shared.radius.min(first_row);
-        let below = shared.radius.min(shared.size.1 - first_row - band.rows);
-        let known = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..*band };
-        plan.run(self.cost.prepare(device, &known, self.census(shared), &shared.costs));
-        if let Some((box_mean, means)) = &shared.box_mean {
+    fn find_costs(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
+        let bands = &workspace.bands;
+        let (band, first_row) = (bands.band(index), bands.first_row(index));
+        let above = bands.radius.min(first_row);
+        let below = bands.radius.min(bands.size.1 - first_row - band.rows);
+        let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
+        plan.run(self.cost.prepare(&with_halo, workspace.census_of(self.view), &workspace.costs));
+        if let Some((box_mean, means)) = &workspace.box_mean {
             let wanted = above..above + band.rows;
-            for pass in box_mean.prepare(device, &known, wanted, &shared.costs, means) {
+            for pass in box_mean.prepare(&with_halo, wanted, &workspace.costs, means) {
                 plan.run(pass);
             }
         }
     }
 
-    /// The stored paths with this step from row to row: their number, and their place among themselves.
-    fn paths(&self, dy: i32) -> impl Iterator<Item = (usize, u64)> {
-        let numbers = (0..self.directions.len()).filter(move |&number| self.directions[number].dy == dy);
-        numbers.zip(0..)
-    }
-
-    /// Follows the paths from below through a band, and keeps their first row for the band above.
-    fn follow_from_below(
-        &self,
-        device: &wgpu::Device,
-        plan: &mut Plan,
-        shared: &Shared,
-        bands: &[VolumeBand],
-        index: usize,
-    ) {
-        let band = &bands[index];
-        self.find_costs(device, plan, shared, bands, index);
-        for (number, place) in self.paths(-1) {
-            self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
-            let row = u64::from(band.row_words());
-            plan.copy(Copy {
-                from: shared.paths.clone(),
-                from_word: number as u64 * shared.path_words + row,
-                to: Target::Buffer(self.below[index - 1].clone()),
+    /// Follows the paths from below through band `index`, and keeps their first row for the band above.
+    fn follow_from_below(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
+        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
+        self.find_costs(plan, workspace, index);
+        for (path, place) in paths_with(bands, -1) {
+            self.follow(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
+            plan.copy(WordCopy {
+                from: workspace.paths.clone(),
+                from_word: path as u64 * bands.path_words() + row,
+                to: CopyTarget::Buffer(self.below[index - 1].clone()),
                 to_word: place * row,
                 words: row,
             });
         }
     }
 
-    /// Copies the row that a path enters a band from to its place in front of the band, or behind it.
-    fn enter(
-        &self,
-        plan: &mut Plan,
-        shared: &Shared,
-        band: &VolumeBand,
-        number: usize,
-        (rows, place): (&wgpu::Buffer, u64),
-    ) {
-        let row = u64::from(band.row_words());
-        let before = if self.directions[number].dy > 0 { 0 } else { u64::from(band.rows) + 1 };
-        plan.copy(Copy {
-            from: rows.clone(),
-            from_word: place * row,
-            to: Target::Buffer(shared.paths.clone()),
-            to_word: number as u64 * shared.path_words + before * row,
-            words: row,
-        });
-    }
-
-    /// Follows a path through a band, from where it enters it if it does not begin there.
+    /// Follows the stored path of this number through band `index`, from the row where the path enters the band unless it
+    /// begins there.
     fn follow(
         &self,
-        device: &wgpu::Device,
         plan: &mut Plan,
-        shared: &Shared,
-        band: &VolumeBand,
-        number: usize,
-        from: Option<(&wgpu::Buffer, u64)>,
+        workspace: &Workspace,
+        index: usize,
+        path: usize,
+        entered_from: Option<PathRow<'_>>,
     ) {
-        let row = u64::from(band.row_words());
-        let direction = self.directions[number];
-        let start = number as u64 * shared.path_words;
-        if let Some(from) = from {
-            self.enter(plan, shared, band, number, from);
+        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
+        let (band, direction) = (bands.band(index), bands.directions[path]);
+        let volume = path as u64 * bands.path_words();
+        if let Some((rows, place)) = entered_from {
+            // In front of the band or behind it.
+            let halo_row = if direction.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
+            plan.copy(WordCopy {
+                from: rows.clone(),
+                from_word: place * row,
+                to: CopyTarget::Buffer(workspace.paths.clone()),
+                to_word: volume + halo_row * row,
+                words: row,
+            });
         }
-        let [reference, _] = self.census(shared);
-        let (costs, paths, start) = (&shared.costs, &shared.paths, (start + row) as u32);
-        // There is one, as there is a path to follow.
-        if let Some(path) = &shared.path {
-            plan.run(path.prepare(device, band, direction, reference, costs, paths, start, from.is_some()));
+        // There is a kernel, as there is a path to follow.
+        if let Some(kernel) = &workspace.path {
+            let (lines, start) = (workspace.lines(self.view), (volume + row) as u32);
+            plan.run(kernel.prepare(&band, direction, lines, start, entered_from.is_some()));
         }
     }
 
-    /// Costs, paths and answers of a band.
-    fn match_band(
-        &self,
-        device: &wgpu::Device,
-        plan: &mut Plan,
-        shared: &Shared,
-        bands: &[VolumeBand],
-        index: usize,
-        offsets: [u32; 2],
-    ) {
-        let band = &bands[index];
-        let row = u64::from(band.row_words());
-        self.find_costs(device, plan, shared, bands, index);
-        for (number, place) in self.paths(-1) {
-            self.follow(device, plan, shared, band, number, self.below.get(index).map(|rows| (rows, place)));
+    /// Plans costs, paths and selection of band `index`.
+    fn match_band(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
+        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
+        let band = bands.band(index);
+        self.find_costs(plan, workspace, index);
+        for (path, place) in paths_with(bands, -1) {
+            self.follow(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
         }
-        for (number, place) in self.paths(1) {
+        for (path, place) in paths_with(bands, 1) {
             let above = self.above.as_ref().filter(|_| index > 0).map(|rows| (rows, place));
-            self.follow(device, plan, shared, band, number, above);
+            self.follow(plan, workspace, index, path, above);
             if let Some(above) = &self.above {
-                plan.copy(Copy {
-                    from: shared.paths.clone(),
-                    from_word: number as u64 * shared.path_words + row * u64::from(band.rows),
-                    to: Target::Buffer(above.clone()),
+                plan.copy(WordCopy {
+                    from: workspace.paths.clone(),
+                    from_word: path as u64 * bands.path_words() + row * u64::from(band.rows),
+                    to: CopyTarget::Buffer(above.clone()),
                     to_word: place * row,
                     words: row,
                 });
             }
         }
-        for (number, _) in self.paths(0) {
-            self.follow(device, plan, shared, band, number, None);
+        for (path, _) in paths_with(bands, 0) {
+            self.follow(plan, workspace, index, path, None);
         }
-        self.select(device, plan, shared, band, offsets);
-    }
-
-    /// Follows the last path through a band, and selects.
-    fn select(
-        &self,
-        device: &wgpu::Device,
-        plan: &mut Plan,
-        shared: &Shared,
-        band: &VolumeBand,
-        [confidence_offset, key_offset]: [u32; 2],
-    ) {
-        let volume_words = shared.path_words as u32;
-        let places = Places { start: band.row_words(), volume_words, confidence_offset, key_offset };
-        let [reference, _] = self.census(shared);
-        let (direction, costs, paths, matches) = (self.last, &shared.costs, &shared.paths, &self.matches);
-        plan.clear(matches);
-        let select = &self.select;
-        plan.run(select.prepare(device, band, direction, places, reference, costs, paths, matches));
+        let volumes = PathVolumes { start: band.row_words(), volume_words: bands.path_words() as u32 };
+        let layout = MapLayout { width: band.width, rows: bands.rows };
+        let matches = MapBuffer { buffer: &self.matches, layout };
+        plan.clear(&self.matches);
+        plan.run(self.select.prepare(&band, bands.last, workspace.lines(self.view), volumes, matches));
     }
 }
 
-/// The most rows, up to `wanted`, for which the volumes of a band stay within `limit` bytes: the costs, with `radius` more
+/// The stored paths with this step from row to row: their number, and their place among themselves.
+fn paths_with(bands: &Bands, dy: i32) -> impl Iterator<Item = (usize, u64)> + use<> {
+    let directions = bands.directions;
+    (0..directions.len()).filter(move |&path| directions[path].dy == dy).zip(0..)
+}
+
+/// The most rows for which the volumes of a band stay within `limits`: the costs, with `radius` more
 /// rows on either side, and so many stored `paths`.
 fn band_rows_within(
-    limit: u64,
+    limits: BandLimits,
     (width, height): (u32, u32),
     range: DisparityRange,
     (paths, radius): (u64, u32),
-    wanted: u32,
 ) -> Result<u32> {
+    let limit = limits.bytes;
     let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
-    // The transforms, a word a pixel, are at most as large as costs of as many rows.
+    // The transforms, one word per pixel, are at most as large as costs of as many rows.
     let around = 2 * (u64::from(radius) + 1);
     let needed = row * (3 * paths).max(1 + around);
-    // A row's answers with their keys can be more than its volumes, where there are few disparities.
-    let answers = 4 * (match_words(width, 1).0 + u64::from(width));
+    // A row's map with its keys can be more than its volumes, where there are few disparities.
+    let map = 4 * (MapLayout { width, rows: 1 }.words() + u64::from(width));
     let within_paths = (limit / (row * paths.max(1))).saturating_sub(2);
     let within_costs = (limit / row).saturating_sub(around);
-    let rows = within_paths.min(within_costs).min(limit / answers);
+    let rows = within_paths.min(within_costs).min(limit / map);
     if rows == 0 {
         return Err(Error::TooLarge {
             what: format!("one row of a picture {width} px wide with {} disparities", range.count),
@@ -383,5 +417,5 @@ fn band_rows_within(
             ),
         });
     }
-    Ok(u32::try_from(rows).unwrap_or(u32::MAX).min(wanted).min(height).max(1))
+    Ok(u32::try_from(rows).unwrap_or(u32::MAX).min(limits.rows).min(height).max(1))
 }

@@ -2,12 +2,11 @@
 //! `shaders/features/descriptor.wgsl`.
 
 use crate::{
-    error::Result,
     features::{
         DESCRIPTOR_LENGTH,
         keypoints::{DISPATCH_WIDTH, KeypointList, PARAMS, Params},
     },
-    gpu::{Binding, Context, Dispatch, Kernel, Stage, storage_buffer, uniform_buffer},
+    gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, Stage},
 };
 
 /// The stage, for axes of the picture (`upright`) or along each keypoint's orientation.
@@ -24,41 +23,32 @@ pub fn stage(upright: bool) -> Stage {
     }
 }
 
-/// The descriptors of one keypoint list.
-pub struct Descriptor {
-    dispatch: Dispatch,
-    descriptors: wgpu::Buffer,
-}
+/// The kernel of the descriptors.
+#[derive(Debug)]
+pub struct Descriptor(Kernel);
 
 impl Descriptor {
-    /// Reads the `integral` image of a picture of `size` and the `list` of its keypoints, a
-    /// workgroup each; `groups` says how many (see [`super::workgroups`]).
-    ///
-    /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind so many descriptors.
-    pub fn new(
-        device: &Context<'_>,
+    /// Compiles it, for axes of the picture (`upright`) or along each keypoint's orientation.
+    pub fn new(gpu: &Gpu, upright: bool) -> Self {
+        Self(Kernel::new(gpu, &stage(upright)))
+    }
+
+    /// Bytes of the descriptors of a whole list: [`DESCRIPTOR_LENGTH`] values per keypoint.
+    pub fn bytes(list: &KeypointList) -> u64 {
+        u64::from(list.capacity()) * size_of::<[f32; DESCRIPTOR_LENGTH]>() as u64
+    }
+
+    /// Reads the `integral` image of a picture and the `list` of its keypoints, one workgroup per keypoint; `groups` says
+    /// how many (see [`super::workgroups`]). The `descriptors` stand in the list's order.
+    pub fn prepare(
+        &self,
+        (width, height): (u32, u32),
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,
-        (width, height): (u32, u32),
-        upright: bool,
-    ) -> Result<Self> {
-        let params = uniform_buffer(device, "descriptor", &Params { width, height });
-        let bytes = u64::from(list.capacity()) * size_of::<[f32; DESCRIPTOR_LENGTH]>() as u64;
-        let descriptors = storage_buffer(device, "descriptors", bytes)?;
-        let buffers = [&params, integral, list.found(), list.keypoints(), &descriptors];
-        let dispatch = Kernel::new(device, &stage(upright)).dispatch_indirect(device, &buffers, groups);
-        Ok(Self { dispatch, descriptors })
-    }
-
-    /// Records the pass.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch.record(encoder);
-    }
-
-    /// [`DESCRIPTOR_LENGTH`] values a keypoint, in the list's order.
-    pub fn descriptors(&self) -> &wgpu::Buffer {
-        &self.descriptors
+        descriptors: &wgpu::Buffer,
+    ) -> Dispatch {
+        let bound: [&dyn Bindable; 4] = [integral, list.found(), list.keypoints(), descriptors];
+        self.0.dispatch_indirect(&Params { width, height }, &bound, groups)
     }
 }

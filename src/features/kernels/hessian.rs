@@ -2,9 +2,8 @@
 //! al. 2008, section 3.2). `shaders/features/hessian.wgsl`.
 
 use crate::{
-    error::Result,
     features::FeatureConfig,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
+    gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 /// Layers of an octave.
@@ -93,80 +92,65 @@ pub fn stage(dense: bool) -> Stage {
     }
 }
 
-struct Octave {
-    dispatch: Dispatch,
-    responses: wgpu::Buffer,
-}
-
-/// The responses of all octaves for pictures of one size.
+/// The kernels of the responses: one for grids with a point for every pixel, one for all others.
+#[derive(Debug)]
 pub struct Hessian {
-    octaves: Vec<Octave>,
+    dense: Option<Kernel>,
+    coarse: Option<Kernel>,
+    step: u32,
 }
 
 impl Hessian {
-    /// Reads the `integral` image.
-    ///
-    /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind an octave's responses.
-    pub fn new(
-        device: &Context<'_>,
+    /// Compiles the kernels that the octaves of `config` need.
+    pub fn new(gpu: &Gpu, config: &FeatureConfig) -> Self {
+        let kernel = |dense| Kernel::new(gpu, &stage(dense));
+        Self {
+            dense: (config.step == 1).then(|| kernel(true)),
+            coarse: (config.step > 1 || config.octaves > 1).then(|| kernel(false)),
+            step: config.step,
+        }
+    }
+
+    /// Bytes of the responses of an octave of a picture: [`LAYERS`] planes of the octave's [`Grid`].
+    pub fn bytes(&self, (width, height): (u32, u32), octave: u32) -> u64 {
+        let grid = Grid::new(width, height, self.step, octave);
+        4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height)
+    }
+
+    /// Filters the `integral` image of a picture. The `responses` are `determinant << 1 | (trace > 0)`, or 0 where the filter
+    /// does not fit in the picture; those of the next `finer` octave, if there is any, are not computed again.
+    pub fn prepare(
+        &self,
+        (width, height): (u32, u32),
+        octave: u32,
         integral: &wgpu::Buffer,
-        width: u32,
-        height: u32,
-        config: &FeatureConfig,
-    ) -> Result<Self> {
-        let mut kernels = [None, None];
-        let mut octaves: Vec<Octave> = Vec::new();
-        for octave in 0..config.octaves {
-            let sizes = FILTER_SIZES[octave as usize];
-            let grid = Grid::new(width, height, config.step, octave);
-            let dense = grid.step == 1;
-            let kernel = kernels[usize::from(dense)].get_or_insert_with(|| Kernel::new(device, &stage(dense)));
-            // The first octave shares nothing, and anything can be bound in place of a finer one.
-            let finer_grid = octave.checked_sub(1).map(|finer| Grid::new(width, height, config.step, finer));
-            let finer = octaves.last().map_or(integral, |finer| &finer.responses);
-            let params = Params {
-                width,
-                height,
-                step: grid.step,
-                grid_width: grid.width,
-                grid_height: grid.height,
-                finer_width: finer_grid.map_or(0, |grid| grid.width),
-                finer_height: finer_grid.map_or(0, |grid| grid.height),
-                shared_layers: finer_grid.map_or(0, |_| SHARED_LAYERS),
-                layers: sizes.map(Layer::new),
-            };
-            let params = uniform_buffer(device, "octave", &params);
-            let bytes = 4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height);
-            let responses = storage_buffer(device, "responses of an octave", bytes)?;
-            let threads = if dense {
-                [walkers(grid.width, WALK[0], sizes), walkers(grid.height, WALK[1], sizes)]
-            } else {
-                [grid.width, grid.height]
-            };
-            let groups = [threads[0].div_ceil(WORKGROUP[0]), threads[1].div_ceil(WORKGROUP[1]), LAYERS];
-            let dispatch = kernel.dispatch(device, &[&params, integral, finer, &responses], groups);
-            octaves.push(Octave { dispatch, responses });
-        }
-        Ok(Self { octaves })
-    }
-
-    /// Records one pass for each octave.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        for octave in &self.octaves {
-            octave.dispatch.record(encoder);
-        }
-    }
-
-    /// An octave's responses: [`LAYERS`] planes of its [`Grid`], each value
-    /// `determinant << 1 | (trace > 0)`, or 0 where the filter does not fit in the picture.
-    pub fn responses(&self, octave: u32) -> &wgpu::Buffer {
-        &self.octaves[octave as usize].responses
-    }
-
-    /// Bytes of all responses.
-    pub(in crate::features) fn memory(&self) -> u64 {
-        self.octaves.iter().map(|octave| octave.responses.size()).sum()
+        finer: Option<&wgpu::Buffer>,
+        responses: &wgpu::Buffer,
+    ) -> Dispatch {
+        let sizes = FILTER_SIZES[octave as usize];
+        let grid = Grid::new(width, height, self.step, octave);
+        let finer_grid = finer.map(|_| Grid::new(width, height, self.step, octave - 1));
+        let params = Params {
+            width,
+            height,
+            step: grid.step,
+            grid_width: grid.width,
+            grid_height: grid.height,
+            finer_width: finer_grid.map_or(0, |grid| grid.width),
+            finer_height: finer_grid.map_or(0, |grid| grid.height),
+            shared_layers: finer_grid.map_or(0, |_| SHARED_LAYERS),
+            layers: sizes.map(Layer::new),
+        };
+        let (kernel, threads) = if grid.step == 1 {
+            (&self.dense, [walkers(grid.width, WALK[0], sizes), walkers(grid.height, WALK[1], sizes)])
+        } else {
+            (&self.coarse, [grid.width, grid.height])
+        };
+        let groups = [threads[0].div_ceil(WORKGROUP[0]), threads[1].div_ceil(WORKGROUP[1]), LAYERS];
+        // The first octave shares nothing, and anything can be bound in place of a finer one.
+        let bound: [&dyn Bindable; 3] = [integral, finer.unwrap_or(integral), responses];
+        let kernel = kernel.as_ref().expect("a kernel for each octave of the configuration");
+        kernel.dispatch(&params, &bound, groups)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The second half of the integral image: the row sums, summed along columns.
 //! `shaders/features/integral_columns.wgsl`.
 
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: u32 = 64;
 
@@ -22,20 +22,19 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The integral image of pictures of one size.
-pub struct IntegralColumns(Dispatch);
+/// The kernel of the column sums.
+#[derive(Debug)]
+pub struct IntegralColumns(Kernel);
 
 impl IntegralColumns {
-    /// Works in place, on the `sums` of [`super::integral_rows`]: what comes out has, at `(x, y)`,
-    /// the sum over all columns below `x` of the rows below `y`, modulo 2^32.
-    pub fn new(device: &Context<'_>, sums: &wgpu::Buffer, width: u32, height: u32) -> Self {
-        let params = uniform_buffer(device, "integral_columns", &Params { width, height });
-        let groups = [(width + 1).div_ceil(WORKGROUP), 1, 1];
-        Self(Kernel::new(device, &stage()).dispatch(device, &[&params, sums], groups))
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Records the pass.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.0.record(encoder);
+    /// Sums the `sums` of [`super::integral_rows`] along the columns, in place: at `(x, y)` stands then the sum over all
+    /// columns below `x` of the rows below `y`, modulo 2^32.
+    pub fn prepare(&self, (width, height): (u32, u32), sums: &wgpu::Buffer) -> Dispatch {
+        self.0.dispatch(&Params { width, height }, &[sums], [(width + 1).div_ceil(WORKGROUP), 1, 1])
     }
 }

@@ -1,10 +1,7 @@
 //! The first half of the integral image, which gives sums of grey values over boxes in four reads
 //! (Viola and Jones, CVPR 2001): sums along rows. `shaders/features/integral_rows.wgsl`.
 
-use crate::{
-    error::Result,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
-};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: u32 = 64;
 
@@ -25,32 +22,23 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The row sums of pictures of one size.
-pub struct IntegralRows {
-    dispatch: Dispatch,
-    sums: wgpu::Buffer,
-}
+/// The kernel of the row sums.
+#[derive(Debug)]
+pub struct IntegralRows(Kernel);
 
 impl IntegralRows {
-    /// Reads packed `luma`.
-    ///
-    /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind the sums.
-    pub fn new(device: &Context<'_>, luma: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
-        let params = uniform_buffer(device, "integral_rows", &Params { width, height });
-        let sums = storage_buffer(device, "integral image", 4 * (u64::from(width) + 1) * (u64::from(height) + 1))?;
-        let groups = [(height + 1).div_ceil(WORKGROUP), 1, 1];
-        let dispatch = Kernel::new(device, &stage()).dispatch(device, &[&params, luma, &sums], groups);
-        Ok(Self { dispatch, sums })
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Records the pass.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch.record(encoder);
+    /// Bytes of the sums of a picture: `height + 1` rows of `width + 1` words.
+    pub fn bytes((width, height): (u32, u32)) -> u64 {
+        4 * (u64::from(width) + 1) * (u64::from(height) + 1)
     }
 
-    /// `height + 1` rows of `width + 1` sums, row 0 and column 0 being 0.
-    pub fn sums(&self) -> &wgpu::Buffer {
-        &self.sums
+    /// Sums packed `luma` of a picture along its rows into `sums`, of which row 0 and column 0 are 0.
+    pub fn prepare(&self, (width, height): (u32, u32), luma: &wgpu::Buffer, sums: &wgpu::Buffer) -> Dispatch {
+        self.0.dispatch(&Params { width, height }, &[luma, sums], [(height + 1).div_ceil(WORKGROUP), 1, 1])
     }
 }

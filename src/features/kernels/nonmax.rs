@@ -1,11 +1,10 @@
 //! Non-maximum suppression over position and scale, with sub-sample interpolation.
 //! `shaders/features/nonmax.wgsl`.
 
-use super::hessian::{DETERMINANT_SCALE, FILTER_SIZES, Grid, Hessian};
+use super::hessian::{DETERMINANT_SCALE, FILTER_SIZES, Grid};
 use crate::{
-    error::Result,
     features::{FeatureConfig, keypoints::KeypointList},
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -42,61 +41,40 @@ pub fn integer_threshold(threshold: f32) -> i32 {
     (f64::from(threshold) * DETERMINANT_SCALE).round().max(1.0) as i32
 }
 
-/// The keypoints of all octaves for pictures of one size.
-pub struct Nonmax {
-    octaves: Vec<Dispatch>,
-    list: KeypointList,
-}
+/// The kernel of the suppression in one octave.
+#[derive(Debug)]
+pub struct Nonmax(Kernel);
 
 impl Nonmax {
-    /// Reads the responses of `hessian`, which was made for the same size and `config`.
-    ///
-    /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind the list.
-    pub fn new(
-        device: &Context<'_>,
-        hessian: &Hessian,
-        width: u32,
-        height: u32,
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
+    }
+
+    /// Appends the maxima among the `responses` of an octave of a picture, as [`super::hessian`] leaves them for `config`, to
+    /// the `list`.
+    pub fn prepare(
+        &self,
+        (width, height): (u32, u32),
+        octave: u32,
         config: &FeatureConfig,
-    ) -> Result<Self> {
-        let kernel = Kernel::new(device, &stage());
-        let list = KeypointList::new(device, config.max_features)?;
-        let octaves = (0..config.octaves)
-            .map(|octave| {
-                let grid = Grid::new(width, height, config.step, octave);
-                let params = Params {
-                    width,
-                    height,
-                    step: grid.step,
-                    grid_width: grid.width,
-                    grid_height: grid.height,
-                    octave,
-                    threshold: integer_threshold(config.threshold),
-                    padding: 0,
-                    sizes: FILTER_SIZES[octave as usize],
-                };
-                let params = uniform_buffer(device, "suppression in an octave", &params);
-                let groups =
-                    [grid.width.div_ceil(2).div_ceil(WORKGROUP[0]), grid.height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
-                let buffers = [&params, hessian.responses(octave), list.found(), list.keypoints()];
-                kernel.dispatch(device, &buffers, groups)
-            })
-            .collect();
-        Ok(Self { octaves, list })
-    }
-
-    /// Records the emptying of the list, then one pass for each octave.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.clear_buffer(self.list.found(), 0, None);
-        for octave in &self.octaves {
-            octave.record(encoder);
-        }
-    }
-
-    /// The list of keypoints.
-    pub fn list(&self) -> &KeypointList {
-        &self.list
+        responses: &wgpu::Buffer,
+        list: &KeypointList,
+    ) -> Dispatch {
+        let grid = Grid::new(width, height, config.step, octave);
+        let params = Params {
+            width,
+            height,
+            step: grid.step,
+            grid_width: grid.width,
+            grid_height: grid.height,
+            octave,
+            threshold: integer_threshold(config.threshold),
+            padding: 0,
+            sizes: FILTER_SIZES[octave as usize],
+        };
+        let groups = [grid.width.div_ceil(2).div_ceil(WORKGROUP[0]), grid.height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
+        self.0.dispatch(&params, &[responses, list.found(), list.keypoints()], groups)
     }
 }
 

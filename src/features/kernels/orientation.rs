@@ -3,7 +3,7 @@
 
 use crate::{
     features::keypoints::{DISPATCH_WIDTH, KeypointList, PARAMS, Params},
-    gpu::{Binding, Context, Dispatch, Kernel, Stage, uniform_buffer},
+    gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, Stage},
 };
 
 const WORKGROUP: u32 = 64;
@@ -30,26 +30,26 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The orientations of one keypoint list.
-pub struct Orientation(Dispatch);
+/// The kernel of the orientations.
+#[derive(Debug)]
+pub struct Orientation(Kernel);
 
 impl Orientation {
-    /// Reads the `integral` image of a picture of `size` and writes the orientations in the `list`
-    /// of its keypoints, a workgroup each; `groups` says how many (see [`super::workgroups`]).
-    pub fn new(
-        device: &Context<'_>,
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
+    }
+
+    /// Reads the `integral` image of a picture and writes the orientations in the `list` of its keypoints, one workgroup
+    /// per keypoint; `groups` says how many (see [`super::workgroups`]).
+    pub fn prepare(
+        &self,
+        (width, height): (u32, u32),
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,
-        (width, height): (u32, u32),
-    ) -> Self {
-        let params = uniform_buffer(device, "orientation", &Params { width, height });
-        let buffers = [&params, integral, list.found(), list.keypoints()];
-        Self(Kernel::new(device, &stage()).dispatch_indirect(device, &buffers, groups))
-    }
-
-    /// Records the pass.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.0.record(encoder);
+    ) -> Dispatch {
+        let bound: [&dyn Bindable; 3] = [integral, list.found(), list.keypoints()];
+        self.0.dispatch_indirect(&Params { width, height }, &bound, groups)
     }
 }

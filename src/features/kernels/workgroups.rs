@@ -3,7 +3,7 @@
 
 use crate::{
     features::keypoints::{DISPATCH_WIDTH, KeypointList},
-    gpu::{Binding, Context, Dispatch, Kernel, Stage},
+    gpu::{Binding, Dispatch, Gpu, Kernel, Stage},
 };
 
 /// The stage.
@@ -19,16 +19,19 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The workgroups for one keypoint list.
-pub struct Workgroups {
-    dispatch: Dispatch,
-    groups: wgpu::Buffer,
-}
+/// The kernel that counts workgroups.
+#[derive(Debug)]
+pub struct Workgroups(Kernel);
 
 impl Workgroups {
-    /// Reads the counter of `list`.
-    pub fn new(device: &Context<'_>, list: &KeypointList) -> Self {
-        let groups = device.create_buffer(&wgpu::BufferDescriptor {
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
+    }
+
+    /// A buffer for the three words that an indirect dispatch reads: workgroups along x, y and z.
+    pub fn groups(gpu: &Gpu) -> wgpu::Buffer {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("workgroups"),
             size: size_of::<wgpu::util::DispatchIndirectArgs>() as u64,
             usage: wgpu::BufferUsages::STORAGE
@@ -36,19 +39,11 @@ impl Workgroups {
                 | wgpu::BufferUsages::COPY_SRC
                 | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
-        });
-        let buffers = [list.found(), list.keypoints(), &groups];
-        let dispatch = Kernel::new(device, &stage()).dispatch(device, &buffers, [1, 1, 1]);
-        Self { dispatch, groups }
+        })
     }
 
-    /// Records the count.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch.record(encoder);
-    }
-
-    /// Three words: workgroups along x, y and z.
-    pub fn groups(&self) -> &wgpu::Buffer {
-        &self.groups
+    /// Writes to `groups` how many workgroups the keypoints of the `list` take, one each.
+    pub fn prepare(&self, list: &KeypointList, groups: &wgpu::Buffer) -> Dispatch {
+        self.0.dispatch(&(), &[list.found(), list.keypoints(), groups], [1, 1, 1])
     }
 }

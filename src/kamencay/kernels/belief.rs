@@ -1,6 +1,6 @@
 //! Belief propagation: half of the nodes send. `shaders/kamencay/belief.wgsl`.
 
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -32,6 +32,7 @@ shader_struct! {
 }
 
 /// The kernel of a turn, for one number of disparities.
+#[derive(Debug)]
 pub struct Belief(Kernel);
 
 /// The buffers of a grid.
@@ -65,20 +66,19 @@ impl Belief {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, smoothness: &Smoothness, fours: u32) -> Self {
-        Self(Kernel::new(device, &Self::stage(smoothness, fours)))
+    pub fn new(gpu: &Gpu, smoothness: &Smoothness, fours: u32) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(smoothness, fours)))
     }
 
     /// A turn in a grid of `size`.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         Turn { parity, from_parents }: Turn,
         GridBuffers { costs, links, parents, messages }: GridBuffers<'_>,
     ) -> Dispatch {
         let params = Params { width, height, parity, from_parents: from_parents.into() };
         let groups = [width.div_ceil(2).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "belief", &params), costs, links, parents, messages], groups)
+        self.0.dispatch(&params, &[costs, links, parents, messages], groups)
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     dense::config::Difference,
     disparity::DisparityRange,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
     kamencay::grid::{FAR, Strip},
 };
 
@@ -37,6 +37,7 @@ shader_struct! {
 }
 
 /// The kernel of the data cost.
+#[derive(Debug)]
 pub struct BeliefCost(Kernel);
 
 impl BeliefCost {
@@ -64,15 +65,14 @@ impl BeliefCost {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, cost: &WindowCost) -> Self {
-        Self(Kernel::new(device, &Self::stage(cost)))
+    pub fn new(gpu: &Gpu, cost: &WindowCost) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(cost)))
     }
 
     /// Compares the pixels of a strip of `left` with those of `right`, views of `size` as
     /// [`super::described`] leaves them.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         strip: Strip,
         range: DisparityRange,
@@ -89,6 +89,6 @@ impl BeliefCost {
             fours: range.count.div_ceil(4),
         };
         let groups = [width.div_ceil(WORKGROUP[0]), strip.rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "belief cost", &params), left, right, costs], groups)
+        self.0.dispatch(&params, &[left, right, costs], groups)
     }
 }

@@ -1,7 +1,7 @@
 //! The data costs of a coarser grid. `shaders/kamencay/belief_reduce.wgsl`.
 
 use crate::{
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
     kamencay::grid::FAR,
 };
 
@@ -16,6 +16,7 @@ shader_struct! {
 }
 
 /// The kernel that halves a grid.
+#[derive(Debug)]
 pub struct BeliefReduce(Kernel);
 
 impl BeliefReduce {
@@ -34,21 +35,20 @@ impl BeliefReduce {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Adds up the costs of a `fine` grid of `size` with so many `fours` of disparities a node.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         fours: u32,
         fine: &wgpu::Buffer,
         coarse: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = uniform_buffer(device, "belief reduce", &Params { width, height, words: 2 * fours });
+        let params = Params { width, height, words: 2 * fours };
         let groups = [width.div_ceil(2).div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, fine, coarse], groups)
+        self.0.dispatch(&params, &[fine, coarse], groups)
     }
 }

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -50,6 +50,7 @@ shader_struct! {
 }
 
 /// The kernel of the selection.
+#[derive(Debug)]
 pub struct BeliefSelect(Kernel);
 
 impl BeliefSelect {
@@ -68,14 +69,13 @@ impl BeliefSelect {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &Self::stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &Self::stage()))
     }
 
     /// Selects in a grid of `size`; a [`Winner`] a pixel.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         disparities: u32,
         [costs, messages]: [&wgpu::Buffer; 2],
@@ -83,6 +83,6 @@ impl BeliefSelect {
     ) -> Dispatch {
         let params = Params { width, height, disparities, fours: disparities.div_ceil(4) };
         let groups = [width.div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&uniform_buffer(device, "belief select", &params), costs, messages, winners], groups)
+        self.0.dispatch(&params, &[costs, messages, winners], groups)
     }
 }

@@ -1,6 +1,6 @@
 //! Mean-shift filtering. `shaders/kamencay/mean_shift.wgsl`.
 
-use crate::gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -26,6 +26,7 @@ shader_struct! {
 }
 
 /// The kernel of mean-shift filtering.
+#[derive(Debug)]
 pub struct MeanShift(Kernel);
 
 impl MeanShift {
@@ -47,20 +48,14 @@ impl MeanShift {
     }
 
     /// Compiles it.
-    pub fn new(device: &Context<'_>, seeking: &ModeSeeking) -> Self {
-        Self(Kernel::new(device, &Self::stage(seeking)))
+    pub fn new(gpu: &Gpu, seeking: &ModeSeeking) -> Self {
+        Self(Kernel::new(gpu, &Self::stage(seeking)))
     }
 
     /// Writes the colour of each pixel's mode; both buffers hold a word a pixel, red in its lowest byte.
-    pub fn prepare(
-        &self,
-        device: &wgpu::Device,
-        (width, height): (u32, u32),
-        pixels: &wgpu::Buffer,
-        modes: &wgpu::Buffer,
-    ) -> Dispatch {
-        let params = uniform_buffer(device, "mean shift", &Params { width, height });
+    pub fn prepare(&self, (width, height): (u32, u32), pixels: &wgpu::Buffer, modes: &wgpu::Buffer) -> Dispatch {
+        let params = Params { width, height };
         let groups = [width.div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &[&params, pixels, modes], groups)
+        self.0.dispatch(&params, &[pixels, modes], groups)
     }
 }

@@ -1,10 +1,6 @@
 //! RGBA8 to packed luma. `shaders/luma/luma.wgsl`.
 
-use crate::{
-    error::Result,
-    gpu::{Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, storage_buffer, uniform_buffer},
-    luma::packed_bytes,
-};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -28,32 +24,19 @@ pub fn stage() -> Stage {
     }
 }
 
-/// RGBA8 to packed luma for pictures of one size: `(77 R + 150 G + 29 B + 128) >> 8`.
-pub struct RgbaToLuma {
-    dispatch: Dispatch,
-    luma: wgpu::Buffer,
-}
+/// The kernel from RGBA8 to packed luma: `(77 R + 150 G + 29 B + 128) >> 8`.
+#[derive(Debug)]
+pub struct RgbaToLuma(Kernel);
 
 impl RgbaToLuma {
-    /// Reads `pixels`: a word a pixel, red in its lowest byte.
-    ///
-    /// # Errors
-    /// [`crate::Error::TooLarge`] where the device cannot bind the picture.
-    pub fn new(device: &Context<'_>, pixels: &wgpu::Buffer, width: u32, height: u32) -> Result<Self> {
-        let params = uniform_buffer(device, "luma size", &Params { width, height });
-        let luma = storage_buffer(device, "luma", packed_bytes(width, height))?;
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
+    }
+
+    /// Turns `pixels`, one word per pixel with red in its lowest byte, into packed `luma`.
+    pub fn prepare(&self, (width, height): (u32, u32), pixels: &wgpu::Buffer, luma: &wgpu::Buffer) -> Dispatch {
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        let dispatch = Kernel::new(device, &stage()).dispatch(device, &[&params, pixels, &luma], groups);
-        Ok(Self { dispatch, luma })
-    }
-
-    /// Records the conversion.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch.record(encoder);
-    }
-
-    /// The packed picture.
-    pub fn luma(&self) -> &wgpu::Buffer {
-        &self.luma
+        self.0.dispatch(&Params { width, height }, &[pixels, luma], groups)
     }
 }

@@ -1,7 +1,7 @@
 //! A texture's colours to packed luma, so that a renderer's pictures need not be read back.
 //! `shaders/luma/luma_texture.wgsl`.
 
-use crate::gpu::{Bindable, Binding, Context, Dispatch, Kernel, ShaderType, Stage, shader_struct, uniform_buffer};
+use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -59,28 +59,25 @@ pub fn stage() -> Stage {
 }
 
 /// The kernel.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct LumaTexture(Kernel);
 
 impl LumaTexture {
     /// Compiles it.
-    pub fn new(device: &Context<'_>) -> Self {
-        Self(Kernel::new(device, &stage()))
+    pub fn new(gpu: &Gpu) -> Self {
+        Self(Kernel::new(gpu, &stage()))
     }
 
     /// Turns the texels of `picture`, whose view has `size` pixels and this format, into packed `luma`.
     pub fn prepare(
         &self,
-        device: &wgpu::Device,
         (width, height): (u32, u32),
         format: TexelFormat,
         picture: &wgpu::TextureView,
         luma: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, height, grey: format.grey.into(), linear: format.srgb.into() };
-        let params = uniform_buffer(device, "luma of a texture", &params);
-        let bound: [&dyn Bindable; 3] = [&params, picture, luma];
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(device, &bound, groups)
+        self.0.dispatch(&params, &[picture, luma], groups)
     }
 }

@@ -6,14 +6,12 @@ use hsad::{
     cpu::dense::box_mean,
     dense::kernels::{BoxMean, VolumeBand},
     disparity::DisparityRange,
-    gpu::Context,
 };
 
 use crate::common::*;
 
 /// The means of the rows `wanted`, from the costs of the rows `known`.
 fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Range<u32>, count: u32) -> Vec<u8> {
-    let device = &Context::from(&gpu().device);
     let range = DisparityRange::new(0, count).unwrap();
     let band = VolumeBand { width, first_row: 0, rows: known.end - known.start, range };
     let row = 4 * band.row_words() as usize;
@@ -21,7 +19,7 @@ fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Ran
     let costs = upload(&bytemuck::pod_collect_to_vec::<u8, u32>(costs));
     let means = upload(&vec![u32::MAX; (band.row_words() * band.rows) as usize]);
     let rows = wanted.start - known.start..wanted.end - known.start;
-    let dispatches = BoxMean::new(device, side).prepare(device, &band, rows.clone(), &costs, &means);
+    let dispatches = BoxMean::new(gpu(), side).prepare(&band, rows.clone(), &costs, &means);
     bench().run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
     bytemuck::cast_slice(&download::<u32>(&costs))[..row * rows.len()].to_vec()
 }

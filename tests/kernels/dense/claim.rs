@@ -19,7 +19,7 @@ fn the_twin_lets_the_same_claims_hold() {
                 let cost = u32::from(costs.get(x, y) / 16);
                 (cost > 2).then(|| (cost, range.min + i32::from(disparities.get(x, y)) % 30))
             });
-            assert_twin(&format!("{width}x{height} {view:?}"), &ClaimTrial { winners, view, range, key_offset: 2 });
+            assert_twin(&format!("{width}x{height} {view:?}"), &ClaimTrial { winners, view, range, spare_rows: 1 });
         }
     }
 }
@@ -29,6 +29,6 @@ fn by_hand() {
     // Pixels 2 and 3 both claim pixel 1 of the right view, of which the second is cheaper; 0 leads outside.
     let winners = Plane::new(4, 1, vec![Some((1, 1)), None, Some((9, 1)), Some((4, 2))]).unwrap();
     let range = DisparityRange::new(0, 3).unwrap();
-    let trial = ClaimTrial { winners, view: View::Left, range, key_offset: 2 };
+    let trial = ClaimTrial { winners, view: View::Left, range, spare_rows: 1 };
     assert_eq!(leaves(&trial), [vec![NONE, 2 * SCALE, NONE, NONE].into()]);
 }

@@ -1,16 +1,12 @@
 //! The dense half as a whole, in step with the twins.
 
-use std::{
-    sync::atomic::{AtomicBool, Ordering},
-    thread,
-    time::Duration,
-};
+use std::{sync::mpsc::channel, thread, time::Duration};
 
 use hsad::{
     config::Preset,
     cpu::dense::compute,
     dense::{
-        self, Aggregation, Brightness, Cost, DenseConfig, Destination, Difference, Matcher, OtherView, Paths,
+        self, Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Destination, Difference, Matcher, Paths,
         Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
     },
     disparity::{DisparityRange, coverage},
@@ -37,12 +33,12 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
 }
 
-fn semi_global(reference: View, window: u32, paths: Paths, other_view: OtherView) -> DenseConfig {
+fn semi_global(reference: View, window: u32, paths: Paths, cross_check: CrossCheck) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     DenseConfig {
-        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, other_view }),
+        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }),
         refinement: Some(Refinement {
             support: 9,
             medians_before: 1,
@@ -67,10 +63,10 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Right, config(View::Right)),
             (View::Left, coarse_to_fine(View::Left)),
             (View::Right, coarse_to_fine(View::Right)),
-            (View::Left, semi_global(View::Left, 1, Paths::Three, OtherView::Claimed)),
-            (View::Right, semi_global(View::Right, 1, Paths::Four, OtherView::Searched)),
-            (View::Left, semi_global(View::Left, 5, Paths::None, OtherView::Searched)),
-            (View::Right, semi_global(View::Right, 3, Paths::Three, OtherView::Claimed)),
+            (View::Left, semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed)),
+            (View::Right, semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched)),
+            (View::Left, semi_global(View::Left, 5, Paths::None, CrossCheck::Searched)),
+            (View::Right, semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed)),
         ] {
             let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
@@ -92,26 +88,26 @@ fn bands_leave_no_trace() {
     for config in [
         config(View::Left),
         coarse_to_fine(View::Left),
-        semi_global(View::Right, 1, Paths::Three, OtherView::Claimed),
-        semi_global(View::Left, 1, Paths::Eight, OtherView::Searched),
-        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
-        semi_global(View::Left, 3, Paths::Four, OtherView::Claimed),
+        semi_global(View::Right, 1, Paths::Three, CrossCheck::Claimed),
+        semi_global(View::Left, 1, Paths::Eight, CrossCheck::Searched),
+        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
+        semi_global(View::Left, 3, Paths::Four, CrossCheck::Claimed),
     ] {
         in_bands(&left, &right, &config);
     }
 }
 
 fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
-    let whole = dense::compute(gpu(), left, right, config).unwrap();
+    let whole = block_on(dense::compute(gpu(), left, right, config)).unwrap();
     assert!(coverage(&whole.disparity) > 0.3);
     for rows in [1, 7, 64, 130] {
-        let banded = Matcher::with_band_rows(&gpu().device, (130, 131), config, rows).unwrap();
+        let banded = block_on(Matcher::with_band_rows(gpu(), (130, 131), config, rows)).unwrap();
         write(&banded, left, right);
         // Whole cells, where each has a range of its own.
         let in_cells = *config == coarse_to_fine(View::Left);
         let rows_of_band = if in_cells { (rows / CELL * CELL).max(CELL) } else { rows };
         assert_eq!(banded.bands(), 131_usize.div_ceil(rows_of_band as usize));
-        let banded = banded.run(gpu()).unwrap();
+        let banded = banded.run().unwrap();
         assert_same(&format!("bands of {rows}"), banded.disparity.data(), whole.disparity.data());
         assert_same(&format!("bands of {rows}"), banded.confidence.data(), whole.confidence.data());
     }
@@ -120,13 +116,12 @@ fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
 #[test]
 fn twice_in_one_encoder_and_after_garbage() {
     let (left, right) = pair(97, 33);
-    let expected = dense::compute(gpu(), &left, &right, &config(View::Left)).unwrap();
-    let device = &gpu().device;
-    let matcher = Matcher::new(device, (97, 33), &config(View::Left)).unwrap();
+    let expected = block_on(dense::compute(gpu(), &left, &right, &config(View::Left))).unwrap();
+    let matcher = Matcher::new(gpu(), (97, 33), &config(View::Left)).unwrap();
     write(&matcher, &left, &right);
     let maps = [0; 2].map(|_| [0; 2].map(|_| upload(&vec![7_u32; 97 * 33])));
     let outputs = maps.each_ref().map(|[disparities, confidences]| {
-        matcher.outputs(device, Destination::Buffer(disparities), Some(confidences)).unwrap()
+        matcher.outputs(Destination::Buffer(disparities), Some(confidences)).unwrap()
     });
     bench().run(|encoder| {
         matcher.record(encoder, &outputs[0]);
@@ -139,40 +134,34 @@ fn twice_in_one_encoder_and_after_garbage() {
     }
 }
 
-/// An executor may move the future to another thread, and all it needs is someone who polls the device.
+/// An executor may move the future to another thread, and need not know that there is a device to be polled.
 #[test]
-fn awaited_while_another_thread_polls_the_device() {
+fn awaited_where_nobody_polls_the_device() {
     fn sent<F: Future + Send>(future: F) -> F {
         future
     }
-    let (left, right) = pair(97, 33);
-    let done = AtomicBool::new(false);
-    let awaited = thread::scope(|scope| {
-        scope.spawn(|| {
-            while !done.load(Ordering::Relaxed) {
-                gpu().device.poll(wgpu::PollType::Poll).unwrap();
-                thread::sleep(Duration::from_millis(1));
-            }
-        });
-        let awaited = pollster::block_on(sent(dense::compute_async(gpu(), &left, &right, &config(View::Left))));
-        done.store(true, Ordering::Relaxed);
-        awaited.unwrap()
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        let (left, right) = pair(97, 33);
+        let own = strict();
+        let config = config(View::Left);
+        let compute = sent(dense::compute(&own, &left, &right, &config));
+        sender.send(pollster::block_on(compute)).unwrap();
     });
-    assert_same(
-        "disparities",
-        awaited.disparity.data(),
-        compute(&left, &right, &config(View::Left)).unwrap().disparity.data(),
-    );
+    let awaited = receiver.recv_timeout(Duration::from_secs(120)).expect("a future that ends").unwrap();
+    let (left, right) = pair(97, 33);
+    let expected = compute(&left, &right, &config(View::Left)).unwrap();
+    assert_same("disparities", awaited.disparity.data(), expected.disparity.data());
 }
 
 #[test]
 fn several_threads_wait_for_one_device() {
     let (left, right) = pair(97, 33);
     let expected = compute(&left, &right, &config(View::Left)).unwrap();
-    let matcher = Matcher::new(&gpu().device, (97, 33), &config(View::Left)).unwrap();
+    let matcher = Matcher::new(gpu(), (97, 33), &config(View::Left)).unwrap();
     write(&matcher, &left, &right);
     thread::scope(|scope| {
-        let threads = [0; 4].map(|_| scope.spawn(|| [0; 5].map(|_| matcher.run(gpu()).unwrap())));
+        let threads = [0; 4].map(|_| scope.spawn(|| [0; 5].map(|_| matcher.run().unwrap())));
         for maps in threads.map(|thread| thread.join().unwrap()) {
             maps.iter().for_each(|map| assert_same("disparities", map.disparity.data(), expected.disparity.data()));
         }
@@ -185,16 +174,19 @@ fn what_cannot_be_is_refused_by_both_alike() {
     let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
     let even = config(View::Left).with_window(8);
     let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
-    let even_costs = semi_global(View::Left, 4, Paths::None, OtherView::Claimed);
-    let wide_costs = semi_global(View::Left, 33, Paths::Three, OtherView::Claimed);
+    let even_costs = semi_global(View::Left, 4, Paths::None, CrossCheck::Claimed);
+    let wide_costs = semi_global(View::Left, 33, Paths::Three, CrossCheck::Claimed);
     for config in [far, even, unsure, even_costs, wide_costs] {
-        let device = dense::compute(gpu(), &left, &right, &config).unwrap_err();
+        let device = block_on(dense::compute(gpu(), &left, &right, &config)).unwrap_err();
         let twin = compute(&left, &right, &config).unwrap_err();
         assert!(matches!(device, Error::Parameter { .. }), "{device}");
         assert_eq!(device.to_string(), twin.to_string());
     }
     let small = Luma::filled(39, 30, 0);
-    assert!(matches!(dense::compute(gpu(), &left, &small, &config(View::Left)), Err(Error::SizesDiffer { .. })));
+    assert!(matches!(
+        block_on(dense::compute(gpu(), &left, &small, &config(View::Left))),
+        Err(Error::SizesDiffer { .. })
+    ));
 }
 
 /// The same adapter with the smallest limits that WebGPU knows.
@@ -207,7 +199,7 @@ fn with_limits(required_limits: wgpu::Limits) -> Gpu {
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
     let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
-    Gpu { device, queue, info: adapter.get_info() }
+    Gpu::new(device, queue)
 }
 
 /// A device that binds less than a pair's maps and transforms need: the result is the same.
@@ -217,18 +209,18 @@ fn no_buffer_needs_to_hold_a_whole_view() {
     let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
     let small = with_limits(small);
     for config in [
-        semi_global(View::Left, 1, Paths::Three, OtherView::Claimed),
-        semi_global(View::Right, 1, Paths::Four, OtherView::Searched),
-        semi_global(View::Left, 5, Paths::None, OtherView::Claimed),
-        semi_global(View::Right, 3, Paths::Three, OtherView::Claimed),
+        semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed),
+        semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched),
+        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
+        semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed),
         coarse_to_fine(View::Right),
         DenseConfig {
-            refinement: semi_global(View::Left, 1, Paths::Four, OtherView::Claimed).refinement,
+            refinement: semi_global(View::Left, 1, Paths::Four, CrossCheck::Claimed).refinement,
             ..config(View::Left)
         },
     ] {
-        let expected = dense::compute(gpu(), &left, &right, &config).unwrap();
-        let actual = dense::compute(&small, &left, &right, &config).unwrap();
+        let expected = block_on(dense::compute(gpu(), &left, &right, &config)).unwrap();
+        let actual = block_on(dense::compute(&small, &left, &right, &config)).unwrap();
         assert_same("disparities", actual.disparity.data(), expected.disparity.data());
         assert_same("confidences", actual.confidence.data(), expected.confidence.data());
     }
@@ -242,7 +234,7 @@ fn a_pair_too_large_for_one_buffer() {
     let right = Luma::from_fn(width, height, |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
     let left = Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
     let config = DenseConfig::new(DisparityRange::new(0, 5).unwrap()).with_window(3);
-    let dense = dense::compute(&strict(), &left, &right, &config).unwrap();
+    let dense = block_on(dense::compute(&strict(), &left, &right, &config)).unwrap();
     // The twin on cuts of it, without the rows whose windows see the cut; the second has the border
     // between two bands in its middle.
     let rows = 20;
@@ -270,7 +262,7 @@ fn no_preset_trusts_pairs_that_show_nothing() {
             let config = preset.config().dense(DisparityRange::new(min, count).unwrap(), Brightness::SAME);
             for (name, left, right) in &pairs {
                 let what = format!("{preset:?}, {name}, {count} from {min}");
-                let actual = dense::compute(gpu(), left, right, &config).unwrap();
+                let actual = block_on(dense::compute(gpu(), left, right, &config)).unwrap();
                 let expected = compute(left, right, &config).unwrap();
                 assert_same(&what, actual.disparity.data(), expected.disparity.data());
                 assert_same(&what, actual.confidence.data(), expected.confidence.data());
@@ -285,14 +277,14 @@ fn no_preset_trusts_pairs_that_show_nothing() {
 fn a_profile_has_a_time_for_each_kernel_and_the_same_map() {
     let (left, right) = (picture(60, 50, 31), picture(60, 50, 32));
     let config = coarse_to_fine(View::Left);
-    let matcher = Matcher::new(&gpu().device, (60, 50), &config).unwrap();
+    let matcher = Matcher::new(gpu(), (60, 50), &config).unwrap();
     write(&matcher, &left, &right);
     if !gpu().device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-        assert!(matches!(matcher.profile(gpu()), Err(Error::Unsupported(_))));
+        assert!(matches!(block_on(matcher.profile()), Err(Error::Unsupported(_))));
         return;
     }
-    let (dense, times) = matcher.profile(gpu()).unwrap();
-    assert_eq!(dense, matcher.run(gpu()).unwrap());
+    let (dense, times) = block_on(matcher.profile()).unwrap();
+    assert_eq!(dense, matcher.run().unwrap());
     let names: Vec<_> = times.iter().map(|(name, _)| *name).collect();
     let first = ["halve", "halve", "pad", "pad", "block_match", "block_match", "cell_ranges"];
     assert_eq!((&names[..7], names.last()), (&first[..], Some(&"block_match")));

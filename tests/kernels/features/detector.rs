@@ -8,7 +8,7 @@ use hsad::{
     verify::points::FeaturesTrial,
 };
 
-use crate::common::{SIZES, assert_twin, bench, gpu, picture, pictures};
+use crate::common::{SIZES, assert_twin, bench, block_on, gpu, picture, pictures};
 
 /// A Gaussian blob around a centre on a ground of 128.
 fn blob(width: u32, height: u32, centre: (f32, f32), sigma: f32, height_of_blob: f32) -> Luma {
@@ -27,7 +27,7 @@ fn a_blob_is_found_where_it_is() {
     for (height, dark) in [(100.0, false), (-100.0, true)] {
         for (centre, sigma) in [((40.3, 50.8), 2.5), ((64.0, 47.5), 4.0), ((60.6, 60.2), 8.0)] {
             let picture = blob(128, 120, centre, sigma, height);
-            let found = detect(gpu(), &picture, &FeatureConfig::default()).unwrap();
+            let found = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap();
             let found = strongest(&found);
             assert!((found.x - centre.0).abs() < 0.2 && (found.y - centre.1).abs() < 0.2, "{centre:?}: {found:?}");
             assert!(found.scale / sigma > 0.6 && found.scale / sigma < 1.4, "sigma {sigma}: {}", found.scale);
@@ -42,7 +42,7 @@ fn pictures_of_any_size_are_accepted() {
     for (width, height) in SIZES {
         for upright in [true, false] {
             let config = FeatureConfig { upright, ..FeatureConfig::default() };
-            let found = detect(gpu(), &picture(width, height, 6), &config).unwrap();
+            let found = block_on(detect(gpu(), &picture(width, height, 6), &config)).unwrap();
             assert_eq!(found.is_empty(), width.min(height) < 30, "{width}x{height}: {}", found.len());
             for feature in found {
                 assert!(feature.x >= 0.0 && feature.x < width as f32 && feature.y >= 0.0 && feature.y < height as f32);
@@ -58,10 +58,10 @@ fn pictures_of_any_size_are_accepted() {
 fn the_same_picture_gives_the_same_list() {
     let picture = picture(311, 239, 7);
     let config = FeatureConfig { upright: false, ..FeatureConfig::default() };
-    let first = detect(gpu(), &picture, &config).unwrap();
+    let first = block_on(detect(gpu(), &picture, &config)).unwrap();
     assert!(first.len() > 100, "{}", first.len());
     for _ in 0..3 {
-        assert_eq!(detect(gpu(), &picture, &config).unwrap(), first);
+        assert_eq!(block_on(detect(gpu(), &picture, &config)).unwrap(), first);
     }
 }
 
@@ -71,21 +71,23 @@ fn a_detector_is_used_again_for_the_next_picture() {
     let pictures = [picture(width, height, 8), Luma::filled(width, height, 9), picture(width, height, 10)];
     let config = FeatureConfig::default();
     let luma = bench().upload_luma(&pictures[0]).unwrap();
-    let detector = Detector::new(&gpu().device, &luma, width, height, &config).unwrap();
+    let detector = block_on(Detector::new(gpu(), (width, height), &config)).unwrap();
+    let input = block_on(detector.input(&luma)).unwrap();
     for picture in pictures {
         bench().write(&luma, &pack(&picture));
-        bench().run(|encoder| detector.record(encoder));
-        let found = detector.read(&gpu().device, &gpu().queue).unwrap();
-        assert_eq!(found, detect(gpu(), &picture, &config).unwrap());
+        bench().run(|encoder| detector.record(encoder, &input));
+        let found = block_on(detector.read()).unwrap();
+        assert_eq!(found, block_on(detect(gpu(), &picture, &config)).unwrap());
     }
 }
 
 #[test]
 fn more_than_there_is_room_for_is_an_error_that_says_so() {
     let picture = picture(311, 239, 7);
-    let all = detect(gpu(), &picture, &FeatureConfig::default()).unwrap().len();
+    let all = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap().len();
     let room = all as u32 - 1;
-    let error = detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }).unwrap_err();
+    let error = block_on(detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }))
+        .unwrap_err();
     assert!(matches!(error, Error::Parameter { name: "max_features", .. }), "{error}");
     let text = error.to_string();
     assert!(
@@ -93,13 +95,13 @@ fn more_than_there_is_room_for_is_an_error_that_says_so() {
         "{text}"
     );
     let exactly = FeatureConfig { max_features: all as u32, ..FeatureConfig::default() };
-    assert_eq!(detect(gpu(), &picture, &exactly).unwrap().len(), all);
+    assert_eq!(block_on(detect(gpu(), &picture, &exactly)).unwrap().len(), all);
 }
 
 #[test]
 fn parameters_out_of_range_are_refused() {
     let config = FeatureConfig { octaves: 6, ..FeatureConfig::default() };
-    let error = detect(gpu(), &picture(20, 20, 1), &config).unwrap_err();
+    let error = block_on(detect(gpu(), &picture(20, 20, 1), &config)).unwrap_err();
     assert!(matches!(error, Error::Parameter { name: "octaves", .. }), "{error}");
 }
 

@@ -1,7 +1,6 @@
 use hsad::{
     cpu::features::{integral::IntegralImage, integral_rows::integral_rows},
     features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
-    gpu::Context,
     image::{Luma, Plane},
     verify::integral::ColumnsTrial,
 };
@@ -23,14 +22,15 @@ fn equals_the_twin() {
 
 /// Both passes, one after the other.
 fn integral_image(picture: &Luma) -> Vec<u32> {
-    let (device, (width, height)) = (&Context::from(&gpu().device), picture.size());
-    let rows = IntegralRows::new(device, &bench().upload_luma(picture).unwrap(), width, height).unwrap();
-    let columns = IntegralColumns::new(device, rows.sums(), width, height);
+    let (size, luma) = (picture.size(), bench().upload_luma(picture).unwrap());
+    let sums = bench().output((IntegralRows::bytes(size) / 4) as u32).unwrap();
+    let rows = IntegralRows::new(gpu()).prepare(size, &luma, &sums);
+    let columns = IntegralColumns::new(gpu()).prepare(size, &sums);
     bench().run(|encoder| {
         rows.record(encoder);
         columns.record(encoder);
     });
-    download(rows.sums())
+    download(&sums)
 }
 
 /// White sums to 6.12e9 here, beyond 2^32; every value is known without any summing.

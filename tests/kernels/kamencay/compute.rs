@@ -35,7 +35,7 @@ fn config(min: i32, count: u32) -> KamencayConfig {
 }
 
 fn compare(what: &str, (left, right): &(Picture, Picture), config: &KamencayConfig) {
-    let actual = kamencay::compute(gpu(), left, right, config).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let actual = block_on(kamencay::compute(gpu(), left, right, config)).unwrap_or_else(|e| panic!("{what}: {e}"));
     let expected = compute(left, right, config).unwrap();
     assert_same(what, actual.disparity.data(), expected.disparity.data());
     assert_same(what, actual.confidence.data(), expected.confidence.data());
@@ -70,7 +70,7 @@ fn a_shifted_picture_is_found_in_either_view() {
     let left = Picture::from_fn(120, 60, |x, y| right.get_clamped(i64::from(x) - 7, y.into()));
     for reference in [View::Left, View::Right] {
         let config = KamencayConfig { reference, ..config(-3, 20) };
-        let dense = kamencay::compute(gpu(), &left, &right, &config).unwrap();
+        let dense = block_on(kamencay::compute(gpu(), &left, &right, &config)).unwrap();
         let found = dense.disparity.data().iter().filter(|&&disparity| disparity == 7 * SCALE).count();
         assert!(found > 7000, "{reference:?}: {found} of 7200");
         assert!(dense.measured() > 0.85, "{}", dense.measured());
@@ -84,7 +84,7 @@ fn strips_are_those_of_the_twins_and_hardly_show() {
     let whole = compute(&left, &right, &config).unwrap();
     for rows in [48, 60, 130] {
         let bytes = 16 * 130 * 5 * rows;
-        let actual = kamencay::compute_within(gpu(), &left, &right, &config, bytes).unwrap();
+        let actual = block_on(kamencay::compute_within(gpu(), &left, &right, &config, bytes)).unwrap();
         let expected = compute_within(&left, &right, &config, bytes).unwrap();
         assert_same("strips", actual.disparity.data(), expected.disparity.data());
         assert_same("strips", actual.confidence.data(), expected.confidence.data());
@@ -92,7 +92,7 @@ fn strips_are_those_of_the_twins_and_hardly_show() {
         let others = pixels.filter(|(strip, whole)| strip != whole).count();
         assert!(others * 100 < whole.disparity.data().len(), "{rows} rows: {others} pixels differ");
     }
-    let error = kamencay::compute_within(gpu(), &left, &right, &config, 1000).unwrap_err();
+    let error = block_on(kamencay::compute_within(gpu(), &left, &right, &config, 1000)).unwrap_err();
     assert!(matches!(error, Error::TooLarge { .. }), "{error}");
 }
 
@@ -103,9 +103,9 @@ fn the_smallest_limits_are_enough() {
     let descriptor =
         wgpu::DeviceDescriptor { required_limits: wgpu::Limits::downlevel_defaults(), ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
-    let strict = Gpu { device, queue, info: adapter.get_info() };
+    let strict = Gpu::new(device, queue);
     let (left, right) = pair(97, 33);
-    let actual = kamencay::compute(&strict, &left, &right, &config(0, 20)).unwrap();
+    let actual = block_on(kamencay::compute(&strict, &left, &right, &config(0, 20))).unwrap();
     assert_same(
         "disparities",
         actual.disparity.data(),
@@ -119,12 +119,12 @@ fn what_cannot_be_is_refused_by_both_alike() {
     let mut unknown = config(0, 9);
     unknown.parameters.levels = 7;
     for config in [config(40, 8), unknown] {
-        let device = kamencay::compute(gpu(), &left, &right, &config).unwrap_err();
+        let device = block_on(kamencay::compute(gpu(), &left, &right, &config)).unwrap_err();
         let twin = compute(&left, &right, &config).unwrap_err();
         assert!(matches!(device, Error::Parameter { .. }), "{device}");
         assert_eq!(device.to_string(), twin.to_string());
     }
     let other = colours(39, 30, 1);
-    assert!(matches!(kamencay::compute(gpu(), &left, &other, &config(0, 9)), Err(Error::SizesDiffer { .. })));
+    assert!(matches!(block_on(kamencay::compute(gpu(), &left, &other, &config(0, 9))), Err(Error::SizesDiffer { .. })));
     assert!(matches!(compute(&left, &other, &config(0, 9)), Err(Error::SizesDiffer { .. })));
 }

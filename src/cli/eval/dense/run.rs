@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use hsad::{
     Result,
+    backend::Backend,
     config::Config,
     disparity::{fixed_point, in_pixels},
     eval::scene::{Scene, SceneFiles},
     image::Plane,
     io::{color, disparities, figure, pfm, png},
-    pair::Backend,
     pipeline,
 };
 use serde_json::Value;

@@ -3,13 +3,14 @@
 use glam::DVec2;
 use hsad::{
     Result,
+    backend::Backend,
     config::{self, Config, Preset},
     dense::Dense,
     disparity::pixels,
     eval::PointMatch,
+    gpu::block_on,
     io::Picture,
     kamencay::KamencayParameters,
-    pair::Backend,
     pipeline,
     wide_baseline::{WideBaselineConfig, match_views},
 };
@@ -91,7 +92,7 @@ impl Method {
         points: &[DVec2],
     ) -> Result<MethodMatches> {
         let Some(config) = self.dense() else {
-            let found = match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default())?;
+            let found = block_on(match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default()))?;
             let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
             let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
             return Ok(MethodMatches { points, at_points: matches.clone(), everywhere: matches });

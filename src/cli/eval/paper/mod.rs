@@ -17,8 +17,8 @@ use std::{
 use clap::Args;
 use hsad::{
     Error,
+    backend::Backend,
     eval::{conditions::Kind, scene::SceneFiles},
-    pair::Backend,
 };
 use serde_json::json;
 

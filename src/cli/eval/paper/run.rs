@@ -5,6 +5,7 @@ use std::time::Instant;
 use glam::DVec2;
 use hsad::{
     Result,
+    backend::Backend,
     dense::View,
     eval::{
         Truth,
@@ -12,7 +13,6 @@ use hsad::{
         scene::{Scene, SceneFiles},
     },
     io::Picture,
-    pair::Backend,
 };
 
 use super::{Paper, method::Method, record::Record, results::Cell};

@@ -2,6 +2,7 @@
 //! once from a texture, and one after the other from a buffer. It is bound as a storage texture that is only read: that
 //! has no mip levels, whose sizes lavapipe would work out for each lane of each load.
 
+use super::Gpu;
 use crate::error::{Error, Result};
 
 /// Words of a row of the texture: the widest that every device has.
@@ -13,9 +14,9 @@ pub(crate) fn in_rows(words: u64) -> u64 {
     words.next_multiple_of(ROW.into())
 }
 
-/// The most words that a texture of `device` holds.
-pub(crate) fn most_words(device: &wgpu::Device) -> u64 {
-    u64::from(ROW) * u64::from(device.limits().max_texture_dimension_2d)
+/// The most words that a texture of the device holds.
+pub(crate) fn most_words(gpu: &Gpu) -> u64 {
+    u64::from(ROW) * u64::from(gpu.device.limits().max_texture_dimension_2d)
 }
 
 /// A texture that holds the words of a buffer, one after the other, as `shaders/shared/words.wgsl` reads them.
@@ -30,8 +31,8 @@ impl WordTexture {
     ///
     /// # Errors
     /// [`Error::TooLarge`].
-    pub fn new(device: &wgpu::Device, label: &'static str, words: u64) -> Result<Self> {
-        let limit = most_words(device);
+    pub fn new(gpu: &Gpu, label: &'static str, words: u64) -> Result<Self> {
+        let limit = most_words(gpu);
         if words > limit {
             return Err(Error::TooLarge {
                 what: label.into(),
@@ -40,7 +41,7 @@ impl WordTexture {
                 way_out: "use a smaller picture, or a device with more of max_texture_dimension_2d".into(),
             });
         }
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d {
                 width: ROW,

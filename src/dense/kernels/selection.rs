@@ -7,7 +7,7 @@ use crate::{
 
 /// What is wanted of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub enum ResultKind {
     /// Sub-pixel disparities that pass the uniqueness check, and confidences.
     Matches,
     /// Whole disparities of all winners: enough for the other view's consistency check.
@@ -15,9 +15,9 @@ pub enum Wanted {
 }
 
 /// The constants of `shaders/shared/selection.wgsl`, for keys with so many bits for the disparity's index.
-pub(super) fn answer_constants(
+pub(super) fn selection_constants(
     interpolation: Interpolation,
-    wanted: Wanted,
+    wanted: ResultKind,
     index_bits: u32,
 ) -> [(&'static str, i64); 7] {
     const PARABOLA: i64 = 1;
@@ -31,7 +31,7 @@ pub(super) fn answer_constants(
         ("SHIFT", index_bits.into()),
         ("SCALE", SCALE.into()),
         ("NONE", NONE.into()),
-        ("FULL", (wanted == Wanted::Matches).into()),
+        ("FULL", (wanted == ResultKind::Matches).into()),
         ("PARABOLA", PARABOLA),
         ("EQUIANGULAR", EQUIANGULAR),
         ("INTERPOLATION", chosen),

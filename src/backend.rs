@@ -1,0 +1,94 @@
+//! What computes: a device, or the CPU twins.
+
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
+use crate::{
+    cpu,
+    dense::Dense,
+    error::Result,
+    features::{self, Feature, FeatureConfig},
+    gpu::{DeviceChoice, Gpu},
+    image::Luma,
+    io::Picture,
+    kamencay::{self, KamencayConfig},
+};
+
+/// What computes: a device, or the CPU twins.
+#[derive(Debug)]
+pub enum Backend {
+    /// The kernels on a device.
+    Gpu(Gpu),
+    /// The CPU twins, which take longer and need nothing. Dense results are the same bytes.
+    Cpu,
+}
+
+impl Backend {
+    /// Opens what was asked for.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open(choice: &DeviceChoice) -> Result<Self> {
+        block_on(Self::open_async(choice))
+    }
+
+    /// As [`Backend::open`], awaited.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
+        match choice {
+            DeviceChoice::Cpu => Ok(Self::Cpu),
+            _ => Ok(Self::Gpu(Gpu::open_async(choice).await?)),
+        }
+    }
+
+    /// The device's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => gpu.info().name,
+            Self::Cpu => "CPU twins".into(),
+        }
+    }
+
+    /// The graphics interface it is reached by.
+    pub fn api(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => gpu.info().backend.to_string(),
+            Self::Cpu => "none".into(),
+        }
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => {
+                let info = gpu.info();
+                format!("{} {}", info.driver, info.driver_info).trim().into()
+            }
+            Self::Cpu => "none".into(),
+        }
+    }
+
+    /// The interest points of one picture alone; for those of a pair there is [`crate::pair::Pair::features`].
+    ///
+    /// # Errors
+    /// As [`crate::features::detect`].
+    pub async fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+        match self {
+            Self::Gpu(gpu) => features::detect(gpu, luma, config).await,
+            Self::Cpu => cpu::features::detector::detect(luma, config),
+        }
+    }
+
+    /// The disparities of a pair by Kamencay's method, which sees the colours of the pictures.
+    ///
+    /// # Errors
+    /// As [`kamencay::compute`].
+    pub async fn kamencay(&self, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
+        match self {
+            Self::Gpu(gpu) => kamencay::compute(gpu, left, right, config).await,
+            Self::Cpu => cpu::kamencay::compute(left, right, config),
+        }
+    }
+}

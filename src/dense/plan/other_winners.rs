@@ -1,0 +1,49 @@
+//! Block matching of the other view: its winners, which confirm the matches of the reference view.
+
+use super::Plan;
+use crate::{
+    dense::{
+        config::DenseConfig,
+        kernels::{BlockMatch, ConfirmingMap, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile},
+    },
+    error::Result,
+    gpu::{Gpu, WordTexture},
+};
+
+/// The kernel that finds them, and the memory that they stand in.
+pub(super) struct OtherWinners {
+    find_winners: BlockMatch,
+    winners: (wgpu::Buffer, WordTexture),
+    layout: MapLayout,
+    max_difference: u32,
+}
+
+impl OtherWinners {
+    /// Allocates memory for the winners of the pixels of a map; none where `config` does not ask for them.
+    pub(super) fn new(gpu: &Gpu, plan: &mut Plan, config: &DenseConfig, layout: MapLayout) -> Result<Option<Self>> {
+        let Some(max_difference) = config.consistency else {
+            return Ok(None);
+        };
+        let (view, tile) = (config.reference.other(), Tile::of(gpu));
+        Ok(Some(Self {
+            find_winners: BlockMatch::new(gpu, config, view, ResultKind::Winners, tile),
+            winners: plan.words("winners of the other view", layout.pixels().into())?,
+            layout,
+            max_difference,
+        }))
+    }
+
+    /// Plans the search of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map.
+    pub(super) fn plan(
+        &self,
+        plan: &mut Plan,
+        (layout, planes): (&Layout, &WordTexture),
+        ranges: &Ranges,
+        first_row: i32,
+    ) -> ConfirmingMap<'_> {
+        let (buffer, words) = &self.winners;
+        plan.run(self.find_winners.prepare(layout, planes, ranges, None, MapBuffer { buffer, layout: self.layout }));
+        plan.fill_texture(buffer, words);
+        ConfirmingMap { words, width: layout.width(), first_row, max_difference: self.max_difference }
+    }
+}

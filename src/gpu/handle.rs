@@ -1,0 +1,110 @@
+//! The handle that everything on a device is built with.
+
+use super::device::{DeviceChoice, adapters, find};
+use crate::error::{Error, Result};
+
+/// A device and its queue, with the pipeline cache of the application if there is one: everything that computes on a
+/// device is built with a `Gpu`.
+///
+/// An application with a device of its own wraps its handles, which are cheap to clone:
+///
+/// ```
+/// use hsad::{Gpu, wgpu};
+///
+/// fn wrap(device: &wgpu::Device, queue: &wgpu::Queue, cache: &wgpu::PipelineCache) -> Gpu {
+///     Gpu::new(device.clone(), queue.clone()).with_cache(cache.clone())
+/// }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// The device's queue.
+    pub queue: wgpu::Queue,
+    /// The cache that compiled kernels are taken from and put into; of the same device.
+    pub cache: Option<wgpu::PipelineCache>,
+}
+
+impl Gpu {
+    /// Wraps a device and its queue. Without the queue of another device nothing works, and wgpu reports that only to the
+    /// device's handler of uncaptured errors.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        Self { device, queue, cache: None }
+    }
+
+    /// The same handle with an application's pipeline cache.
+    #[must_use]
+    pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
+        Self { cache: Some(cache), ..self }
+    }
+
+    /// Opens the chosen adapter, with the adapter's own limits for the size of buffers.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`], [`Error::NoSuchDevice`] (which lists those that exist), or
+    /// [`Error::Unsupported`] where the adapter refuses. [`DeviceChoice::Cpu`] is no adapter.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open(choice: &DeviceChoice) -> Result<Self> {
+        super::block_on(Self::open_async(choice))
+    }
+
+    /// As [`Gpu::open`], awaited.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
+        let mut adapters = adapters().await;
+        if adapters.is_empty() {
+            return Err(Error::NoAdapter);
+        }
+        let index = match choice {
+            DeviceChoice::Best => 0,
+            DeviceChoice::Named(wanted) => {
+                let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
+                find(&infos, wanted).ok_or_else(|| Error::NoSuchDevice {
+                    wanted: wanted.clone(),
+                    available: (0..).zip(&infos).map(|(i, info)| format!("{i}: {}, ", info.name)).collect::<String>()
+                        + "cpu",
+                })?
+            }
+            DeviceChoice::Cpu => {
+                return Err(Error::NoSuchDevice { wanted: "cpu".into(), available: "adapters only".into() });
+            }
+        };
+        let adapter = adapters.swap_remove(index);
+        let limits = adapter.limits();
+        // Compute needs no more than the downlevel defaults, except that larger pictures fit in
+        // one piece where the adapter has the room.
+        let required_limits = wgpu::Limits {
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            ..wgpu::Limits::downlevel_defaults()
+        };
+        // Timestamps only measure kernels; no kernel needs them.
+        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor =
+            wgpu::DeviceDescriptor { label: Some("hsad"), required_features, required_limits, ..Default::default() };
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
+            .map_err(|e| Error::Unsupported(format!("{}: {e}", adapter.get_info().name)))?;
+        Ok(Self::new(device, queue))
+    }
+
+    /// What the adapter says of itself.
+    pub fn info(&self) -> wgpu::AdapterInfo {
+        self.device.adapter_info()
+    }
+
+    /// Whether the driver is lavapipe, where loads are the bottleneck, registers spill into the first cache, and few
+    /// threads that keep much are faster than many. Other drivers that compute on the CPU take minutes to compile such
+    /// kernels.
+    pub(crate) fn is_lavapipe(&self) -> bool {
+        self.info().driver == "llvmpipe"
+    }
+
+    /// An encoder for the library's own submissions.
+    pub(crate) fn encoder(&self, label: &'static str) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+    }
+}

@@ -1,0 +1,46 @@
+//! The buffers and textures of an application: refused where they do not fit their use.
+
+use crate::error::{Error, Result};
+
+/// Refuses a buffer that is too small or may not be used so.
+pub(crate) fn check_buffer(
+    name: &'static str,
+    buffer: &wgpu::Buffer,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<()> {
+    if buffer.size() < bytes {
+        let value = format!("a buffer of {} bytes", buffer.size());
+        return Err(Error::Parameter { name, value, expected: format!("{bytes} bytes are needed") });
+    }
+    if !buffer.usage().contains(usage) {
+        let value = format!("a buffer with the usages {:?}", buffer.usage());
+        return Err(Error::Parameter { name, value, expected: format!("it needs {usage:?}") });
+    }
+    Ok(())
+}
+
+/// Refuses a texture of which no view has `size` pixels, or that may not be used so.
+///
+/// Which of its mip levels a view shows cannot be told: any that has the size will do.
+pub(crate) fn check_texture(
+    name: &'static str,
+    texture: &wgpu::Texture,
+    (width, height): (u32, u32),
+    usage: wgpu::TextureUsages,
+) -> Result<()> {
+    let refuse = |value, expected| Err(Error::Parameter { name, value, expected });
+    if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
+        let value = format!("a texture of {:?} with {} samples", texture.dimension(), texture.sample_count());
+        return refuse(value, "it must be a plain one of two dimensions".into());
+    }
+    let level = |level: u32| ((texture.width() >> level).max(1), (texture.height() >> level).max(1));
+    if !(0..texture.mip_level_count()).any(|mip| level(mip) == (width, height)) {
+        let value = format!("a texture of {}x{} pixels", texture.width(), texture.height());
+        return refuse(value, format!("the pair has {width}x{height}"));
+    }
+    if !texture.usage().contains(usage) {
+        return refuse(format!("a texture with the usages {:?}", texture.usage()), format!("it needs {usage:?}"));
+    }
+    Ok(())
+}
