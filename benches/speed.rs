@@ -1,8 +1,10 @@
-//! What the two halves take on a device, cold and warm: `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES [NAME]]]`,
-//! where the name is that of one thing to measure: 7x7, fast, balanced, quality or features.
+//! Run times of dense matching and of features on a device, cold and warm:
+//! `cargo bench --bench speed -- [LEFT RIGHT [DISPARITIES [NAME]]]`, where NAME selects one measurement: 7x7, fast,
+//! balanced, quality or features.
 //!
-//! One line a measurement: its name, the first run (which compiles) and the minimum and the median of
-//! the others, in milliseconds; below a dense one what each kernel takes by the device's clock. `scripts/compare-opencv.py` runs it beside OpenCV.
+//! One line per measurement: name, first run (which compiles), and minimum and median of the other runs, in
+//! milliseconds; below a dense measurement the time of each kernel by the device's clock. `scripts/compare-opencv.py`
+//! runs this benchmark beside OpenCV.
 #![expect(clippy::print_stdout, reason = "a benchmark prints")]
 
 use std::{
@@ -29,7 +31,7 @@ const RUNS: usize = 20;
 const PROFILES: usize = 12;
 
 fn main() -> hsad::Result<()> {
-    // Cargo adds a --bench of its own.
+    // Cargo adds an argument --bench.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
     let picture = |i: usize, name: &str| load::load(&arguments.get(i).map_or_else(|| root.join(name), Into::into));
@@ -39,12 +41,12 @@ fn main() -> hsad::Result<()> {
     let (width, height) = pair[0].size();
     println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info().name, gpu.info().driver_info);
     let luma = pair.each_ref().map(Picture::luma);
-    let is_wanted = |name: &str| arguments.get(3).is_none_or(|wanted| wanted == name);
-    dense(&gpu, &luma, disparities, is_wanted)?;
-    if is_wanted("features") { features(&gpu, &luma) } else { Ok(()) }
+    let is_selected = |name: &str| arguments.get(3).is_none_or(|selected| selected == name);
+    dense(&gpu, &luma, disparities, is_selected)?;
+    if is_selected("features") { features(&gpu, &luma) } else { Ok(()) }
 }
 
-/// Runs `work` and prints its times.
+/// Runs `work` repeatedly and prints its times.
 fn time(name: &str, mut work: impl FnMut() -> hsad::Result<()>) -> hsad::Result<()> {
     let mut run = || {
         let start = Instant::now();
@@ -73,7 +75,12 @@ fn submit(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
 }
 
 /// Block matching with a 7x7 window (both views, uniqueness, consistency and sub-pixel), then the presets.
-fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32, is_wanted: impl Fn(&str) -> bool) -> hsad::Result<()> {
+fn dense(
+    gpu: &Gpu,
+    [left, right]: &[Luma; 2],
+    disparities: u32,
+    is_selected: impl Fn(&str) -> bool,
+) -> hsad::Result<()> {
     let range = DisparityRange::new(0, disparities)?;
     let blocks = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
     let preset =
@@ -89,7 +96,7 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32, is_wanted: impl
         })
     });
     for (name, config) in [("7x7".into(), blocks)].into_iter().chain(presets) {
-        if !is_wanted(&name) {
+        if !is_selected(&name) {
             continue;
         }
         let start = Instant::now();
@@ -108,7 +115,7 @@ fn dense(gpu: &Gpu, [left, right]: &[Luma; 2], disparities: u32, is_wanted: impl
     Ok(())
 }
 
-/// What each kernel takes by the device's clock: its dispatches, each at its fastest.
+/// Prints the time of each kernel by the device's clock: the sum of its dispatches, each at its fastest.
 fn kernels(matcher: &Matcher) -> hsad::Result<()> {
     let (_, mut least) = block_on(matcher.profile())?;
     for _ in 1..PROFILES {
@@ -130,7 +137,7 @@ fn kernels(matcher: &Matcher) -> hsad::Result<()> {
     Ok(())
 }
 
-/// Both views detected and described, then matched.
+/// Times detection and description of both views, then matching and seeding.
 fn features(gpu: &Gpu, luma: &[Luma; 2]) -> hsad::Result<()> {
     let detectors = luma
         .iter()

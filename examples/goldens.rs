@@ -1,8 +1,8 @@
-//! Makes the golden hashes anew from the CPU twins, and shows which ones change:
+//! Computes the golden hashes from the CPU twins, writes them, and lists the changed ones:
 //!
 //!     cargo run --example goldens
 //!
-//! `git diff src/verify/goldens.txt` shows them again afterwards.
+//! `git diff src/verify/goldens.txt` shows the changes afterwards.
 #![allow(clippy::print_stdout, reason = "it is a command")]
 
 use std::{collections::BTreeMap, error::Error, fs, path::Path};

@@ -1,8 +1,8 @@
-//! The figures of a change that `hsad eval dense` does not tell: plain block matching over the true range, what the
-//! confidence and the range that is found are worth, and the share of matches that are right.
+//! Figures that `hsad eval dense` does not give, for judging a change: plain block matching over the true range,
+//! quality of the confidence and of the disparity range found, and precision of the matches.
 //!
-//! `cargo run --example measure -- [SCENE...]`, where a `SCENE` is what `hsad eval dense` takes; one that does not tell
-//! what both views see is left out. Without any, those of `data/`.
+//! `cargo run --example measure -- [SCENE...]`, with a `SCENE` as for `hsad eval dense`; scenes without a non-occlusion
+//! mask are left out. The default is the scenes of `data/`.
 #![expect(clippy::print_stdout, reason = "a measurement prints")]
 
 use std::path::Path;
@@ -31,25 +31,25 @@ struct Scene {
 }
 
 impl Scene {
-    /// The finite disparities of the truth, in pixels.
+    /// The known disparities of the ground truth, in pixels.
     fn known(&self) -> impl Iterator<Item = f32> {
         self.data.truth.data().iter().copied().filter(|disparity| disparity.is_finite())
     }
 
-    /// Per cent of pixels that are wrong by more than 2 px among the more confident half of all that are known.
+    /// Per cent of wrong pixels (error above 2 px) among the more confident half of the pixels with ground truth.
     fn confident(&self, dense: &Dense) -> f64 {
         let known = self.data.truth.data().iter().zip(dense.disparity.data()).zip(dense.confidence.data());
         let mut pixels: Vec<(u8, bool)> = known
             .filter(|((truth, _), _)| truth.is_finite())
             .map(|((truth, &d), &confidence)| (confidence, (d as f32 / SCALE as f32 - truth).abs() > 2.0))
             .collect();
-        // Of equal confidence the wrong ones first, so that nothing is gained by a tie.
+        // Among equally confident pixels the wrong ones come first, so that ties never help.
         pixels.sort_unstable_by(|a, b| b.cmp(a));
         pixels.truncate(pixels.len() / 2);
         100.0 * pixels.iter().filter(|(_, wrong)| *wrong).count() as f64 / pixels.len() as f64
     }
 
-    /// Whether a seed lies within 1 px of the truth, in its column and in its row; `None` where that is not known.
+    /// Whether a seed lies within 1 px of the ground truth, in column and row; `None` where that is unknown.
     fn is_right(&self, seed: &Seed) -> Option<bool> {
         let (width, height) = self.data.truth.size();
         let (x, y) = (seed.x.round(), seed.y.round());
@@ -60,7 +60,7 @@ impl Scene {
         truth.is_finite().then(|| (seed.disparity - truth).abs() <= 1.0 && seed.dy.abs() <= 1.0)
     }
 
-    /// Matches, and the right ones in per cent: of all, of the first 10, 100 and 500.
+    /// Number of matches, and their precision in per cent: of all, and of the first 10, 100 and 500.
     fn right(&self, seeds: &[Seed]) -> [f64; 5] {
         let known: Vec<bool> = seeds.iter().filter_map(|seed| self.is_right(seed)).collect();
         let share = |count: usize| {
@@ -164,8 +164,8 @@ fn main() -> Result<(), AnyError> {
     Ok(())
 }
 
-/// The share of all pixel-disparities of both views that a search coarse to fine looks at, in per cent: those of the cells,
-/// and both views at half the size; from the twins.
+/// Share of all pixel-disparities of both views that a coarse-to-fine search visits, in per cent: those of the cells,
+/// and both views at half the size; computed by the CPU twins.
 fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     let (size, range) = (pair.size(), config.range);
     let half =
@@ -179,7 +179,7 @@ fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     Ok(100.0 * (share(&ranges) + 2.0 / 8.0) / 2.0)
 }
 
-/// Prints a row of figures a scene, and their means.
+/// Prints one row of figures per scene, and their means.
 fn table<const N: usize>(
     title: &str,
     columns: &[&str; N],

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds the figures of `hsad eval dense` against numpy's, on real scenes.
+"""Compares the figures of `hsad eval dense` with those computed by numpy, on real scenes.
 
     check-metrics.py [--hsad PROGRAM] [--tolerance 1e-6] FOLDER...
 
-FOLDER holds scenes as data/ does. They are laid out in the three forms that the program reads: as they are, as those of
-Middlebury 2014, and as KITTI's. Each is scored with the map that the program finds and with three maps made here from
-the truth: perfect, empty, and noisy with holes. Needs numpy, and OpenCV or Pillow for pictures.
+FOLDER holds scenes in the layout of data/. The scenes are scored in the three layouts that the program reads: as they
+are, as Middlebury 2014, and as KITTI. Each is scored with the program's own map and with maps made here from the ground
+truth: perfect, empty, and noisy with holes. Needs numpy, and OpenCV or Pillow for pictures.
 """
 
 import argparse
@@ -39,7 +39,7 @@ except ImportError:
 
 
 def read_pfm(path):
-    """Values in pixels, +inf for unknown, the top row first."""
+    """The values of a PFM in pixels, +inf for unknown, the top row first."""
     with open(path, "rb") as file:
         assert file.readline().strip() == b"Pf", path
         width, height = map(int, file.readline().split())
@@ -66,7 +66,7 @@ def write_kitti(path, values):
 
 
 def figures(found, truth, scored):
-    """All figures of one region, from their definitions."""
+    """All figures of one region, computed from their definitions."""
     known = scored & np.isfinite(truth)
     estimated = known & np.isfinite(found)
     error = np.abs(found[estimated] - truth[estimated])
@@ -92,7 +92,7 @@ def figures(found, truth, scored):
 
 
 def reported(region):
-    """The program's figures under the same names; what there is none of is left out."""
+    """The program's figures under the same names, without undefined ones."""
     result = {key: value for key, value in region.items() if key not in ("bad", "d1")}
     for bad in region["bad"]:
         for of in ("of_all", "of_estimated"):
@@ -102,7 +102,7 @@ def reported(region):
 
 
 class Scene:
-    """Where a scene is, its truth, and the pixels that both views see (None: not known)."""
+    """Argument and name of a scene, its ground truth, and its non-occluded pixels (None: unknown)."""
 
     def __init__(self, argument, name, truth, visible):
         self.argument, self.name, self.truth, self.visible = argument, name, truth, visible
@@ -143,7 +143,7 @@ def as_kitti(folders, root):
 
 
 def check(hsad, scenes, form, scratch):
-    """Scores `scenes` by both; the largest difference, and how many figures were compared."""
+    """Scores `scenes` by both; returns the largest difference and the number of figures compared."""
     out, maps = scratch / f"out-{form}", scratch / f"maps-{form}"
     random = np.random.default_rng(1)
     for scene in scenes:
@@ -154,23 +154,23 @@ def check(hsad, scenes, form, scratch):
         for name, values in made.items():
             write_pfm(maps / scene.name / f"{name}.pfm", values)
         write_kitti(maps / scene.name / "coded.png", made["noisy"].clip(0, 255))
-    given = {"perfect": "perfect.pfm", "empty": "empty.pfm", "noisy": "noisy.pfm", "coded": "coded.png"}
+    supplied = {"perfect": "perfect.pfm", "empty": "empty.pfm", "noisy": "noisy.pfm", "coded": "coded.png"}
     command = [hsad, "eval", "dense", *(scene.argument for scene in scenes), "-q", "-o", out, "--json", scratch / form]
-    command += [f"--disparity={name}={maps}/{{scene}}/{file}" for name, file in given.items()]
+    command += [f"--disparity={name}={maps}/{{scene}}/{file}" for name, file in supplied.items()]
     subprocess.run(command, check=True)
 
     by_name = {scene.name: scene for scene in scenes}
     report = json.loads((scratch / form).read_text())
-    assert len(report["results"]) == (1 + len(given)) * len(scenes), "a result is missing"
+    assert len(report["results"]) == (1 + len(supplied)) * len(scenes), "a result is missing"
     largest, count = 0.0, 0
     for result in report["results"]:
         scene, method = by_name[result["scene"]], result["method"]
-        path = out / scene.name / "disparity.pfm" if method == "hsad" else maps / scene.name / given[method]
+        path = out / scene.name / "disparity.pfm" if method == "hsad" else maps / scene.name / supplied[method]
         found = read_kitti(path) if path.suffix == ".png" else read_pfm(path)
         regions = {"all": np.full(scene.truth.shape, True), "non_occluded": scene.visible}
         for region, scored in regions.items():
             if scored is None:
-                assert result[region] is None, f"{scene.name}: non-occluded pixels out of nowhere"
+                assert result[region] is None, f"{scene.name}: non-occluded pixels without a mask"
                 continue
             expected = {k: v for k, v in figures(found, scene.truth, scored).items() if np.isfinite(v)}
             ours = reported(result[region])
@@ -194,7 +194,7 @@ def main():
     folders = sorted(path.parent for folder in arguments.folders for path in folder.glob("*/disp_left.pfm"))
     folders = [folder for folder in folders if (folder / "left.png").exists()]
     if not folders:
-        parser.error("no scenes there")
+        parser.error("there are no scenes in these folders")
     failed = False
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)

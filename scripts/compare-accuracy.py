@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Scores hsad's maps beside OpenCV's best filtered ones, on the same scenes, with one evaluator.
+"""Scores the maps of hsad and of OpenCV with its best filter, on the same scenes, by `hsad eval dense`.
 
     pip install opencv-contrib-python-headless
     cargo build
     scripts/compare-accuracy.py [--hsad PROGRAM] SCENE... [-- OPTIONS OF hsad eval dense]
 
-SCENE is a folder as those of data/. OpenCV's StereoSGBM runs along three paths (MODE_SGBM_3WAY) with blocks of 5x5
-and the penalties of its documentation, on pictures padded by the range so that no margin is lost, and its
-weighted-least-squares filter (ximgproc) fills and smooths the map with a search of both views; the filter's defaults
-(lambda 8000) blur so much that a far smaller one is taken, the best found on a street scene. It is told the truth's range in whole sixteens;
-hsad finds the range by itself.
+SCENE is a folder in the layout of data/. OpenCV's StereoSGBM runs along three paths (MODE_SGBM_3WAY) with blocks of
+5x5 and the penalties of its documentation, on pictures padded by the disparity range so that no margin is lost. Its
+weighted-least-squares filter (ximgproc) fills and smooths the map, with both views matched; the filter's default
+lambda of 8000 blurs so much that a far smaller one is used, the best found on a street scene. OpenCV gets the disparity
+range of the ground truth, rounded up to a multiple of 16; hsad finds the range by itself.
 """
 
 import pathlib
@@ -62,8 +62,8 @@ def main():
             disparities = int(truth[np.isfinite(truth)].max() // 16 + 1) * 16
             views = [cv2.imread(str(scene / name), cv2.IMREAD_GRAYSCALE) for name in ("left.png", "right.png")]
             write_pfm(f"{folder}/{scene.name}.pfm", filtered(*views, disparities))
-        given = f"OpenCV 3WAY + WLS={folder}/{{scene}}.pfm"
-        sys.exit(subprocess.run([program, "eval", "dense", *scenes, "--disparity", given, *options]).returncode)
+        maps = f"OpenCV 3WAY + WLS={folder}/{{scene}}.pfm"
+        sys.exit(subprocess.run([program, "eval", "dense", *scenes, "--disparity", maps, *options]).returncode)
 
 
 if __name__ == "__main__":

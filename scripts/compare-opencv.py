@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Times hsad beside OpenCV, in turn, on the same pair: block matching beside StereoBM, presets beside StereoSGBM.
+"""Times hsad and OpenCV in turn on the same pair: block matching against StereoBM, presets against StereoSGBM.
 
     pip install opencv-python-headless
     cargo build --release --benches
     scripts/compare-opencv.py LEFT RIGHT [--size 768x512] [--disparities 64] [--rounds 5]
 
-StereoBM runs with its window of 7 and two threads, with its texture, uniqueness (15 %) and
-left-right checks; hsad with a window of 7, uniqueness (15 %), left-right check and sub-pixel. StereoSGBM
-runs along eight paths (MODE_HH, block size 3, two threads), beside the presets balanced and quality. All
-are given as the minimum of some runs in a round; machines drift, so only the ratio of a round counts.
+StereoBM runs with a window of 7, two threads, and its texture, uniqueness (15 %) and left-right checks;
+hsad with a window of 7, uniqueness (15 %), left-right check and sub-pixel interpolation. StereoSGBM runs along
+eight paths (MODE_HH, block size 3, two threads), against the presets balanced and quality. Each time is the
+minimum of several runs in a round; machines drift, so only the ratio within a round counts.
 """
 
 import argparse
@@ -61,14 +61,14 @@ def main():
     parser.add_argument("--size", default="768x512")
     parser.add_argument("--disparities", type=int, default=64)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--binary", help="the built bench, by default the newest in target/release/deps")
+    parser.add_argument("--binary", help="path of the built benchmark [default: the newest in target/release/deps]")
     arguments = parser.parse_args()
 
     binary = arguments.binary
     if not binary:
         built = [path for path in glob.glob("target/release/deps/speed-*") if "." not in os.path.basename(path)]
         if not built:
-            parser.error("no bench is built: cargo build --release --benches")
+            parser.error("the benchmark is not built: cargo build --release --benches")
         binary = max(built, key=os.path.getmtime)
     size = tuple(int(side) for side in arguments.size.split("x"))
     cv2.setNumThreads(2)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Turns the disparities of a published stereo pair into disp_left.pfm, nonocc.png and meta.json.
+"""Converts the disparities of a published stereo pair to disp_left.pfm, nonocc.png and meta.json.
 
     convert-truth.py TRUTH SCENE_FOLDER KEY=VALUE...
 
-TRUTH is an .npz that holds one array of float32, or an 8-bit grey .png whose values are disparities and 0 is unknown.
-KEY=VALUE goes into meta.json (values are JSON, or text where they are not). scale_factor=N says that the values are N
-times the disparities, as those of Middlebury's pictures of a third (3) or half (2) of the size are. Needs nothing but Python's own library.
+TRUTH is an .npz with one array of float32, or an 8-bit grey .png whose values are disparities in pixels, 0 for unknown.
+KEY=VALUE goes into meta.json; VALUE is JSON, or else text. scale_factor=N: the values in TRUTH are N times the
+disparities, as for Middlebury's pictures of a third (3) or half (2) of the size. Needs only Python's standard library.
 """
 
 import array
@@ -19,7 +19,7 @@ import zlib
 
 
 def read_npz(path):
-    """The rows of the only array in an .npz (numpy.lib.format, version 1.0)."""
+    """The rows of the only array in an .npz (numpy.lib.format, version 1.0), infinity for unknown."""
     with zipfile.ZipFile(path) as archive:
         (name,) = archive.namelist()
         data = archive.read(name)
@@ -37,7 +37,7 @@ def read_npz(path):
 
 
 def read_grey_png(path):
-    """The rows of an 8-bit grey picture, 0 as infinity (PNG specification, sections 5, 7 and 9)."""
+    """The rows of an 8-bit grey PNG, infinity for 0 (PNG specification, sections 5, 7 and 9)."""
     data = path.read_bytes()
     chunks, at = {}, 8
     while at < len(data):
@@ -66,7 +66,7 @@ def read_grey_png(path):
 
 
 def write_pfm(path, rows):
-    """A grey PFM: little-endian, the bottom row first."""
+    """Writes a grey PFM: little-endian, the bottom row first."""
     with path.open("wb") as file:
         file.write(f"Pf\n{len(rows[0])} {len(rows)}\n-1.0\n".encode())
         for row in reversed(rows):
@@ -74,7 +74,7 @@ def write_pfm(path, rows):
 
 
 def write_grey_png(path, rows):
-    """An 8-bit grey picture."""
+    """Writes an 8-bit grey PNG."""
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -85,7 +85,7 @@ def write_grey_png(path, rows):
 
 
 def visible(row):
-    """255 for each pixel of a row that no nearer one (by more than 1 px) covers in the right view, else 0."""
+    """The non-occlusion mask of a row: 255 for a pixel that no pixel nearer by more than 1 px covers in the right view."""
     nearest = {}
     for x, disparity in enumerate(row):
         if disparity != math.inf:

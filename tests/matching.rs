@@ -1,4 +1,4 @@
-//! Matching held to its definition: against a naive search, and under exchange and permutation.
+//! Matching compared with its definition: with a naive search, and under exchange and permutation.
 
 use hsad::{
     disparity::DisparityRange,
@@ -133,7 +133,7 @@ proptest! {
     }
 }
 
-/// Chords of 0.2 and 0.8 on the unit circle: a ratio of 0.25.
+/// Descriptor distances of 0.2 and 0.8, chords on the unit circle, give a ratio of 0.25.
 #[test]
 fn confidence_is_one_minus_the_ratio_to_the_rival() {
     let left = [feature(50.0, 10.0, false, &[1.0, 0.0])];
@@ -184,7 +184,7 @@ fn values_that_are_no_numbers_match_nothing() {
     assert_eq!(pairs(&match_features(&odd, &[good], &config).unwrap()), [(3, 0)]);
 }
 
-/// More candidates than a block holds, one of them not a number: it must hide none of its neighbours.
+/// A NaN descriptor among more candidates than a block holds must not hide its neighbours.
 #[test]
 fn one_broken_descriptor_spoils_no_other() {
     let angle = |i: usize| feature(i as f32, 1.0, false, &[(i as f32 * 0.1).cos(), (i as f32 * 0.1).sin()]);

@@ -1,4 +1,4 @@
-//! The pipeline from two pictures to a map, where it does more than its steps.
+//! The pipeline from two pictures to a map: behaviour beyond that of its steps.
 #![cfg(feature = "cli")]
 
 use std::{
@@ -23,13 +23,13 @@ fn scene(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
 }
 
-/// Each pixel as a block of `factor` x `factor`.
+/// Enlarges a picture: each pixel becomes a block of `factor` x `factor`.
 fn enlarged(picture: &Picture, factor: u32) -> Picture {
     let (width, height) = picture.size();
     Picture::from_fn(factor * width, factor * height, |x, y| picture.get(x / factor, y / factor))
 }
 
-/// Natively as well, where what is awaited comes when the device is polled.
+/// The async functions also work natively, with the device polled by the caller.
 #[test]
 fn the_whole_pipeline_can_be_awaited() {
     fn sent<F: Future + Send>(future: F) -> F {
@@ -57,7 +57,7 @@ fn the_whole_pipeline_can_be_awaited() {
     assert_eq!(awaited.range, waited_for.range);
 }
 
-/// Points of large pictures are looked for in reduced ones; what they tell must be of the large ones.
+/// Features of large pictures are detected in reduced ones; results must be in pixels of the large ones.
 #[test]
 fn a_large_pair_is_seen_at_its_own_size() {
     let folder = scene("planes");
@@ -90,7 +90,7 @@ fn the_paper_searches_from_the_right_view_to_the_right_only() {
     assert!(outcome.range.min >= 0);
     let truth = pfm::read(&folder.join("disp_right.pfm")).unwrap();
     let score = hsad::eval::score(&outcome.dense.disparity, &truth, None, &[1.0]).unwrap();
-    // No check takes a pixel away: what has no disparity has no partner in the left view.
+    // There is no consistency check: only pixels without a partner in the left view have no disparity.
     let (width, height) = right.size();
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let has_partner = i64::from(x) + i64::from(outcome.range.min) < i64::from(width);

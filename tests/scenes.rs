@@ -1,4 +1,4 @@
-//! The shipped scenes in `data/` are what they say: exact truth for both views, and what the renderer makes.
+//! The shipped scenes in `data/` have exact ground truth for both views, and equal the renderer's output.
 #![cfg(feature = "cli")]
 
 #[path = "../examples/render_scenes/renderer/mod.rs"]
@@ -22,14 +22,14 @@ fn bytes(path: &Path) -> Vec<u8> {
     })
 }
 
-/// One view of a scene and where it goes in the other.
+/// One view of a scene with its ground truth.
 struct View {
     width: i64,
     height: i64,
     colour: Picture,
     disparity: Plane<f32>,
     visible: Plane<u8>,
-    /// -1 if a pixel's counterpart lies a disparity to the left (in the right view), else 1.
+    /// Sign of the step to a pixel's counterpart: -1 in the left view, whose counterparts lie to the left, else 1.
     direction: f64,
 }
 
@@ -126,8 +126,8 @@ fn the_desk_lies_where_its_plane_puts_it() {
     }
 }
 
-/// Half of the pixels next to an edge see two surfaces at once, so the mean stays above 0; what counts is that no other
-/// disparity explains the pictures as well, not even a quarter of a pixel away.
+/// Half of the pixels next to an edge see two surfaces at once, so the mean error stays above 0; the test is that no
+/// other disparity explains the pictures as well, not even one a quarter of a pixel away.
 #[test]
 fn the_truth_warps_each_view_onto_the_other() {
     for (scene, limit) in [("planes", 3.0), ("curved", 4.1)] {
@@ -154,10 +154,10 @@ fn the_weak_scene_changes_its_brightness_and_nothing_else() {
     assert!(restored < 2.0, "{restored}");
 }
 
-/// The disparity of `other` at a counterpart lies between those of the two pixels around it. Where these see one
-/// surface, interpolation is exact on a plane, because disparity is linear in the picture there, and good to the
-/// curvature elsewhere; only creases and the rims of thin things are worse. (The nearest pixel alone would be off by up
-/// to half the slope.) A counterpart that is hidden has something nearer in front of it.
+/// The disparity of `other` at a counterpart lies between those of the two pixels around it. If these see one surface,
+/// interpolation is exact on a plane, because disparity is linear in the picture there, and good to the curvature
+/// elsewhere; only creases and the rims of thin objects are worse. (The nearest pixel alone would be off by up to half
+/// the slope.) An occluded counterpart has a nearer surface in front of it.
 #[test]
 fn both_truths_agree_where_visible_and_contradict_each_other_where_not() {
     for (scene, typical, limit) in [("planes", 1e-4, 0.01), ("curved", 5e-3, 0.05), ("weak", 2e-3, 0.05)] {
@@ -194,7 +194,7 @@ fn both_truths_agree_where_visible_and_contradict_each_other_where_not() {
     }
 }
 
-/// `curved` takes three times as long as these two together, of the same code.
+/// `curved` is left out: it takes three times as long as the other two together and runs the same code.
 #[test]
 fn the_renderer_makes_the_committed_files() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! From two pictures to range, rows, brightness and trust: on rendered pairs, and on real ones where they are present.
+//! Seeding: range, rectification, brightness relation and trust, on rendered pairs, and on real ones if present.
 
 #![cfg(feature = "cli")]
 
@@ -14,7 +14,7 @@ use hsad::{
     seeding::{Seeding, SeedingConfig, Verdict},
 };
 
-/// Smooth noise: the same everywhere for the same arguments.
+/// Smooth noise, a pure function of its arguments.
 fn noise(x: f32, y: f32) -> f32 {
     let lattice = |i: i32, j: i32| {
         let mixed = (i as u32).wrapping_mul(0x9E37_79B9) ^ (j as u32).wrapping_mul(0x85EB_CA6B);
@@ -32,8 +32,8 @@ fn texture(x: f32, y: f32) -> f32 {
     30.0 + 0.45 * noise(x / 7.0, y / 7.0) + 0.3 * noise(x / 17.0 + 50.0, y / 17.0)
 }
 
-/// A wall at disparity `far` with a square in front of it at `near`, seen by the left eye, and by the right one through
-/// `grey` and `lower` px lower.
+/// A pair that shows a wall at disparity `far` with a square in front of it at `near`; the right view's grey values are
+/// mapped by `grey`, and its content lies `lower` px lower.
 fn pair(far: f32, near: f32, lower: f32, grey: impl Fn(f32) -> f32) -> (Luma, Luma) {
     let (width, height) = (320, 240);
     let view = |eye: f32, lower: f32, grey: &dyn Fn(f32) -> f32| {
@@ -111,7 +111,7 @@ fn sizes_are_checked() {
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
 }
 
-/// On real scenes: the range found without help holds nearly all of the truth, and rows are known to correspond.
+/// On real scenes the range found covers nearly all of the ground truth, and the verdict is `Rectified`.
 #[test]
 fn real_scenes_lie_in_the_range_found_for_them() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo"));
@@ -136,7 +136,7 @@ fn luma(path: &Path) -> Luma {
     load::load(path).unwrap().luma()
 }
 
-/// The disparities that are known.
+/// The known disparities of a file.
 fn truth(path: &Path) -> Vec<f32> {
     pfm::read(path).unwrap().into_data().into_iter().filter(|value| value.is_finite()).collect()
 }

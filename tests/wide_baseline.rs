@@ -1,4 +1,4 @@
-//! Points of one view found in another that is turned, blurred, noisy or hidden in part, on a real pair with truth.
+//! Wide-baseline matching of a rotated, blurred, noisy or occluded second view, on a real pair with ground truth.
 #![cfg(feature = "cli")]
 
 use std::path::Path;
@@ -18,13 +18,13 @@ use hsad::{
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
-/// 97 % of the 100 most confident, the accuracy that the paper claims.
+/// The accuracy that the paper claims: 97 % of the 100 most confident matches are right.
 #[test]
 fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
     let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
     for (name, conditions, least) in [
         ("Art", &["gain=0.6", "rotation=45", "scale=0.8", "blur=2", "noise=10", "occlusion=0.3"][..], 100),
-        // A sixth of the view is left, and what is found there tells nothing about the rows of the rest.
+        // A sixth of the view is visible, and matches there do not determine the rows of the rest.
         ("Art", &["occlusion=0.6"], 25),
         ("Cones", &["blur=3", "clutter=0.5"], 100),
     ] {
@@ -48,7 +48,7 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
     }
 }
 
-/// One detector sees all pictures of a size; what it saw before leaves no trace.
+/// All pictures of a size share a detector; an earlier picture must leave no trace.
 #[test]
 fn points_are_those_of_a_detector_of_their_own() {
     let scene = SceneFiles::find(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/planes"))).unwrap();

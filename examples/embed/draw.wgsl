@@ -1,10 +1,10 @@
-// The left picture, and beside it its disparities in false colours.
+// Draws the left picture and, beside it, its disparities in false colours.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
-// In pixels; -8388608 where there is none.
+// Disparities in pixels; the sentinel -8388608 stands for no disparity.
 @group(0) @binding(1) var disparities: texture_2d<f32>;
 
-// Disparities of the first and of the last colour, in pixels.
+// Disparities of the first and the last colour, in pixels.
 const FAR = 12.0;
 const NEAR = 60.0;
 
@@ -15,7 +15,7 @@ fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return vec4f(4.0 * place - 1.0, 0.0, 1.0);
 }
 
-// Turbo, by R. Du's polynomial: see src/io/color.rs.
+// The colour map Turbo, by R. Du's polynomial: see src/io/color.rs.
 fn turbo(t: f32) -> vec3f {
     let low = vec4f(1.0, t, t * t, t * t * t);
     let high = low.zw * low.z;
@@ -26,7 +26,7 @@ fn turbo(t: f32) -> vec3f {
     );
 }
 
-// Encoded levels as the light that a target of sRGB expects (IEC 61966-2-1).
+// Converts encoded sRGB levels to linear light, as an sRGB target expects (IEC 61966-2-1).
 fn linear(encoded: vec3f) -> vec3f {
     let bright = pow((encoded + 0.055) / 1.055, vec3f(2.4));
     return select(bright, encoded / 12.92, encoded <= vec3f(0.04045));

@@ -1,10 +1,11 @@
-//! Disparity inside a frame of someone else's renderer: two pictures in textures, their disparities in a texture, drawn,
-//! all in one encoder and one submission, on a device that the application opened for itself.
+//! Disparities inside a frame of an application's renderer: two pictures in textures, their disparities in a texture,
+//! drawn, all in one encoder and one submission, on the application's own device.
 //!
 //!     cargo run --example embed -- frame.png [LEFT RIGHT]
 //!
-//! leaves the left picture and its disparities side by side. A window would present what is read back here.
-#![expect(clippy::print_stderr, reason = "it tells what is wrong")]
+//! writes the left picture and its disparities side by side. With a window, the frame would be presented instead of
+//! read back.
+#![expect(clippy::print_stderr, reason = "it prints errors")]
 
 use std::{
     path::{Path, PathBuf},
@@ -35,7 +36,7 @@ impl Renderer {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("renderer"),
-            // All that hsad needs, and no features. Larger pictures go with larger limits, here for the frame's width.
+            // hsad needs these limits and no features. Larger pictures need larger limits, here for the frame's width.
             required_limits: wgpu::Limits {
                 max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
                 ..wgpu::Limits::downlevel_defaults()
@@ -59,7 +60,7 @@ impl Renderer {
         })
     }
 
-    /// A picture as a renderer has its pictures: declared sRGB.
+    /// Uploads a picture to an sRGB texture, as renderers do.
     fn upload(&self, picture: &Picture) -> wgpu::Texture {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let texture = self.texture(picture.size(), TextureFormat::Rgba8UnormSrgb, usage);
@@ -68,7 +69,7 @@ impl Renderer {
         texture
     }
 
-    /// What draws two textures side by side.
+    /// Pipeline and bind group that draw two textures side by side.
     fn drawing(
         &self,
         textures: [&wgpu::TextureView; 2],
@@ -79,7 +80,7 @@ impl Renderer {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
             ty: wgpu::BindingType::Texture {
-                // Floats of 32 bits cannot be filtered everywhere.
+                // Not every device can filter 32-bit floats.
                 sample_type: wgpu::TextureSampleType::Float { filterable: false },
                 view_dimension: wgpu::TextureViewDimension::D2,
                 multisampled: false,
@@ -121,7 +122,7 @@ impl Renderer {
         (pipeline, self.device.create_bind_group(&descriptor))
     }
 
-    /// The colours of a frame, after all that was submitted.
+    /// Reads the colours of a frame, after all submitted work is done.
     fn read_back(&self, frame: &wgpu::Texture) -> Result<hsad::image::Plane<[u8; 3]>, AnyError> {
         let (width, height) = (frame.width(), frame.height());
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -136,7 +137,7 @@ impl Renderer {
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(frame.as_image_copy(), to, frame.size());
         self.queue.submit([encoder.finish()]);
-        // What goes wrong here is told by the range below.
+        // An error of the mapping is reported by `get_mapped_range` below.
         buffer.map_async(wgpu::MapMode::Read, .., |_| ());
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
         let bytes = buffer.get_mapped_range(..)?;
@@ -169,7 +170,7 @@ fn run() -> Result<(), AnyError> {
     let device = &renderer.device;
     let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
 
-    // What a renderer has anyway: two pictures in textures, and a target.
+    // The renderer's own resources: two pictures in textures, and a target.
     let pictures = [load::load(&paths[0])?, load::load(&paths[1])?];
     let size = pictures[0].size();
     let widest = device.limits().max_texture_dimension_2d / 2;
@@ -182,7 +183,7 @@ fn run() -> Result<(), AnyError> {
     let map = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
     let disparities = view(&renderer.texture(size, TextureFormat::R32Float, map));
 
-    // Once for this size: kernels, memory, and the ways in and out.
+    // Once per size: kernels, memory, inputs and outputs.
     let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64)?, Brightness::SAME);
     let gpu = Gpu::new(renderer.device.clone(), renderer.queue.clone());
     let matcher = Matcher::new(&gpu, size, &config)?;
@@ -190,7 +191,7 @@ fn run() -> Result<(), AnyError> {
     let outputs = matcher.outputs(Destination::Texture(&disparities), None)?;
     let (pipeline, textures) = renderer.drawing([&left, &disparities], frame.format());
 
-    // Once a frame.
+    // Once per frame.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
     inputs.record(&mut encoder);
     matcher.record(&mut encoder, &outputs);

@@ -1,11 +1,11 @@
-//! Renders the stereo pairs that this project ships as test scenes, with their exact truth.
+//! Renders the stereo pairs that this project ships as test scenes, with exact ground truth.
 //!
 //! ```text
 //! cargo run --example render_scenes -- data
 //! cargo run --example render_scenes -- data planes
 //! ```
 //!
-//! The first argument is the folder to write to, the others name the scenes (all of them if there are none).
+//! The first argument is the output folder, the others are the names of scenes [default: all].
 
 mod renderer;
 
@@ -16,13 +16,13 @@ fn main() -> anyhow::Result<()> {
     let Some(folder) = arguments.next().map(PathBuf::from) else {
         anyhow::bail!("no folder to write to: cargo run --example render_scenes -- data [scene...]");
     };
-    let wanted: Vec<String> = arguments.collect();
+    let selected: Vec<String> = arguments.collect();
     let scenes = renderer::scenes();
-    if let Some(unknown) = wanted.iter().find(|name| !scenes.iter().any(|scene| scene.name == **name)) {
+    if let Some(unknown) = selected.iter().find(|name| !scenes.iter().any(|scene| scene.name == **name)) {
         let known: Vec<_> = scenes.iter().map(|scene| scene.name).collect();
         anyhow::bail!("there is no scene '{unknown}': the scenes are {}", known.join(", "));
     }
-    for scene in scenes.iter().filter(|scene| wanted.is_empty() || wanted.iter().any(|name| name == scene.name)) {
+    for scene in scenes.iter().filter(|scene| selected.is_empty() || selected.iter().any(|name| name == scene.name)) {
         let into = folder.join(scene.name);
         renderer::write(scene, &renderer::render(scene), &into)?;
         eprintln!("{}", into.display());

@@ -1,10 +1,10 @@
-//! Disparity of a sequence of frames: uploads, compute and read-back overlap over a ring of slots, and what the features of
-//! a frame tell of range and brightness serves the frames after it.
+//! Disparities of a sequence of frames: upload, compute and read-back overlap over a ring of slots, and the disparity
+//! range and brightness found from the features of a frame serve the following frames.
 //!
 //!     cargo run --example stream -- [FRAMES]
 //!
-//! The frames are windows that wander over the shipped pair; from the middle on, the right camera is darker.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "it tells what it does, and what is wrong")]
+//! The frames are windows that move over the shipped pair; from the middle on, the right camera is darker.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "it prints results and errors")]
 
 mod slot;
 
@@ -25,11 +25,11 @@ use slot::{Engine, FrameResult, Slot};
 
 type AnyError = Box<dyn std::error::Error>;
 
-/// Frames on their way at a time: one that is uploaded, one that is computed, one that is read.
+/// Number of frames in flight: one is uploaded, one computed, one read.
 const SLOTS: usize = 3;
-/// Of so many frames, one is looked at for what it tells of the others.
+/// Seeding runs on one frame out of this many.
 const SEEDED: usize = 8;
-/// Width and height of a frame.
+/// Width and height of a frame, in pixels.
 const SIZE: (u32, u32) = (256, 192);
 
 /// The cameras.
@@ -39,7 +39,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// What both see at a time.
+    /// The views of both cameras at a time.
     fn frame(&self, index: usize) -> [Picture; 2] {
         let (width, height) = self.views[0].size();
         let (x0, y0) = ((3 * index as u32) % (width - SIZE.0), index as u32 % (height - SIZE.1));
@@ -51,7 +51,7 @@ impl Scene {
     }
 }
 
-/// The engine for the frames to come, and the frames on their way, each with the engine that it was sent to.
+/// The engine for the next frames, and the frames in flight, each with the engine it was submitted to.
 struct Stream {
     engine: Rc<Engine>,
     slots: Vec<Slot>,
@@ -64,7 +64,7 @@ impl Stream {
         Ok(Self { engine, slots })
     }
 
-    /// Sends a frame off, in a slot that is free.
+    /// Submits a frame in a free slot.
     fn send(&mut self, index: usize, frame: [Picture; 2]) -> hsad::Result<()> {
         let slot = &mut self.slots[index % SLOTS];
         if !Rc::ptr_eq(&slot.engine, &self.engine) {
@@ -74,7 +74,7 @@ impl Stream {
         Ok(())
     }
 
-    /// Waits for the frame in the slot that frame `index` is to take, and draws conclusions from it.
+    /// Waits for the frame in the slot that frame `index` will take, and learns from it.
     fn collect(&mut self, index: usize) -> hsad::Result<Option<FrameResult>> {
         let result = self.slots[index % SLOTS].collect()?;
         if let Some(seeding) = result.as_ref().and_then(|result| result.seeding.as_ref()) {
@@ -83,9 +83,9 @@ impl Stream {
         Ok(result)
     }
 
-    /// The seeds of a frame serve those that are sent after it. Another brightness costs nothing; for another range an
-    /// engine is built anew, so there has to be a reason for it. Frames on their way stay with the engine that they were
-    /// sent to.
+    /// Adopts range and brightness from the seeds of a frame for the following frames. A change of brightness costs
+    /// nothing; a change of range needs another engine, so it happens only if necessary. Frames in flight keep the engine
+    /// they were submitted to.
     fn learn(&mut self, seeding: &Seeding) -> hsad::Result<()> {
         let mut config = self.engine.config.clone();
         if let Some(found) = &seeding.brightness {
@@ -96,7 +96,7 @@ impl Stream {
         let has = config.range;
         let too_small = found.min < has.min || found.last() > has.last();
         if too_small || 4 * found.count < has.count {
-            // Half as much on either side, so that the range is not left again at once.
+            // A margin of half the range on either side keeps the next frames inside.
             let margin = (found.count / 2).cast_signed();
             let range = DisparityRange::inclusive(found.min - margin, found.last() + margin)?;
             println!("range {} to {} px instead of {} to {}", range.min, range.last(), has.min, has.last());
@@ -106,7 +106,7 @@ impl Stream {
     }
 }
 
-/// Sends all frames, with `SLOTS` of them on their way at a time or, `in_turn`, one; frames a second.
+/// Submits all frames, with `SLOTS` of them in flight, or one if `in_turn`. Returns the frames per second.
 fn run(stream: &mut Stream, scene: &Scene, in_turn: bool, mut tell: impl FnMut(FrameResult)) -> Result<f64, AnyError> {
     let start = Instant::now();
     for index in 0..scene.frames + SLOTS {
@@ -160,7 +160,7 @@ fn stream() -> Result<(), AnyError> {
         ..Default::default()
     }))?;
 
-    // A guess, until there are seeds.
+    // The range is a guess until there are seeds.
     let config = Preset::Fast.config().dense(DisparityRange::new(0, 32)?, Brightness::SAME);
     let mut stream = Stream::new(&Gpu::new(device, queue), config)?;
     run(&mut stream, &scene, false, tell)?;

@@ -1,4 +1,4 @@
-//! A frame on its way: textures that the frame is uploaded to, and memory that the host reads its results from.
+//! A slot of the ring: textures that a frame is uploaded to, and memory that the host reads its results from.
 
 use std::rc::Rc;
 
@@ -12,13 +12,13 @@ use hsad::{
     wgpu,
 };
 
-/// The results of a frame.
+/// Result of a frame.
 pub struct FrameResult {
-    /// Which frame it was.
+    /// Index of the frame.
     pub index: usize,
     /// Disparities with their confidences.
     pub map: Dense,
-    /// What the frame's features tell, if they were looked for.
+    /// Seeding from the frame's features, if it was run on this frame.
     pub seeding: Option<Seeding>,
 }
 
@@ -27,14 +27,14 @@ pub struct Engine {
     pub gpu: Gpu,
     pub config: DenseConfig,
     pub matcher: Matcher,
-    /// For the left and the right view, in the matcher's luma.
+    /// Detectors of the left and the right view, which read the matcher's luma.
     detectors: [(Detector, DetectorInput); 2],
 }
 
 impl Engine {
     pub fn new(gpu: &Gpu, size: (u32, u32), config: DenseConfig) -> hsad::Result<Self> {
         let matcher = Matcher::new(gpu, size, &config)?;
-        // Room for few features, so that little has to be read.
+        // A small capacity, so that little has to be read back.
         let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
         let [left, right] = matcher.luma().map(|luma| -> hsad::Result<_> {
             let detector = block_on(Detector::new(gpu, size, &features))?;
@@ -45,7 +45,7 @@ impl Engine {
     }
 }
 
-/// The textures and the host's memory of one frame at a time.
+/// Textures and host memory of one frame.
 pub struct Slot {
     pub engine: Rc<Engine>,
     textures: [wgpu::Texture; 2],
@@ -55,7 +55,7 @@ pub struct Slot {
     sent: Option<Sent>,
 }
 
-/// A frame that was sent off.
+/// A submitted frame.
 struct Sent {
     index: usize,
     frame: [Picture; 2],
@@ -83,7 +83,7 @@ impl Slot {
         Ok(Self { engine: engine.clone(), textures, inputs, map, features: [left?, right?], sent: None })
     }
 
-    /// Uploads a frame, and submits its matching and, if it is to be `seeded`, the search for its features.
+    /// Uploads a frame and submits dense matching and, if `seeded`, feature detection.
     pub fn send(&mut self, index: usize, frame: [Picture; 2], seeded: bool) {
         let Engine { gpu, matcher, detectors, .. } = &*self.engine;
         for (texture, picture) in self.textures.iter().zip(&frame) {
@@ -104,7 +104,7 @@ impl Slot {
         self.sent = Some(Sent { index, frame, seeded });
     }
 
-    /// Waits for the frame that was sent off, if there is one, and for none that was sent after it.
+    /// Waits for the submitted frame, if there is one, but not for frames submitted later.
     pub fn collect(&mut self) -> hsad::Result<Option<FrameResult>> {
         let Some(Sent { index, frame, seeded }) = self.sent.take() else { return Ok(None) };
         let map = block_on(self.map.read())?;

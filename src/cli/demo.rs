@@ -1,4 +1,4 @@
-//! `hsad demo`: the main job on a scene that is part of the program, held against its truth.
+//! `hsad demo`: matches a scene built into the program and scores the map against its ground truth.
 
 use std::{
     io::Write,
@@ -31,19 +31,19 @@ const TRUTH: &[u8] = include_bytes!("../../data/curved/disp_left.pfm");
 const NON_OCCLUDED: &[u8] = include_bytes!("../../data/curved/nonocc.png");
 const META: &str = include_str!("../../data/curved/meta.json");
 
-/// Errors above these count as wrong, in pixels.
+/// Error thresholds of the wrong-pixel shares, in pixels.
 const THRESHOLDS: [f32; 2] = [1.0, 2.0];
 
-/// Match a pair that is part of this program, and tell how exact the result is
+/// Match a pair built into this program and score the result against its ground truth
 ///
-/// Writes what hsad match writes, with depth and figures, the two pictures, and demo.png: the left
-/// picture, the disparities found and the true ones side by side.
+/// Writes the files of hsad match with depth and figures, the two pictures, and demo.png: the left
+/// picture, the disparities found and the true disparities side by side.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad demo
   hsad demo -o /tmp/demo --device cpu")]
 pub struct Demo {
-    /// Folder for the results, created if need be
+    /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR", default_value = "hsad-demo")]
     output: PathBuf,
     #[command(flatten)]
@@ -51,7 +51,7 @@ pub struct Demo {
 }
 
 impl Demo {
-    /// Does what `hsad match` does, and scores it.
+    /// Matches the built-in scene as `hsad match` does, writes all files and prints the scores.
     pub fn run(self) -> anyhow::Result<()> {
         let mut output = Output::open(&self.output)?;
         let scene = Scene::new()?;
@@ -63,27 +63,27 @@ impl Demo {
             config: Preset::Balanced.config(),
             calibration: Some(scene.calibration),
         };
-        let mut done = job.run(&self.run)?;
-        let accuracy = Accuracy::new(&done.outcome.dense.disparity, &scene)?;
+        let mut completed = job.run(&self.run)?;
+        let accuracy = Accuracy::new(&completed.outcome.dense.disparity, &scene)?;
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        let panels = products::beside_truth(&scene.left, &done.outcome.dense.disparity, &scene.truth);
+        let panels = products::beside_truth(&scene.left, &completed.outcome.dense.disparity, &scene.truth);
         let panels = figure::side_by_side(&panels.each_ref());
         output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
         output.add("left.png", |out| out.write_all(LEFT))?;
         output.add("right.png", |out| out.write_all(RIGHT))?;
-        done.add_maps(&mut output)?;
-        done.add_figures(&mut output)?;
-        let mut report = done.report();
+        completed.add_maps(&mut output)?;
+        completed.add_figures(&mut output)?;
+        let mut report = completed.report();
         report["accuracy"] = accuracy.report();
         products::add_report(&mut output, report)?;
         output.finish()?;
         drop(progress);
 
         if !self.run.quiet {
-            done.warnings.iter().for_each(terminal::warning);
-            terminal::print(&(done.summary() + &summary::files(&output) + &accuracy.summary()))?;
+            completed.warnings.iter().for_each(terminal::warning);
+            terminal::print(&(completed.summary() + &summary::files(&output) + &accuracy.summary()))?;
             let look = output.folder().join("demo.png");
             terminal::print(&format!(
                 "\nLook at {}: left picture, disparities found, true disparities.\n",
@@ -94,12 +94,12 @@ impl Demo {
     }
 }
 
-/// The scene, as it comes with the program.
+/// The scene built into the program.
 struct Scene {
     left: Picture,
     right: Picture,
     truth: Plane<f32>,
-    /// 255 where both cameras see the same point.
+    /// Mask of the left view: 255 where both cameras see the same point.
     non_occluded: Plane<u8>,
     calibration: Calibration,
 }
@@ -119,7 +119,7 @@ impl Scene {
     }
 }
 
-/// The map's errors where both cameras see, and everywhere.
+/// Scores of the map over non-occluded pixels and over all pixels.
 struct Accuracy {
     non_occluded: Score,
     all: Score,

@@ -1,4 +1,4 @@
-//! `hsad devices`: what can compute.
+//! `hsad devices`: lists the GPU adapters and the CPU.
 
 use clap::Args;
 use hsad::{
@@ -9,10 +9,10 @@ use hsad::{
 
 use super::terminal;
 
-/// List the devices that --device can name
+/// List the devices that --device accepts
 ///
-/// The first one is the best. 'cpu' is always there: it needs no driver, takes longer, and finds
-/// the same disparities to the bit.
+/// The first device is the best one and the default. 'cpu' is always available: it needs no driver,
+/// takes longer, and computes the same disparities to the bit.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad devices

@@ -20,24 +20,25 @@ use super::{
 
 /// Find the interest points of one picture
 ///
-/// Prints one line of CSV for each: column and row of its centre (pixel centres are whole numbers),
-/// scale in pixels, orientation in radians, response, and 1 for a dark blob on light ground.
+/// Prints one CSV line per point: column and row of the centre (pixel centres are whole numbers),
+/// scale in pixels, orientation in radians, response, and 1 for a dark blob on light ground or 0 for
+/// a light blob on dark ground.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad features photo.jpg > features.csv
   hsad features photo.jpg -o out            features.csv and keypoints.png
   hsad features photo.jpg --oriented --descriptors --threshold 0.001")]
 pub struct Features {
-    /// PNG, JPEG, PNM, BMP, TIFF or WebP
+    /// Picture file: PNG, JPEG, PNM, BMP, TIFF or WebP
     image: PathBuf,
-    /// Write features.csv and keypoints.png to this folder instead of the terminal
+    /// Write features.csv and keypoints.png to this folder instead of printing the table
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Look for points at the picture's full size. Without it, one of more than 2 megapixels is reduced
-    /// by a whole factor first, as `hsad match` does
+    /// Detect points at the picture's full size. By default a picture of more than 2 megapixels is
+    /// first reduced by a whole factor, as `hsad match` does
     #[arg(long)]
     full_size: bool,
-    /// Add the 64 values of each descriptor
+    /// Add the 64 descriptor values of each point as columns d0 to d63
     #[arg(long)]
     descriptors: bool,
     #[command(flatten)]
@@ -47,7 +48,7 @@ pub struct Features {
 }
 
 impl Features {
-    /// Finds and prints or writes them.
+    /// Detects the interest points and prints or writes them.
     pub fn run(self) -> anyhow::Result<()> {
         let config = self.features.over(FeatureConfig::default());
         config.validate()?;
@@ -79,7 +80,7 @@ impl Features {
             None => {
                 terminal::print(&csv)?;
                 if !self.run.quiet {
-                    // Not on stdout, where it would be a line of the table.
+                    // The note goes to stderr: on stdout it would be a line of the table.
                     terminal::note(&found);
                 }
             }

@@ -1,4 +1,4 @@
-//! The main job: a pair on a device, from pictures to a disparity map, and what is odd about it.
+//! The matching job of `hsad match` and `hsad demo`: from two pictures to a disparity map and its warnings.
 
 use std::time::{Duration, Instant};
 
@@ -12,11 +12,11 @@ use hsad::{
     pipeline::{self, Outcome, RangeSource},
 };
 
-use super::{options::RunOptions, terminal::Progress};
+use super::{options::RunOptions, terminal::Progress, wording::in_options};
 
-/// A pair and what is asked about it.
+/// A pair of views and how to match it.
 pub struct Job {
-    /// What left and right view are called.
+    /// Names of the left and the right view, for the report.
     pub names: [String; 2],
     pub left: Picture,
     pub right: Picture,
@@ -24,47 +24,49 @@ pub struct Job {
     pub calibration: Option<Calibration>,
 }
 
-/// A job and what came out.
-pub struct Done {
+/// A job with its outcome.
+pub struct CompletedJob {
     pub job: Job,
     pub backend: Backend,
     pub outcome: Outcome,
-    /// From opening the device to the disparity map.
+    /// Wall-clock time from opening the device to the disparity map.
     pub total: Duration,
-    /// What the files do not show by themselves, a line each.
+    /// Doubts about the result that the output files do not show, one line each.
     pub warnings: Vec<String>,
 }
 
 impl Job {
-    /// Computes everything and writes nothing.
-    pub fn run(self, options: &RunOptions) -> Result<Done> {
+    /// Opens the device and matches the pair; writes no files.
+    pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
         let backend = options.open()?;
         let progress = Progress::new(options.quiet);
         let views = (&self.left, &self.right);
         let outcome = pipeline::run(&backend, views, &self.config, |step| progress.step(step))?;
         let warnings = warnings(views, &self.config, &outcome);
-        Ok(Done { job: self, backend, outcome, total: start.elapsed(), warnings })
+        Ok(CompletedJob { job: self, backend, outcome, total: start.elapsed(), warnings })
     }
 }
 
-/// Pairs that are what they should be have twice as much.
+/// Trust below which a result gets a warning, 0 to 1; sound rectified pairs reach twice this value.
 const LITTLE_TRUST: f32 = 0.25;
 
-/// What someone should know before they use the result.
+/// Warnings about a result: identical views, a guessed or cut disparity range, little trust, matches outside the range,
+/// and a difference in brightness.
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
     if left == right {
         warnings.push("both views are the same picture, which shows no depth".into());
     }
     if let RangeSource::Fallback(thin) = outcome.range_source {
-        warnings.push(format!("{}; {} were searched instead", Error::from(thin), span(outcome.range)));
+        let reason = in_options(&Error::from(thin));
+        warnings.push(format!("{reason}; {} were searched instead", span(outcome.range)));
     }
     if let Some(asked) = config.range.filter(|&asked| asked != outcome.range) {
         let reason = "no pixel has a partner further away than the picture is wide";
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }
-    // Without a range of their own, matches say nothing about trust.
+    // Without a range found from the matches the trust is 0 by definition, not by evidence.
     if outcome.seeding.range.is_ok() && outcome.seeding.trust < LITTLE_TRUST {
         warnings.push(format!(
             "hardly any matching interest points support this result (trust {:.2} of 1)",
@@ -76,12 +78,13 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
     warnings
 }
 
-/// The disparities of a range, for people.
+/// A disparity range as text, `MIN to MAX px`.
 pub fn span(range: DisparityRange) -> String {
     format!("{} to {} px", range.min, range.last())
 }
 
-/// Matches that the search could not have found tell of a range that is wrong, or of views mixed up.
+/// A warning if most matches lie outside the searched range, or have negative disparities: the range is wrong, or the
+/// views are exchanged.
 fn outside(outcome: &Outcome) -> Option<String> {
     let disparities: Vec<f32> = outcome.seeding.seeds.iter().map(|seed| seed.disparity).collect();
     let share = |wanted: &dyn Fn(f32) -> bool| {
@@ -100,7 +103,7 @@ fn outside(outcome: &Outcome) -> Option<String> {
             _ => "lower --min-disparity",
         };
         Some(format!(
-            "only {percent:.0} % of the matches lie in {range}, theirs are {least:.0} to {most:.0} px: {advice}"
+            "only {percent:.0} % of the matches lie in {range}, their disparities are {least:.0} to {most:.0} px: {advice}"
         ))
     } else if negative > 0.75 {
         Some(format!("disparities are {least:.0} to {most:.0} px, mostly negative: {mixed_up}"))
@@ -109,9 +112,9 @@ fn outside(outcome: &Outcome) -> Option<String> {
     }
 }
 
-/// Absolute differences suffer where the views differ in brightness.
+/// A warning if the views differ notably in brightness, which absolute differences suffer from.
 fn brightness(outcome: &Outcome) -> Option<String> {
-    /// A difference that most pairs from two cameras of one kind stay below, in grey values.
+    /// Difference in grey values that most pairs from two cameras of one kind stay below.
     const NOTABLE: f32 = 8.0;
     let found = outcome.seeding.brightness?;
     let difference = |grey: f32| found.gain * grey + found.offset - grey;

@@ -1,9 +1,9 @@
-//! `hsad match`: a disparity map from two pictures.
+//! `hsad match`: computes a disparity map from two pictures.
 
 use std::path::PathBuf;
 
 use clap::Args;
-use hsad::{Error, io::load};
+use hsad::io::load;
 
 use super::{
     job::Job,
@@ -15,10 +15,11 @@ use super::{
 
 /// Compute a disparity for every pixel of a rectified pair
 ///
-/// Writes disparity.pfm (float, +inf where there is none), disparity.png (16 bit, 256 times the
-/// disparity, 0 where there is none), disparity-color.png, confidence.png and report.json; with a
-/// calibration also depth.pfm (metres) and cloud.ply. A left pixel (x, y) with disparity d is the
-/// right pixel (x - d, y). The disparity range is found from matching interest points.
+/// Writes disparity.pfm (32-bit float, in pixels, +inf for no disparity), disparity.png (16 bit, 256
+/// times the disparity, 0 for no disparity), disparity-color.png, confidence.png and report.json;
+/// with a calibration also depth.pfm (in metres) and cloud.ply. A left pixel (x, y) with disparity d
+/// corresponds to the right pixel (x - d, y). Without --disparities the range is found from matching
+/// interest points.
 #[derive(Args)]
 #[command(name = "match", after_help = concat!("Examples:
   hsad match left.png right.png -o out
@@ -30,11 +31,11 @@ use super::{
 
 Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified (--force goes on all the same)"))]
 pub struct Match {
-    /// The left view: PNG, JPEG, PNM, BMP, TIFF or WebP
+    /// Left view: PNG, JPEG, PNM, BMP, TIFF or WebP
     left: PathBuf,
-    /// The right view
+    /// Right view, of the same size
     right: PathBuf,
-    /// Folder for the results, created if need be
+    /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Also draw interest points (keypoints.png) and matches (matches.png)
@@ -51,31 +52,29 @@ pub struct Match {
 }
 
 impl Match {
-    /// Does it all, and lets the files appear at the end.
+    /// Matches the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
         let config = self.matching.config(&self.features)?;
         let mut output = Output::open(&self.output)?;
         let (left, right) = (load::load(&self.left)?, load::load(&self.right)?);
-        if left.size() != right.size() {
-            return Err(Error::SizesDiffer { left: left.size(), right: right.size() }.into());
-        }
+
         let calibration = self.depth.calibration(left.size())?;
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
-        let mut done = Job { names, left, right, config, calibration }.run(&self.run)?;
+        let mut completed = Job { names, left, right, config, calibration }.run(&self.run)?;
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        done.add_maps(&mut output)?;
+        completed.add_maps(&mut output)?;
         if self.figures {
-            done.add_figures(&mut output)?;
+            completed.add_figures(&mut output)?;
         }
-        products::add_report(&mut output, done.report())?;
+        products::add_report(&mut output, completed.report())?;
         output.finish()?;
         drop(progress);
 
         if !self.run.quiet {
-            done.warnings.iter().for_each(terminal::warning);
-            terminal::print(&(done.summary() + &summary::files(&output)))?;
+            completed.warnings.iter().for_each(terminal::warning);
+            terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The subcommands of `hsad`, one file each, and what they share.
+//! The subcommands of `hsad`, one file each, and their shared modules.
 
 mod demo;
 mod devices;
@@ -14,6 +14,7 @@ mod score;
 mod summary;
 pub mod terminal;
 mod verify;
+mod wording;
 
 use std::process::ExitCode;
 
@@ -21,11 +22,11 @@ use clap::{Parser, Subcommand};
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  all is done
-  1  the work failed: a file, a picture or a device is not as it has to be
-  2  usage: an option that does not exist, or whose value lies outside its range
-  3  the pair is not rectified (hsad match --force goes on all the same)
-130  interrupted: nothing half done is left";
+  0  success
+  1  failure: a file, a picture or a device is missing or unusable
+  2  usage: an unknown option, or a value outside its range
+  3  the pair is not rectified (hsad match --force matches it all the same)
+130  interrupted: no incomplete files are left behind";
 
 /// Stereo depth from two photographs, on any GPU
 #[derive(Parser)]
@@ -46,7 +47,7 @@ enum Command {
 }
 
 impl Cli {
-    /// Does what was asked.
+    /// Runs the subcommand.
     pub fn run(self) -> anyhow::Result<()> {
         output::clean_up_when_interrupted()?;
         match self.command {

@@ -1,4 +1,4 @@
-//! Options that several subcommands share, and how they become a configuration.
+//! Options that several subcommands share, and their translation to a configuration.
 
 use std::{fmt::Display, path::PathBuf};
 
@@ -20,22 +20,23 @@ use hsad::{
 
 use super::terminal::{self, Progress};
 
-/// How a subcommand runs.
+/// Device and verbosity of a subcommand.
 #[derive(Args)]
 pub struct RunOptions {
-    /// What computes: best, cpu, or index or part of the name of a device (see hsad devices)
+    /// Device to compute on: best, cpu, or the index or a part of the name of a device (see hsad devices)
     #[arg(long, default_value = "best")]
     device: DeviceChoice,
-    /// First run every kernel once on the device, and refuse it if any differs from its CPU twin (see hsad verify)
+    /// First run every kernel once on the device and refuse it if any result differs from the CPU twin's (see
+    /// hsad verify)
     #[arg(long)]
     self_test: bool,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     pub quiet: bool,
 }
 
 impl RunOptions {
-    /// Opens the device, and tests it if that is asked for.
+    /// Opens the device, and runs the self-test with `--self-test`.
     pub fn open(&self) -> anyhow::Result<Backend> {
         let backend = self.open_untested()?;
         if let (true, Backend::Gpu(gpu)) = (self.self_test, &backend) {
@@ -46,12 +47,12 @@ impl RunOptions {
         Ok(backend)
     }
 
-    /// The best device there is can be none at all, and then the CPU works.
+    /// Opens the device. For `best` the CPU takes over if there is no usable adapter.
     fn open_untested(&self) -> anyhow::Result<Backend> {
         match Backend::open(&self.device) {
             Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if self.device == DeviceChoice::Best => {
                 if !self.quiet {
-                    terminal::warning(format!("the CPU does the work, since {error}"));
+                    terminal::warning(format!("the CPU does the work: {error}"));
                 }
                 Ok(Backend::open(&DeviceChoice::Cpu)?)
             }
@@ -61,28 +62,28 @@ impl RunOptions {
     }
 }
 
-/// How interest points are found.
+/// Parameters of the interest point detector.
 #[derive(Args)]
 #[command(next_help_heading = "Interest points")]
 pub struct FeatureOptions {
-    #[arg(long, value_name = "N", help = with_default("Octaves of filter sizes, 1 to 5", FeatureConfig::default().octaves))]
+    #[arg(long, value_name = "N", help = with_default("Number of octaves of filter sizes, 1 to 5", FeatureConfig::default().octaves))]
     octaves: Option<u32>,
     #[arg(long, value_name = "PX", help = with_default("Sampling step of the first octave in pixels, 1 or 2", FeatureConfig::default().step))]
     step: Option<u32>,
-    #[arg(long, value_name = "T", help = with_default("Least determinant of the Hessian, with grey values of 0 to 1", FeatureConfig::default().threshold))]
+    #[arg(long, value_name = "T", help = with_default("Smallest determinant of the Hessian of a point, for grey values of 0 to 1; above 0, at most 1", FeatureConfig::default().threshold))]
     threshold: Option<f32>,
-    /// Compute orientations, for views that are turned against each other
+    /// Compute orientations, for views rotated against each other
     #[arg(long, conflicts_with = "upright")]
     oriented: bool,
-    /// Compute no orientations, the better choice where nothing is turned
+    /// Skip orientations, the better choice for views without rotation [default, except paper]
     #[arg(long)]
     upright: bool,
-    #[arg(long, value_name = "N", help = with_default("Room for this many points; more are an error", FeatureConfig::default().max_features))]
+    #[arg(long, value_name = "N", help = with_default("Capacity for interest points per view, 1 to 1048576; more points are an error", FeatureConfig::default().max_features))]
     max_features: Option<u32>,
 }
 
 impl FeatureOptions {
-    /// `config` with the options that were given.
+    /// `config`, overridden by the options on the command line.
     pub fn over(&self, config: FeatureConfig) -> FeatureConfig {
         FeatureConfig {
             octaves: self.octaves.unwrap_or(config.octaves),
@@ -94,88 +95,89 @@ impl FeatureOptions {
     }
 }
 
-/// An option's help with the value that the library takes where it is not given.
+/// Help text of an option whose default value comes from the library.
 pub fn with_default(help: &str, value: impl Display) -> String {
     format!("{help} [default: {value}]")
 }
 
-/// How pixels are matched.
+/// Parameters of dense matching.
 #[derive(Args)]
 #[command(next_help_heading = "Matching")]
 pub struct MatchOptions {
-    /// How disparities are found
+    /// Dense matching method
     #[arg(long, value_enum, default_value = "hsad")]
     method: MethodName,
-    /// Where parameters come from that no option names [default: balanced]
+    /// Set of parameters; single options override it [default: balanced]
     #[arg(long, value_enum)]
     preset: Option<PresetName>,
-    /// Match blocks, in a square window of this side, odd, 3 to 31 [fast: 9, paper: 7; balanced and quality
-    /// match semi-globally instead]
+    /// Match blocks: side of the square window in pixels, odd, 3 to 31 [default: fast 9, paper 7; balanced and
+    /// quality match semi-globally]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
-    /// From how many sides costs are put together, where they are semi-globally; from none, the window of
-    /// costs alone decides [balanced: 3, quality: 4]
+    /// Number of paths of semi-global matching; with 0 the cost window alone decides [default: balanced 3,
+    /// quality 4]
     #[arg(long, value_enum, value_name = "N", conflicts_with = "window")]
     paths: Option<PathsName>,
-    /// Side of the square over which each disparity's costs are averaged before that, odd, 1 to 31 [balanced,
-    /// quality: 1]
+    /// Side in pixels of the square window that averages the costs of each disparity before the paths, odd, 1 to
+    /// 31 [default: 1]
     #[arg(long, value_name = "PX", conflicts_with = "window")]
     cost_window: Option<u32>,
-    /// Compare blocks of both views at every disparity of the range [fast: at those that a map of half the
-    /// size shows nearby, and of the other view at half the size]
+    /// Compare blocks at every disparity of the range, in both views [default of fast: coarse to fine, near the
+    /// disparities of a map of half the size, with the left-right consistency check at half the size]
     #[arg(long)]
     whole_range: bool,
-    /// Smallest disparity: with --disparities where the range begins [default: 0], without it a
-    /// limit to the range that is found [paper: 0]
+    /// Smallest disparity in pixels, -1048576 to 1048576: with --disparities the start of the range
+    /// [default: 0], without it a lower limit of the range that is found [default: none, paper 0]
     #[arg(long, value_name = "PX", allow_negative_numbers = true)]
     min_disparity: Option<i32>,
-    /// How many disparities are searched [default: found from matching interest points]
+    /// Number of disparities to search, at least 1 [default: found from matching interest points]
     #[arg(long, value_name = "N")]
     disparities: Option<u32>,
-    /// The view whose pixels get a disparity [default: left, paper: right]
+    /// Reference view, whose pixels get a disparity [default: left, paper right]
     #[arg(long, value_enum)]
     reference: Option<ViewName>,
-    /// Per cent by which the best rival must cost more than the winner, 0 to 100 [default: 1,
-    /// fast: 10, paper: 0]
+    /// Uniqueness margin: per cent by which the second best disparity must cost more than the best, 0 to 100
+    /// [default: 1, fast 10, paper 0]
     #[arg(long, value_name = "PERCENT")]
     uniqueness: Option<u32>,
-    /// Largest difference of the disparities that the two views find [default: 1, paper: no check]; fast
-    /// allows a pixel more, since it asks the other view at half the size
+    /// Left-right consistency check: largest difference of the two views' disparities in pixels, 0 to 256
+    /// [default: 1, paper no check]; fast allows 1 px more, since it checks at half the size
     #[arg(long, value_name = "PX", conflicts_with = "no_lr_check", allow_negative_numbers = true)]
     max_lr_difference: Option<f32>,
-    /// Do not ask the other view
+    /// Skip the left-right consistency check
     #[arg(long)]
     no_lr_check: bool,
-    /// Search the other view as well, instead of taking the first one's word for it: fewer mistakes beside
-    /// things that hide others, for nearly twice the time [fast: --whole-range]
+    /// Match the other view separately for the left-right consistency check, instead of deriving its
+    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time;
+    /// balanced and quality only (for fast see --whole-range)
     #[arg(long, conflicts_with = "no_lr_check")]
     search_both_views: bool,
-    /// Leave holes where the two views disagree or hardly any neighbour agrees
+    /// Leave holes where the left-right consistency check fails or too few neighbours agree
     #[arg(long)]
     no_fill: bool,
-    /// Take the views' brightness as it is, even where the seeds tell that it differs
+    /// Do not equalise the brightness of the views, even where matched points show a difference
     #[arg(long)]
     no_equalise: bool,
-    /// How disparities between whole pixels are found [default: equiangular, paper: parabola]
+    /// Sub-pixel interpolation of disparities [default: equiangular, paper parabola]
     #[arg(long, value_enum)]
     interpolation: Option<InterpolationName>,
-    #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
-        descriptor, up to 1", MatchConfig::default().ratio))]
+    #[arg(long, value_name = "R", help = with_default("Ratio test: largest ratio of the distances of the best and the \
+        second best descriptor, above 0, at most 1", MatchConfig::default().ratio))]
     ratio: Option<f32>,
-    /// Show only the N strongest interest points and matches in the figures [default: all, paper:
-    /// 10]
+    /// Draw only the N strongest interest points and matches in the figures, at least 1 [default: all,
+    /// paper 10]
     #[arg(long, value_name = "N")]
     strongest: Option<usize>,
-    /// Go on with a pair that is not rectified
+    /// Match the pair even if it is not rectified
     #[arg(long)]
     force: bool,
 }
 
 impl MatchOptions {
-    /// The preset with the options that were given.
+    /// The preset, overridden by the options on the command line.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a value out of its range.
+    /// [`Error::Parameter`] for a value outside its range, or options that exclude each other.
     pub fn config(&self, features: &FeatureOptions) -> Result<Config> {
         let mut config = self.preset.map_or(Preset::default(), Preset::from).config();
         if let MethodName::Kamencay = self.method {
@@ -244,7 +246,7 @@ impl MatchOptions {
 }
 
 impl MatchOptions {
-    /// The options that the hybrid method has no use for.
+    /// Refuses the options that the hybrid method ignores.
     fn refuse_what_only_hsad_does(&self) -> Result<()> {
         let given = [
             ("--preset", self.preset.is_some()),
@@ -264,7 +266,7 @@ impl MatchOptions {
             Some((name, _)) => Err(Error::Parameter {
                 name: "--method",
                 value: "kamencay".into(),
-                expected: format!("{name} is for --method hsad: leave one of them out"),
+                expected: format!("{name} needs --method hsad: leave one of the two out"),
             }),
         }
     }
@@ -281,30 +283,30 @@ fn fixed_point(pixels: f32) -> Result<u32> {
     })
 }
 
-/// What turns disparities into metres.
+/// Geometry that turns disparities into depth.
 #[derive(Args)]
 #[command(next_help_heading = "Depth")]
 pub struct DepthOptions {
-    /// Calibration of the pair, in the form of Middlebury's calib.txt
+    /// Calibration file of the pair, in the format of Middlebury's calib.txt
     #[arg(long, value_name = "FILE", conflicts_with_all = ["focal", "baseline", "doffs"])]
     calib: Option<PathBuf>,
-    /// Focal length in pixels
+    /// Focal length in pixels, 10^-6 to 10^6
     #[arg(long, value_name = "PX", requires = "baseline", allow_negative_numbers = true)]
     focal: Option<f64>,
-    /// Distance between the cameras in metres
+    /// Baseline, the distance between the cameras, in metres, 10^-6 to 10^6
     #[arg(long, value_name = "METRES", requires = "focal", allow_negative_numbers = true)]
     baseline: Option<f64>,
-    /// What a disparity lacks to be 0 at infinity [default: 0]
+    /// Difference of the principal points, cx1 - cx0, in pixels, -10^6 to 10^6 [default: 0]
     #[arg(long, value_name = "PX", requires = "focal", allow_negative_numbers = true)]
     doffs: Option<f64>,
 }
 
 impl DepthOptions {
-    /// The calibration for pictures of `size`, if there is one.
+    /// The calibration for pictures of `size` (width and height in pixels); `None` without options for it.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Format`] and [`Error::Parameter`] for one that cannot be, or that
-    /// belongs to other pictures.
+    /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read or belongs to pictures of another size,
+    /// [`Error::Parameter`] for values outside their range.
     pub fn calibration(&self, size: (u32, u32)) -> Result<Option<Calibration>> {
         let calibration = match (&self.calib, self.focal, self.baseline) {
             (Some(path), ..) => {
@@ -324,21 +326,21 @@ impl DepthOptions {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum MethodName {
-    /// Block matching or semi-global matching, as a preset says
+    /// Block matching or semi-global matching, depending on the preset
     Hsad,
-    /// Mean-shift segments and belief propagation, after Kamencay and others: for comparison
+    /// Mean-shift segmentation and belief propagation, after Kamencay et al., for comparison
     Kamencay,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PresetName {
-    /// Block matching, checked, with holes where the check fails
+    /// Block matching, coarse to fine, with holes where the left-right consistency check fails
     Fast,
-    /// Semi-global matching, checked and filled
+    /// Semi-global matching along 3 paths, with holes filled
     Balanced,
-    /// The same, refined further
+    /// Semi-global matching along 4 paths, with holes filled and further refinement
     Quality,
-    /// The paper to the letter
+    /// The paper's method: block matching without checks
     Paper,
 }
 
@@ -355,16 +357,16 @@ impl From<PresetName> for Preset {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PathsName {
-    /// None
+    /// No paths
     #[value(name = "0")]
     None,
-    /// Along the row from both ends, along the column from above
+    /// Along rows in both directions, along columns downwards
     #[value(name = "3")]
     Three,
-    /// Along the row and the column
+    /// Along rows and columns in both directions
     #[value(name = "4")]
     Four,
-    /// Along the diagonals as well
+    /// Along rows, columns and diagonals in both directions
     #[value(name = "8")]
     Eight,
 }
@@ -397,11 +399,11 @@ impl From<ViewName> for View {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum InterpolationName {
-    /// Whole pixels
+    /// Whole pixels, no interpolation
     None,
-    /// The vertex of a parabola
+    /// Vertex of a parabola through three costs
     Parabola,
-    /// The tip of two lines of equal slope
+    /// Intersection of two lines of opposite slope through three costs
     Equiangular,
 }
 

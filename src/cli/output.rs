@@ -1,4 +1,4 @@
-//! The folder that a run's files appear in, all of them or none.
+//! The output folder of a run: all of its files appear, or none.
 
 use std::{
     fs::{self, File},
@@ -13,18 +13,18 @@ use hsad::{
 };
 use serde_json::Value;
 
-/// Folders that were created for a run, the deepest first. Whoever holds it is not interrupted.
+/// Folders that were created for a run, the deepest first. An interruption waits while the lock is held.
 static CREATED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn created() -> MutexGuard<'static, Vec<PathBuf>> {
     CREATED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Leaves nothing half done behind when the process is interrupted, by Ctrl-C, SIGTERM or SIGHUP. The
-/// handler runs in a thread of its own, and the process ends without dropping anything.
+/// Installs the handler that removes temporary files and empty folders when the process is interrupted by Ctrl-C,
+/// SIGTERM or SIGHUP. The handler runs in a thread of its own, and the process ends without dropping anything.
 ///
 /// # Errors
-/// Where the system has no such signals.
+/// If the system refuses the handler.
 pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
     let ignored = ignored_signals();
     ctrlc::set_handler(|| {
@@ -37,11 +37,11 @@ pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a shell reports for a program that ended by SIGINT. Without the destructors of drivers, which would
-/// run under the feet of the threads that still use them.
+/// Exits with 130, the code that a shell reports for a program ended by SIGINT. Destructors of drivers are skipped:
+/// other threads still use what they would destroy.
 fn exit_at_once() -> ! {
     #[cfg(unix)]
-    // SAFETY: it only ends the process.
+    // SAFETY: `_exit` only ends the process.
     unsafe {
         libc::_exit(130)
     }
@@ -49,11 +49,11 @@ fn exit_at_once() -> ! {
     std::process::exit(130)
 }
 
-/// The signals that whoever started this wants to be ignored: nohup, or a shell for what runs in the background.
+/// The signals that the parent process asked to ignore: nohup does, and a shell does for a background job.
 #[cfg(unix)]
 fn ignored_signals() -> Vec<libc::c_int> {
     let is_ignored = |&signal: &libc::c_int| {
-        // SAFETY: it only asks, and zeros are a valid action to be overwritten.
+        // SAFETY: without a new action the call only queries, and a zeroed action is valid to be overwritten.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             libc::sigaction(signal, std::ptr::null(), &mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
@@ -78,25 +78,25 @@ fn ignored_signals() {}
 #[cfg(not(unix))]
 fn keep_ignoring(_: &()) {}
 
-/// Only an empty folder can be removed, so results are safe.
+/// Removes the folders that are empty; the system refuses to remove the others, so results are safe.
 fn remove_empty(folders: &[PathBuf]) {
     for folder in folders {
         let _ = fs::remove_dir(folder);
     }
 }
 
-/// Collects files. Unless [`Self::finish`] is reached, none of them appears, and folders that were
-/// created for them go again.
+/// Staged output files. Unless [`Self::finish`] is reached, no file appears, and the folders that were created for
+/// the files are removed.
 pub struct Output {
     folder: PathBuf,
-    /// The deepest first.
+    /// Folders that this run created, the deepest first.
     created: Vec<PathBuf>,
     staged: Vec<Staged>,
     names: Vec<&'static str>,
 }
 
 impl Output {
-    /// Creates `folder` where it does not exist, and makes sure that files can be written there.
+    /// Creates `folder` if it is missing, and checks that files can be written there.
     ///
     /// # Errors
     /// [`Error::Io`] with `folder`.
@@ -111,14 +111,14 @@ impl Output {
         let missing = |path: &&Path| *path != Path::new("") && !path.exists();
         let created: Vec<_> = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         self::created().extend(created.iter().cloned());
-        // From here on what was created is removed again, whatever fails.
+        // From here on a failure removes the created folders: `output` is dropped.
         let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
         fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
         temporary_in(folder).map_err(|error| failed("no file can be written in this folder", error))?;
         Ok(output)
     }
 
-    /// Writes a file, which does not appear yet.
+    /// Writes a file that appears only with [`Self::finish`].
     ///
     /// # Errors
     /// [`Error::Io`] with its path.
@@ -133,7 +133,7 @@ impl Output {
         Ok(written)
     }
 
-    /// Writes JSON, indented, which does not appear yet.
+    /// Writes indented JSON to a file that appears only with [`Self::finish`].
     ///
     /// # Errors
     /// As [`Self::add`].
@@ -141,33 +141,33 @@ impl Output {
         self.add(name, |out| write_json(out, value))
     }
 
-    /// The folder.
+    /// The output folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The files so far.
+    /// Names of the files added so far.
     pub fn names(&self) -> &[&'static str] {
         &self.names
     }
 
-    /// Lets all files appear. An interruption waits until they have.
+    /// Moves all files to their places. An interruption waits until all have been moved.
     ///
     /// # Errors
-    /// [`Error::Io`] with the path of the first that cannot.
+    /// [`Error::Io`] with the path of the first file that cannot be moved.
     pub fn finish(&mut self) -> Result<()> {
         let _uninterrupted = created();
         self.staged.drain(..).try_for_each(Staged::put)
     }
 }
 
-/// Finds out, before any work, whether a file can be written.
+/// Checks, before any work, whether a file can be written.
 ///
 /// # Errors
 /// [`Error::Io`] with its path.
 pub fn check_writable(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    // What exists may be a pipe or /dev/stdout, next to which nothing can be made.
+    // An existing path may be a pipe or /dev/stdout, next to which no temporary file can be made.
     let tried = if path.is_dir() {
         Err(io::ErrorKind::IsADirectory.into())
     } else if path.exists() {
@@ -181,10 +181,10 @@ pub fn check_writable(path: &Path) -> Result<()> {
     })
 }
 
-/// Writes JSON as people can read it, too.
+/// Writes indented JSON and a line feed.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write_json(out: &mut impl Write, value: &Value) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, value)?;
     out.write_all(b"\n")

@@ -1,4 +1,4 @@
-//! The files that a pair ends in.
+//! The output files of a matched pair: maps, depth, point cloud, figures and report.
 
 use hsad::{
     Result,
@@ -11,12 +11,12 @@ use hsad::{
 use serde_json::Value;
 
 use super::{
-    job::{Done, Job},
+    job::{CompletedJob, Job},
     output::Output,
 };
 
-impl Done {
-    /// The maps, and depth where there is a calibration.
+impl CompletedJob {
+    /// Adds the disparity and confidence maps; with a calibration also depth and point cloud.
     pub fn add_maps(&mut self, output: &mut Output) -> Result<()> {
         let dense = &self.outcome.dense;
         output.add("disparity.pfm", |out| pfm::write_disparities(out, &dense.disparity))?;
@@ -40,7 +40,7 @@ impl Done {
             let depth = depth_map(&dense.disparity, &calibration);
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
                 self.warnings.push(format!(
-                    "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond, see the calibration",
+                    "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration",
                     calibration.doffs
                 ));
             }
@@ -51,7 +51,7 @@ impl Done {
         Ok(())
     }
 
-    /// The paper's figures 4 and 5: interest points in both views, and matches between them.
+    /// Adds the paper's figures 4 and 5: interest points in both views, and matches between them.
     pub fn add_figures(&self, output: &mut Output) -> Result<()> {
         let Job { left, right, config, .. } = &self.job;
         let count = config.strongest.unwrap_or(usize::MAX);
@@ -73,7 +73,8 @@ impl Done {
     }
 }
 
-/// `view`, and `map` and the truth (in pixels, not finite where unknown) in the truth's colours.
+/// Three panels: `view`, then `map` and `truth` (in pixels, not finite where unknown) in false colours that span the
+/// range of `truth`.
 pub fn beside_truth(view: &Picture, map: &DisparityMap, truth: &Plane<f32>) -> [Plane<[u8; 3]>; 3] {
     let truth = truth.map(|&pixels| fixed_point(pixels));
     let range = color::disparity_range(&truth).unwrap_or((0, 0));
@@ -81,7 +82,7 @@ pub fn beside_truth(view: &Picture, map: &DisparityMap, truth: &Plane<f32>) -> [
     [view.map(|&[red, green, blue, _]| [red, green, blue]), colors(map), colors(&truth)]
 }
 
-/// `report.json`, with all files named so far.
+/// Adds `report.json`, which lists all files added so far.
 pub fn add_report(output: &mut Output, mut report: Value) -> Result<()> {
     const NAME: &str = "report.json";
     report["files"] = output.names().iter().copied().chain([NAME]).collect();

@@ -1,4 +1,4 @@
-//! `report.json`: everything about a run, for programs.
+//! `report.json`: parameters, figures and times of a run, for programs.
 
 use hsad::{
     backend::Backend,
@@ -8,14 +8,14 @@ use hsad::{
     io::Calibration,
     kamencay::KamencayParameters,
     pipeline::RangeSource,
-    seeding::{Brightness, Rectification, Verdict},
+    seeding::{BrightnessRelation, Rectification, Verdict},
 };
 use serde_json::{Map, Value, json};
 
-use super::job::Done;
+use super::job::CompletedJob;
 
-impl Done {
-    /// The report, without the files.
+impl CompletedJob {
+    /// The report without the list of files.
     pub fn report(&self) -> Value {
         let Self { job, backend, outcome, total, warnings } = self;
         let mut seconds: Map<String, Value> =
@@ -48,17 +48,17 @@ impl Done {
     }
 }
 
-/// What computed.
+/// Name, graphics interface and driver of the device.
 pub fn device(backend: &Backend) -> Value {
     json!({ "name": backend.name(), "backend": backend.api(), "driver": backend.driver() })
 }
 
-/// The shortest decimal that is this `f32`: 0.85, not 0.8500000238418579.
+/// The shortest decimal that reads back as this `f32`: 0.85, not 0.8500000238418579. Null for NaN and infinity.
 fn number(value: f32) -> Value {
     value.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// What was asked for.
+/// All parameters of the configuration.
 pub fn parameters(config: &Config) -> Value {
     let Config { features, seeding, range, least, strongest, method, reference, equalise, force, .. } = config;
     let matching = &seeding.matching;
@@ -94,7 +94,7 @@ pub fn parameters(config: &Config) -> Value {
     parameters
 }
 
-/// What only the project's own dense half is told.
+/// Parameters that only block matching and semi-global matching take.
 fn dense(config: &Config) -> Vec<(&'static str, Value)> {
     let Config { aggregation, interpolation, uniqueness, consistency, refinement, .. } = config;
     let window = match aggregation {
@@ -131,7 +131,7 @@ fn dense(config: &Config) -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// What only the hybrid method is told.
+/// Parameters that only the hybrid method (Kamencay et al.) takes.
 fn hybrid(parameters: &KamencayParameters) -> Vec<(&'static str, Value)> {
     let KamencayParameters { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } =
         parameters;
@@ -170,7 +170,7 @@ fn aggregation_of(aggregation: &Aggregation) -> Value {
     let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }) = aggregation else {
         return "window".into();
     };
-    // Where there are no paths, nothing is penalised.
+    // Without paths no penalty is applied: null.
     let penalty = |value: u32| (*paths != Paths::None).then_some(value);
     json!({
         "cost_window": window,
@@ -190,7 +190,7 @@ fn ends(range: DisparityRange) -> Value {
     json!({ "min": range.min, "max": range.last(), "count": range.count })
 }
 
-/// The disparities that were searched, and who named them.
+/// The disparity range that was searched and its source; a fallback range comes with the reason.
 pub fn searched(range: DisparityRange, source: &RangeSource) -> Value {
     let mut value = ends(range);
     value["source"] = match source {
@@ -224,7 +224,7 @@ fn rectification(found: &Rectification) -> Value {
     })
 }
 
-fn brightness(&Brightness { gain, offset, residual }: &Brightness) -> Value {
+fn brightness(&BrightnessRelation { gain, offset, residual }: &BrightnessRelation) -> Value {
     json!({ "gain": number(gain), "offset": number(offset), "residual": number(residual) })
 }
 

@@ -1,9 +1,9 @@
-//! A score as JSON, both ways.
+//! A score to JSON and back.
 
 use hsad::eval::{Bad, Outliers, Score};
 use serde_json::{Value, json};
 
-/// All figures; shares are 0 to 1, and null stands for what there is none of.
+/// All figures of a score; shares are 0 to 1, an undefined figure is null.
 pub fn to_json(score: &Score) -> Value {
     let Score { known, estimated, bad, average, rms, a50, a90, a99, d1 } = score;
     let shares = |of_known: f64, of_estimated: f64| json!({ "of_all": of_known, "of_estimated": of_estimated });
@@ -26,7 +26,7 @@ pub fn to_json(score: &Score) -> Value {
     })
 }
 
-/// What [`to_json`] made; `None` where something is missing.
+/// Reads a score that [`to_json`] wrote; `None` if a figure is missing.
 pub fn from_json(value: &Value) -> Option<Score> {
     let count = |name: &str| usize::try_from(value[name].as_u64()?).ok();
     let bad = value["bad"].as_array()?.iter().map(|bad| {

@@ -1,14 +1,14 @@
-//! The few lines about a run that people read.
+//! The summary of a run that is printed on the terminal.
 
 use hsad::{disparity::coverage, pipeline::RangeSource, seeding::Verdict};
 
 use super::{
-    job::{Done, span},
+    job::{CompletedJob, span},
     output::Output,
 };
 
-impl Done {
-    /// A line for each fact.
+impl CompletedJob {
+    /// Device, range, matches, rectification, trust, coverage and time, one line each.
     pub fn summary(&self) -> String {
         let Self { job, backend, outcome, total, .. } = self;
         let seeding = &outcome.seeding;
@@ -49,7 +49,7 @@ impl Done {
     }
 }
 
-/// Where the files are.
+/// The line that names the output folder and its files.
 pub fn files(output: &Output) -> String {
     let mut text = String::new();
     line(&mut text, "files", format!("{}: {}", output.folder().display(), output.names().join(", ")));

@@ -1,4 +1,4 @@
-//! What people see: results on stdout; errors, warnings and progress on stderr.
+//! Terminal output: results on stdout; errors, warnings and progress on stderr.
 
 use std::{
     borrow::Cow,
@@ -10,37 +10,36 @@ use std::{
 use hsad::pipeline::Step;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// One line that says why the work failed.
+use super::wording::in_options;
+
+/// Prints one line that says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    // The library's errors know no options, since the page in a browser shows them as well.
-    let option = match error.downcast_ref() {
-        Some(hsad::Error::NotRectified { .. }) => " with --force",
-        _ => "",
-    };
-    complain("error", &format!("{error}{option}"));
+    let text = error.downcast_ref().map_or_else(|| error.to_string(), in_options);
+    print_line("error", &text);
 }
 
-/// One line about something that the result does not show by itself.
+/// Prints one line about a doubt that the result itself does not show.
 pub fn warning(text: impl Display) {
-    complain("warning", &text.to_string());
+    print_line("warning", &text.to_string());
 }
 
-/// One line that belongs to no result.
+/// Prints one line on stderr without a prefix.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Where stderr itself is gone there is nobody left to tell.
-fn complain(kind: &str, text: &str) {
+/// Prints `kind: text` on one line of stderr; a failure to write there has no one left to read it and is ignored.
+fn print_line(kind: &str, text: &str) {
     let _ = writeln!(io::stderr(), "{kind}: {}", one_line(text));
 }
 
-/// Messages of drivers come in paragraphs, and a file's name can hold anything.
+/// Joins a text into one line without control characters: drivers report in paragraphs, and a file name can hold any
+/// character.
 fn one_line(text: &str) -> String {
     text.split(|c: char| c.is_control()).map(str::trim).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-/// Prints results. A reader who has seen enough (`| head`) is no failure.
+/// Prints results. A reader that closes the pipe early (`| head`) is no failure.
 pub fn print(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -49,11 +48,11 @@ pub fn print(text: &str) -> io::Result<()> {
     }
 }
 
-/// What is being done, on a terminal; nothing where stderr is no terminal.
+/// Progress line on stderr; nothing is shown if stderr is no terminal.
 pub struct Progress(ProgressBar);
 
 impl Progress {
-    /// Nothing is shown where `quiet`.
+    /// Starts a progress line; with `quiet` nothing is shown.
     pub fn new(quiet: bool) -> Self {
         let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}{msg} ({elapsed})") {
@@ -63,22 +62,22 @@ impl Progress {
         Self(bar)
     }
 
-    /// Says which of several pieces of work the steps belong to from now on.
+    /// Sets the piece of work, `number` out of `of`, that the following steps belong to.
     pub fn piece(&self, name: &str, number: usize, of: usize) {
         self.0.set_prefix(format!("{} ({number} of {of}): ", one_line(name)));
     }
 
-    /// Says what begins now.
+    /// Shows the activity that begins.
     pub fn begin(&self, what: impl Into<Cow<'static, str>>) {
         self.0.set_message(what);
     }
 
-    /// Prints something meanwhile, without it and what is shown getting in each other's way.
+    /// Clears the progress line while `print` writes, so that the two do not overlap.
     pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
         self.0.suspend(print)
     }
 
-    /// Says which step of the pipeline begins now.
+    /// Shows the pipeline step that begins.
     pub fn step(&self, step: Step) {
         self.begin(match step {
             Step::Luma => "bringing the pictures to the device",

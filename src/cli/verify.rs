@@ -1,4 +1,4 @@
-//! `hsad verify`: a device held against the CPU twins.
+//! `hsad verify`: compares the results of a device with those of the CPU twins.
 
 use std::{
     fmt::Write as _,
@@ -23,11 +23,11 @@ use super::{
     terminal::{self, Progress},
 };
 
-/// Hold every kernel on a device against its CPU twin
+/// Compare every kernel on a device with its CPU twin
 ///
-/// Runs each kernel, and the whole pipelines, on inputs that follow from a seed, at sizes that divide by nothing; compares
-/// with what the CPU twins compute, bit for bit where the arithmetic is in integers, and the twins with hashes that are
-/// part of this program. What fails is left in a folder, with the command that repeats it alone.
+/// Runs each kernel and the whole pipelines on inputs drawn from a seed, at odd sizes; compares the results with those
+/// of the CPU twins, bit for bit where the arithmetic is in integers, and the twins with hashes stored in this program.
+/// The arrays of a failed case are written to a folder, with the command that repeats the case alone.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad verify
@@ -35,46 +35,46 @@ use super::{
   hsad verify --json report.json -o failures
   hsad verify --only block_match --size 311x239 --seed 2
 
-Exit codes: 0 nothing fails, 1 something does, 2 usage")]
+Exit codes: 0 all cases pass, 1 a case fails, 2 usage")]
 pub struct Verify {
-    /// The device: best, or index or part of the name (see hsad devices)
+    /// Device to verify: best, or the index or a part of the name of a device (see hsad devices)
     #[arg(long, default_value = "best")]
     device: DeviceChoice,
-    /// One size instead of all
+    /// Verify at one size (131x67) instead of all
     #[arg(long)]
     quick: bool,
-    /// Only this kernel or pipeline; can be given more than once
+    /// Verify only this kernel or pipeline; repeatable [default: all]
     #[arg(long, value_name = "KERNEL")]
     only: Vec<String>,
-    /// Only pictures of this size
+    /// Verify only at this picture size in pixels, each side 1 to 4096 [default: 8 sizes, up to 5x700 and 311x239]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<Size>,
-    /// What the inputs follow from
+    /// Seed of the inputs, 0 to 4294967295 [default: another seed for each size, from 1]
     #[arg(long, value_name = "S")]
     seed: Option<u32>,
-    /// Write everything about every case to this file, or to stdout (-) instead of the table
+    /// Write the details of every case to this file as JSON, or to stdout (-) instead of the table
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Folder for what fails: inputs, expected and actual results
+    /// Folder for the inputs, expected and actual results of failed cases
     #[arg(short, long, value_name = "DIR", default_value = "hsad-verify")]
     output: PathBuf,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// A size as people write it.
+/// Parses `WIDTHxHEIGHT`.
 fn size(text: &str) -> Result<Size, String> {
     let sides =
         text.split_once(['x', 'X']).and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    sides.ok_or_else(|| "a size is width and height in pixels, as in 311x239".into())
+    sides.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 311x239".into())
 }
 
 impl Verify {
-    /// Runs all cases, prints them as they come, and leaves what fails.
+    /// Runs all cases, prints one row per case, and writes the arrays of failed cases.
     pub fn run(self) -> anyhow::Result<()> {
         let cases = self.cases()?;
-        // An empty folder goes again.
+        // A folder that stays empty is removed again when `folder` is dropped.
         let folder = Output::open(&self.output)?;
         let json_file = self.json.as_deref().filter(|file| *file != Path::new("-"));
         json_file.map(check_writable).transpose()?;
@@ -86,15 +86,15 @@ impl Verify {
 
         let start = Instant::now();
         let progress = Progress::new(self.quiet);
-        let (mut reports, mut faults, mut unkept) = (Vec::new(), 0, Vec::new());
+        let (mut reports, mut faults, mut unsaved) = (Vec::new(), 0, Vec::new());
         for case in &cases {
             progress.begin(case.subject.name);
             let outcome = case.run(&Bench::new(&gpu));
             progress.suspend(|| print(&row(&outcome)))?;
             if !outcome.passes() {
                 faults += 1;
-                let left = leave(folder.folder(), &device, &outcome, &case.command(&self.device));
-                unkept.extend(left.err());
+                let written = write_failure(folder.folder(), &device, &outcome, &case.command(&self.device));
+                unsaved.extend(written.err());
             }
             reports.push(self.report(&outcome));
             if outcome.lost {
@@ -123,20 +123,21 @@ impl Verify {
                 terminal::print(&format!("{report:#}\n"))?;
             }
         }
-        for error in unkept {
-            terminal::error(&anyhow!("what failed was not kept: {error}"));
+        for error in unsaved {
+            terminal::error(&anyhow!("the arrays of a failed case were not written: {error}"));
         }
         if faults > 0 {
-            let lost = if ran < cases.len() { "; the device is lost, and the rest was not run" } else { "" };
+            let lost =
+                if ran < cases.len() { "; the device was lost, and the remaining cases were not run" } else { "" };
             bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, self.output.display());
         }
         print(&format!("all {ran} cases pass, in {}\n", time(seconds)))?;
         Ok(())
     }
 
-    /// What is to be run.
+    /// The cases to run, after `--quick`, `--only`, `--size` and `--seed`.
     fn cases(&self) -> hsad::Result<Vec<Case>> {
-        // Names and the size are checked before anything is opened.
+        // Names and size are checked before the device is opened.
         let named = |name: &String| Case::new(name, self.size.unwrap_or(SIZES[0]), 1);
         let names: Vec<&str> =
             self.only.iter().map(|name| Ok(named(name)?.subject.name)).collect::<hsad::Result<_>>()?;
@@ -150,7 +151,7 @@ impl Verify {
             cases.push(Case::new(case.subject.name, size, self.seed.unwrap_or(case.seed))?);
         }
         if self.size.is_some() {
-            // All planned sizes have become one.
+            // With one size for all, cases of one subject and seed are equal.
             cases.dedup_by_key(|case| (case.subject.name, case.seed));
         }
         Ok(cases)
@@ -178,20 +179,20 @@ impl Verify {
     }
 }
 
-/// The device and its driver.
+/// Name, graphics interface and driver of the device, one line.
 fn described(gpu: &Gpu) -> String {
     let info = gpu.info();
     format!("{} ({}, {} {})\n", info.name, info.backend, info.driver, info.driver_info)
 }
 
-/// What the table's columns are.
+/// Header row of the table.
 fn head() -> String {
     let [kernel, size, seed, difference] = ["kernel", "size", "seed", "difference"];
     let [tolerance, golden, device, twin] = ["tolerance", "golden", "device", "twin"];
     format!("{kernel:<17}{size:<9}{seed:>4}  {difference:<20}{tolerance:<26}{golden:<7}{device:>9}{twin:>10}\n")
 }
 
-/// What people read of a case: of its arrays the one that is nearest to its tolerance or furthest beyond.
+/// Table row of a case: shows the array whose difference is largest relative to its tolerance.
 fn row(outcome: &Outcome) -> String {
     let Outcome { case, comparisons, faults, golden, device_time, twin_time, .. } = outcome;
     let strain = |comparison: &&Comparison| match comparison.tolerance {
@@ -230,14 +231,14 @@ fn time(time: Duration) -> String {
     }
 }
 
-/// Leaves all arrays of a case in a folder of its own, with a text that says what they are, and nothing that an earlier
-/// run left there.
-fn leave(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
+/// Writes all arrays of a case to a folder of its own, with `case.txt` that describes them; removes the arrays of an
+/// earlier run first.
+fn write_failure(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
     let Outcome { case, parameters, faults, input, expected, actual, .. } = outcome;
     let (width, height) = case.size;
     let folder = folder.join(format!("{}-{width}x{height}-{}", case.subject.name, case.seed));
     let failed = |source| Error::Io { path: folder.clone(), source };
-    fs::create_dir_all(&folder).and_then(|()| remove_left(&folder)).map_err(failed)?;
+    fs::create_dir_all(&folder).and_then(|()| remove_old_arrays(&folder)).map_err(failed)?;
     let mut text = format!("{command}\n\n{device}{parameters}\n");
     faults.iter().for_each(|fault| text += &format!("{fault}\n"));
     text += "\nfile, number of values, type; all values have their lowest byte first\n";
@@ -252,14 +253,14 @@ fn leave(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad:
     atomic::write_whole(&folder.join(TEXT), |out| out.write_all(text.as_bytes()))
 }
 
-/// What the files of arrays begin with.
+/// Prefixes of the array files.
 const KINDS: [&str; 3] = ["input", "expected", "actual"];
 
-/// The file that says what the others are.
+/// The file that describes the array files.
 const TEXT: &str = "case.txt";
 
-/// Removes what [`leave`] has left in a folder, and no other file.
-fn remove_left(folder: &Path) -> io::Result<()> {
+/// Removes the files that [`write_failure`] wrote to a folder, and no others.
+fn remove_old_arrays(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name();
@@ -302,13 +303,14 @@ mod tests {
         assert!(row.contains("1.000e0 (1 off)"), "{row}");
         assert!(row.ends_with("\n  FAILS: some words, two: value 1 is 3, not 2; 1 are off\n"), "{row}");
         let folder = tempfile::tempdir().unwrap();
-        let leave = || leave(folder.path(), "a device\n", &outcome, &outcome.case.command(&DeviceChoice::Best));
+        let write_failure =
+            || write_failure(folder.path(), "a device\n", &outcome, &outcome.case.command(&DeviceChoice::Best));
         let left = folder.path().join("pad-17x13-5");
-        // Of an earlier run, and of someone else.
+        // A file of an earlier run, and a file of someone else.
         fs::create_dir(&left).unwrap();
         fs::write(left.join("actual-another.i32"), "old").unwrap();
         fs::write(left.join("notes.txt"), "mine").unwrap();
-        leave().unwrap();
+        write_failure().unwrap();
         let mut names: Vec<_> = fs::read_dir(&left).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         names.sort();
         let expected = ["actual-some-words-two.u32", "case.txt", "expected-some-words-two.u32", "notes.txt"];

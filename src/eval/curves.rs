@@ -1,31 +1,32 @@
-//! Curves of matches that come in order of their confidence (the paper's figures 7 to 9, and one it does not show).
+//! Curves over matches in order of confidence: the paper's figures 7 to 9, and precision over coverage.
 //!
-//! Each is read off a list with `true` for a right match and `false` for a wrong one, the most confident first: the
-//! matches that remain as a threshold on the confidence is lowered. The `i`-th value belongs to the first `i + 1` matches.
+//! Each curve is computed from a list with `true` for a right match and `false` for a wrong one, the most confident
+//! first: these are the matches that a falling confidence threshold accepts. The `i`-th value belongs to the first `i +
+//! 1` matches.
 
-/// A threshold's matches: how many are right of those found, and of those that could have been.
+/// Recall and precision of the matches above a confidence threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecallPrecision {
-    /// Right matches by all correspondences, 0 to 1.
+    /// Right matches divided by all correspondences, 0 to 1.
     pub recall: f64,
-    /// Right matches by matches, 0 to 1.
+    /// Right matches divided by matches, 0 to 1.
     pub precision: f64,
 }
 
 impl RecallPrecision {
-    /// The harmonic mean of both, 0 to 1; 0 where both are 0.
+    /// F-measure, the harmonic mean of recall and precision, 0 to 1; 0 if both are 0.
     pub fn f_measure(&self) -> f64 {
         f_measure(self.precision, self.recall)
     }
 }
 
-/// The harmonic mean of precision and recall; 0 where both are 0.
+/// F-measure, the harmonic mean of precision and recall, 0 to 1; 0 if both are 0.
 pub fn f_measure(precision: f64, recall: f64) -> f64 {
     if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
 }
 
-/// Recall and precision (figure 7) of the first 1, 2, 3... matches, where `correspondences` could be found: no fewer than
-/// are right.
+/// Recall and precision (figure 7) of the first 1, 2, 3... matches; `correspondences` is the number of matches that
+/// could be found, at least the number of right ones.
 pub fn recall_precision(right: &[bool], correspondences: usize) -> Vec<RecallPrecision> {
     let each = (1..).zip(counts(right));
     each.map(|(k, right)| RecallPrecision { recall: share(right, correspondences), precision: share(right, k) })
@@ -37,19 +38,20 @@ pub fn f_measure_over_recall(right: &[bool], correspondences: usize) -> Vec<(f64
     recall_precision(right, correspondences).iter().map(|point| (point.recall, point.f_measure())).collect()
 }
 
-/// The share of right ones among the first `k` matches (figure 9), or among all where there are fewer; NaN without any.
+/// Accuracy (figure 9): share of right matches among the first `k`, or among all if there are fewer; NaN without
+/// matches.
 pub fn accuracy_of_first(right: &[bool], k: usize) -> f64 {
     let first = &right[..right.len().min(k)];
     share(first.iter().filter(|&&right| right).count(), first.len())
 }
 
-/// Coverage and precision of the first 1, 2, 3... matches: how much of what was asked (`all` points or pixels of the
-/// reference view whose truth is known) is answered, and how much of the answers is right.
+/// Coverage and precision of the first 1, 2, 3... matches, 0 to 1: matches divided by `all` points or pixels of the
+/// reference view with known ground truth, and right matches divided by matches.
 pub fn precision_over_coverage(right: &[bool], all: usize) -> Vec<(f64, f64)> {
     (1..).zip(counts(right)).map(|(k, right)| (share(k, all), share(right, k))).collect()
 }
 
-/// How many are right among the first 1, 2, 3...
+/// Number of right matches among the first 1, 2, 3...
 fn counts(right: &[bool]) -> impl Iterator<Item = usize> {
     right.iter().scan(0, |count, &right| {
         *count += usize::from(right);

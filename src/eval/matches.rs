@@ -1,4 +1,4 @@
-//! How good matches of points are.
+//! Quality of point matches against the ground truth.
 
 use std::collections::BTreeSet;
 
@@ -14,16 +14,16 @@ use crate::{
     wide_baseline::WideBaselineMatch,
 };
 
-/// A point of the first view and where the second is said to show it.
+/// A match to be judged: a position in the first view and the matched position in the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMatch {
-    /// Place in the first view, in pixels.
+    /// Position in the first view, in pixels.
     pub first: DVec2,
-    /// Place in the second view, in pixels.
+    /// Position in the second view, in pixels.
     pub second: DVec2,
-    /// The greater the surer; only its order matters.
+    /// Confidence, larger for more confident matches; only the order matters.
     pub confidence: f64,
-    /// The indices of the interest points that it comes from, where they are known.
+    /// Indices of the matched interest points of the first and the second view, if known.
     pub points: Option<[usize; 2]>,
 }
 
@@ -34,27 +34,27 @@ impl From<&WideBaselineMatch> for PointMatch {
     }
 }
 
-/// Matches held against the truth.
+/// Matches judged against the ground truth.
 ///
-/// A match is *right* if the second view shows the point of the first, and within the tolerance of the place that is
-/// named; it is *wrong* if not, also where there is nothing to be found because the point is hidden. Where the truth is
-/// not known it is neither and plays no part.
+/// A match is *right* if the second view shows the point of the first, and the matched position lies within the
+/// tolerance of the true one. Otherwise it is *wrong*, also if the point is occluded and nothing could be found.
+/// Matches without ground truth are neither and do not count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// Right or wrong, the most confident first; of equally confident ones the wrong ones first, so that nothing is
-    /// gained by a tie.
+    /// For each match with ground truth, the most confident first: whether it is right. Among equally confident matches
+    /// the wrong ones come first, so that ties never help.
     pub right: Vec<bool>,
-    /// Matches whose truth is not known.
+    /// Number of matches without ground truth.
     pub unknown: usize,
-    /// The indices of the matches in `right`.
+    /// Index of the match of each entry of `right`.
     order: Vec<usize>,
 }
 
 impl Judged {
-    /// Compares places with a `tolerance` in pixels of the second view.
+    /// Judges `matches` with a `tolerance` in pixels of the second view, at least 0.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a tolerance or a confidence that is none.
+    /// [`Error::Parameter`] for a tolerance that is negative or NaN, or a confidence that is NaN.
     pub fn new(matches: &[PointMatch], truth: &Truth, tolerance: f64) -> Result<Self> {
         let bad = |name, value: f64, expected: &str| {
             Err(Error::Parameter { name, value: value.to_string(), expected: expected.into() })
@@ -76,8 +76,9 @@ impl Judged {
         Ok(Self { unknown: matches.len() - right.len(), right, order })
     }
 
-    /// The same, but of equally confident `matches` right and wrong ones take turns evenly, as they do on the average in a
-    /// random order: for confidences of a few values, which whole parts of a picture share.
+    /// Interleaves right and wrong matches of equal confidence evenly, as a random order does on average. For
+    /// confidences with few distinct values, which large parts of a picture share. `matches` are those given to
+    /// [`Self::new`].
     #[must_use]
     pub fn with_even_ties(mut self, matches: &[PointMatch]) -> Self {
         let mut start = 0;
@@ -87,7 +88,7 @@ impl Judged {
             start += tie.len();
             let (count, wrong) = (right.len(), right.iter().filter(|&&right| !right).count());
             let [wrong_ones, right_ones] = [&tie[..wrong], &tie[wrong..]].map(<[usize]>::to_vec);
-            // How many of the first `k` are right, rounded.
+            // Number of right matches among the first `k`, rounded.
             let share = |k: usize| (2 * k * (count - wrong) + count) / (2 * count);
             for k in 0..count {
                 right[k] = share(k + 1) > share(k);
@@ -97,43 +98,45 @@ impl Judged {
         self
     }
 
-    /// The share of right ones, 0 to 1; NaN without matches.
+    /// Precision, the share of right matches, 0 to 1; NaN without matches.
     pub fn precision(&self) -> f64 {
         accuracy_of_first(&self.right, self.right.len())
     }
 
-    /// Right matches.
+    /// Number of right matches.
     pub fn count_right(&self) -> usize {
         self.right.iter().filter(|&&right| right).count()
     }
 }
 
-/// What matches make of the points that were found.
+/// Figures of matches relative to the detected interest points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OfPoints {
-    /// Which points correspond.
+pub struct PointScores {
+    /// Correspondences between the points.
     pub repeatability: Repeatability,
-    /// What could have been found: the correspondences (see [`Repeatability`]), and any other point with a right match.
-    /// A window can find to a pixel and a half what two detections are further off.
+    /// Number of points that could have been matched: the correspondences (see [`Repeatability`]), and every other
+    /// point with a right match, since block matching can locate a point to a pixel and a half where two detections are
+    /// further apart.
     pub findable: usize,
-    /// Points with a right match by `findable`, 0 to 1, each counted once; NaN where there is nothing to be found.
+    /// Points with a right match, each counted once, divided by `findable`: 0 to 1, NaN if `findable` is 0.
     pub recall: f64,
-    /// The harmonic mean of precision and recall, 0 to 1.
+    /// F-measure, the harmonic mean of precision and recall, 0 to 1.
     pub f_measure: f64,
-    /// The share of the first view's points in what both views show that have a match, right or wrong: 0 to 1.
+    /// Share of the first view's points, in the area that both views show, that have a match, right or wrong: 0 to 1.
     pub coverage: f64,
-    /// Matches of two points that correspond, their overlap error at most
-    /// [`MAX_OVERLAP_ERROR`](super::MAX_OVERLAP_ERROR), by the points in what both views show, of the view that has
-    /// fewer: 0 to 1.
+    /// Matches of corresponding points, with an overlap error of at most
+    /// [`MAX_OVERLAP_ERROR`](super::MAX_OVERLAP_ERROR), divided by the points in the area that both views show, of the
+    /// view with fewer points: 0 to 1.
     pub matching_score: f64,
 }
 
-impl OfPoints {
-    /// Of `matches` between the points `first` and `second`. Those that name no points can be right all the same.
+impl PointScores {
+    /// Computes the figures of `matches` between the points `first` and `second`. Matches without indices of points can
+    /// be right, too.
     pub fn new(matches: &[PointMatch], judged: &Judged, [first, second]: [&[Point]; 2], truth: &Truth) -> Self {
         let repeatability = Repeatability::new(first, second, truth);
         let mut matched = vec![false; first.len()];
-        // Points with a right match, and places of right matches that name no points: once each.
+        // Points with a right match, and positions of right matches without indices of points, each once.
         let mut found = vec![false; first.len()];
         let mut elsewhere = BTreeSet::new();
         let mut overlapping = 0;
@@ -197,24 +200,27 @@ mod tests {
         let matches: Vec<_> = (0..5).map(|i| found(i, 0.0, 0.5)).collect();
         let judged = Judged::new(&matches, &truth(), 0.0).unwrap();
         assert_eq!((judged.right.clone(), judged.precision()), (vec![true; 5], 1.0));
-        let of_points = OfPoints::new(&matches, &judged, [&points(40.0), &points(30.0)], &truth());
-        assert_eq!((of_points.findable, of_points.recall, of_points.f_measure), (5, 1.0, 1.0));
-        assert_eq!((of_points.coverage, of_points.matching_score, of_points.repeatability.share()), (1.0, 1.0, 1.0));
+        let point_scores = PointScores::new(&matches, &judged, [&points(40.0), &points(30.0)], &truth());
+        assert_eq!((point_scores.findable, point_scores.recall, point_scores.f_measure), (5, 1.0, 1.0));
+        assert_eq!(
+            (point_scores.coverage, point_scores.matching_score, point_scores.repeatability.share()),
+            (1.0, 1.0, 1.0)
+        );
     }
 
     #[test]
     fn no_matches_and_wrong_ones_score_0() {
         let none = Judged::new(&[], &truth(), 1.5).unwrap();
-        let of_points = OfPoints::new(&[], &none, [&points(40.0), &points(30.0)], &truth());
+        let point_scores = PointScores::new(&[], &none, [&points(40.0), &points(30.0)], &truth());
         assert!(none.precision().is_nan());
-        assert_eq!((of_points.recall, of_points.coverage, of_points.matching_score), (0.0, 0.0, 0.0));
+        assert_eq!((point_scores.recall, point_scores.coverage, point_scores.matching_score), (0.0, 0.0, 0.0));
 
-        // Each to the next point's place.
+        // Each point matched to the position of the next one.
         let wrong: Vec<_> = (0..4).map(|i| PointMatch { points: Some([i, i + 1]), ..found(i, 12.0, 0.5) }).collect();
         let judged = Judged::new(&wrong, &truth(), 1.5).unwrap();
-        let of_points = OfPoints::new(&wrong, &judged, [&points(40.0), &points(30.0)], &truth());
-        assert_eq!((judged.precision(), of_points.recall, of_points.f_measure), (0.0, 0.0, 0.0));
-        assert_eq!((of_points.findable, of_points.matching_score, of_points.coverage), (5, 0.0, 0.8));
+        let point_scores = PointScores::new(&wrong, &judged, [&points(40.0), &points(30.0)], &truth());
+        assert_eq!((judged.precision(), point_scores.recall, point_scores.f_measure), (0.0, 0.0, 0.0));
+        assert_eq!((point_scores.findable, point_scores.matching_score, point_scores.coverage), (5, 0.0, 0.8));
     }
 
     #[test]
@@ -225,27 +231,27 @@ mod tests {
             found(0, 1.5, 0.8),  // right, just
             found(1, -1.6, 0.8), // wrong, and first of the two equals
             found(2, 0.0, 0.7),
-            at(79.0), // not known
-            at(78.0), // hidden
+            at(79.0), // no ground truth
+            at(78.0), // occluded
             at(60.0), // right, though no point was found there
         ];
         let judged = Judged::new(&matches, &truth(), 1.5).unwrap();
         assert_eq!(judged.right, [false, true, false, true, true]);
         assert_eq!((judged.unknown, judged.count_right(), judged.precision()), (1, 3, 0.6));
-        // The fourth and fifth points of the second view lie 20 px off: they correspond to nothing.
+        // The fourth and the fifth point of the second view are 20 px off and correspond to nothing.
         let mut second = points(30.0);
         second[3].at.y += 20.0;
         second[4].at.y += 20.0;
-        let of_points = OfPoints::new(&matches, &judged, [&points(40.0), &second], &truth());
-        assert_eq!(of_points.repeatability.correspondences(), 3);
-        assert_eq!((of_points.findable, of_points.recall), (4, 0.75));
-        assert!((of_points.f_measure - 0.9 / 1.35).abs() < 1e-12);
-        assert_eq!((of_points.coverage, of_points.matching_score), (0.6, 0.6));
+        let point_scores = PointScores::new(&matches, &judged, [&points(40.0), &second], &truth());
+        assert_eq!(point_scores.repeatability.correspondences(), 3);
+        assert_eq!((point_scores.findable, point_scores.recall), (4, 0.75));
+        assert!((point_scores.f_measure - 0.9 / 1.35).abs() < 1e-12);
+        assert_eq!((point_scores.coverage, point_scores.matching_score), (0.6, 0.6));
     }
 
     #[test]
     fn equals_take_turns() {
-        // Of the first view's points 1 and 2 are wrong, of four equals; the fifth is surer.
+        // Of four equally confident matches, those of points 1 and 2 are wrong; the fifth match is more confident.
         let matches = [0.0, 9.0, -9.0, 0.0, 0.0]
             .iter()
             .enumerate()
@@ -256,7 +262,7 @@ mod tests {
             (judged.right.clone(), judged.order.clone()),
             (vec![true, false, false, true, true], vec![4, 1, 2, 0, 3])
         );
-        // Of the first 1, 2, 3 and 4 equals 0.5, 1, 1.5 and 2 are right: rounded 1, 1, 2 and 2.
+        // Among the first 1, 2, 3 and 4 equals, 0.5, 1, 1.5 and 2 are right: 1, 1, 2 and 2 after rounding.
         let even = judged.with_even_ties(&matches);
         assert_eq!(
             (even.right.clone(), even.order.clone()),
@@ -268,16 +274,16 @@ mod tests {
     fn a_point_is_found_once() {
         let twice = [found(0, 0.0, 0.9), found(0, 0.5, 0.8)];
         let judged = Judged::new(&twice, &truth(), 1.5).unwrap();
-        let of_points = |matches: &[PointMatch], count: usize| {
-            OfPoints::new(matches, &judged, [&points(40.0)[..count], &points(30.0)], &truth())
+        let point_scores = |matches: &[PointMatch], count: usize| {
+            PointScores::new(matches, &judged, [&points(40.0)[..count], &points(30.0)], &truth())
         };
-        let one = of_points(&twice, 1);
+        let one = point_scores(&twice, 1);
         assert_eq!((one.findable, one.recall, one.matching_score), (1, 1.0, 1.0));
-        let two = of_points(&twice, 2);
+        let two = point_scores(&twice, 2);
         assert_eq!((two.findable, two.recall, two.matching_score), (2, 0.5, 0.5));
-        // Neither do matches of no point count again.
+        // Matches without indices of points are not counted twice either.
         let nameless = twice.map(|found| PointMatch { points: None, ..found });
-        let two = of_points(&nameless, 2);
+        let two = point_scores(&nameless, 2);
         assert_eq!((two.findable, two.recall), (3, 1.0 / 3.0));
     }
 

@@ -1,6 +1,6 @@
-//! The measures of the Middlebury benchmark (Scharstein and Szeliski, IJCV 47, 2002, section 5.1; Scharstein et al.,
-//! GCPR 2014, section 5) and of KITTI's (Menze and Geiger, CVPR 2015, section 5), with missing values told apart from
-//! wrong ones.
+//! Measures of the Middlebury benchmark (Scharstein and Szeliski, IJCV 47, 2002, section 5.1; Scharstein et al., GCPR
+//! 2014, section 5) and of the KITTI benchmark (Menze and Geiger, CVPR 2015, section 5). Missing estimates are kept
+//! apart from wrong ones.
 
 use crate::{
     disparity::{self, DisparityMap},
@@ -8,83 +8,84 @@ use crate::{
     image::Plane,
 };
 
-/// The value of a mask's pixels that are scored.
+/// Mask value of scored pixels.
 const SCORED: u8 = 255;
 
-/// The share of pixels that are wrong by more than a threshold.
+/// Shares of pixels with an error above a threshold, Middlebury's 'bad'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bad {
-    /// The largest error in pixels that still counts as right.
+    /// Largest error that counts as right, in pixels.
     pub threshold: f32,
-    /// The share of the scored pixels that are further off or have no estimate, 0 to 1.
+    /// Share of the scored pixels with a larger error or without an estimate, 0 to 1.
     pub of_known: f64,
-    /// The share of the estimated pixels that are further off, 0 to 1.
+    /// Share of the estimated pixels with a larger error, 0 to 1.
     pub of_estimated: f64,
 }
 
-/// The share of KITTI's outliers, 'D1': wrong by more than [`OUTLIER_PIXELS`] and by more than [`OUTLIER_SHARE`] of the
+/// Shares of KITTI's outliers, 'D1': pixels with an error above [`OUTLIER_PIXELS`] and above [`OUTLIER_SHARE`] of the
 /// true disparity.
 ///
 /// KITTI's own tool fills a map's holes before it counts over all pixels; here a hole is an outlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outliers {
-    /// The share of the scored pixels that are outliers or have no estimate, 0 to 1.
+    /// Share of the scored pixels that are outliers or have no estimate, 0 to 1.
     pub of_known: f64,
-    /// The share of the estimated pixels that are outliers, 0 to 1.
+    /// Share of the estimated pixels that are outliers, 0 to 1.
     pub of_estimated: f64,
 }
 
-/// An outlier is further off than this, in pixels.
+/// Largest error of a pixel that is no outlier, in pixels.
 pub const OUTLIER_PIXELS: f64 = 3.0;
 
-/// An outlier is further off than this share of the true disparity.
+/// Largest error of a pixel that is no outlier, as a share of the true disparity.
 pub const OUTLIER_SHARE: f64 = 0.05;
 
-/// How a disparity map compares with the truth.
+/// Score of a disparity map against the ground truth.
 ///
-/// A pixel is *scored* if its truth is known and the mask, where there is one, is 255 there; it is *estimated* if it
-/// is scored and the map has a disparity. Where nothing is scored or estimated there is no share and no average:
-/// these figures are NaN then, never a flattering 0.
+/// A pixel is *scored* if its ground truth is known and the mask, if any, is 255 there; it is *estimated* if it is
+/// scored and the map has a disparity. Without scored or estimated pixels the shares and averages are undefined: they
+/// are NaN, never a flattering 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
-    /// Scored pixels.
+    /// Number of scored pixels.
     pub known: usize,
-    /// Estimated pixels.
+    /// Number of estimated pixels.
     pub estimated: usize,
-    /// Wrong pixels, in the order of the thresholds that were asked for.
+    /// Shares of wrong pixels, in the order of the requested thresholds.
     pub bad: Vec<Bad>,
     /// Mean absolute error of the estimated pixels, in pixels.
     pub average: f64,
     /// Root of the mean squared error of the estimated pixels, in pixels.
     pub rms: f64,
-    /// The smallest error in pixels that half of the estimated pixels do not exceed.
+    /// Smallest error that half of the estimated pixels do not exceed, in pixels.
     pub a50: f64,
-    /// The same of 90 % of the estimated pixels.
+    /// Smallest error that 90 % of the estimated pixels do not exceed, in pixels.
     pub a90: f64,
-    /// The same of 99 % of the estimated pixels.
+    /// Smallest error that 99 % of the estimated pixels do not exceed, in pixels.
     pub a99: f64,
-    /// KITTI's outliers.
+    /// Shares of KITTI's outliers.
     pub d1: Outliers,
 }
 
 impl Score {
-    /// The share of the scored pixels that have an estimate, 0 to 1: what both benchmarks call density.
+    /// Coverage, the share of the scored pixels that have an estimate, 0 to 1; both benchmarks call it density.
     pub fn coverage(&self) -> f64 {
         self.estimated as f64 / self.known as f64
     }
 }
 
-/// Compares `map` with `truth`, in which a value that is not finite means 'unknown'.
+/// Scores `map`, in 1/256 px, against `truth`, in pixels and not finite where unknown, where `mask` is 255.
+/// `thresholds` are those of [`Score::bad`], in pixels.
 ///
-/// An error of exactly the threshold is right. Errors are taken between the map's 1/256 px and the truth as it is.
+/// An error of exactly the threshold is right. `truth` is not rounded to 1/256 px.
 ///
 /// # Errors
-/// [`Error::Parameter`] if the sizes differ or a threshold is negative or not a number.
+/// [`Error::Parameter`] if the sizes differ or a threshold is negative or NaN.
 pub fn score(map: &DisparityMap, truth: &Plane<f32>, mask: Option<&Plane<u8>>, thresholds: &[f32]) -> Result<Score> {
     score_pixels(&disparity::in_pixels(map), truth, mask, thresholds)
 }
 
-/// As [`score`], of a map in pixels, in which a value that is not finite means 'no estimate'.
+/// As [`score`], for a map in pixels, not finite where there is no estimate.
 ///
 /// # Errors
 /// As [`score`].
@@ -141,20 +142,20 @@ pub fn score_pixels(
     })
 }
 
-/// The smallest value that `percent` per cent of the sorted values, of which there may be none, do not exceed.
+/// Smallest of the sorted values that `percent` per cent of them do not exceed; NaN without values.
 fn quantile(sorted: &[f64], percent: usize) -> f64 {
     let rank = (sorted.len() * percent).div_ceil(100);
     rank.checked_sub(1).map_or(f64::NAN, |index| sorted[index])
 }
 
-fn same_size(name: &'static str, size: (u32, u32), wanted: (u32, u32)) -> Result<()> {
-    if size == wanted {
+fn same_size(name: &'static str, size: (u32, u32), map_size: (u32, u32)) -> Result<()> {
+    if size == map_size {
         return Ok(());
     }
     Err(Error::Parameter {
         name,
         value: format!("{}x{} pixels", size.0, size.1),
-        expected: format!("the disparity map has {}x{}", wanted.0, wanted.1),
+        expected: format!("the disparity map has {}x{}", map_size.0, map_size.1),
     })
 }
 
@@ -210,9 +211,9 @@ mod tests {
         assert_eq!(all.bad[2], Bad { threshold: 3.0, of_known: 2.0 / 5.0, of_estimated: 1.0 / 4.0 });
         assert_eq!(all.average, 2.0);
         assert_eq!(all.rms, (26.0f64 / 4.0).sqrt());
-        // Two of four are half of them; 90 and 99 % of four are all.
+        // Half of four errors are two; 90 and 99 % of four are all four.
         assert_eq!((all.a50, all.a90, all.a99), (1.0, 4.0, 4.0));
-        // The error of 3 px is not above 3 px; that of 4 px is, and above 5 % of 3.5 px.
+        // The error of 3 px is not above 3 px; the error of 4 px is, and it is above 5 % of 3.5 px.
         assert_eq!(all.d1, Outliers { of_known: 2.0 / 5.0, of_estimated: 1.0 / 4.0 });
 
         // 128 is not 255: only pixels 0, 3 and 4 are scored.
@@ -230,11 +231,11 @@ mod tests {
         let map = Plane::from_fn(200, 1, |x, _| (x * 77 % 200 + 1) as f32);
         let score = score_pixels(&map, &Plane::filled(200, 1, 0.0), None, &[]).unwrap();
         assert_eq!((score.a50, score.a90, score.a99), (100.0, 180.0, 198.0));
-        // Of three values, half are at most the second.
+        // Half of three values are at most the second one.
         assert_eq!([1, 50, 67, 100].map(|percent| quantile(&[1.0, 2.0, 5.0], percent)), [1.0, 2.0, 5.0, 5.0]);
     }
 
-    /// Maps without any structure, counted pixel by pixel, quantiles by trying every error there is.
+    /// Random maps, counted pixel by pixel; quantiles by trying every error.
     #[test]
     fn figures_agree_with_brute_force() {
         let mut state = 7_u32;
@@ -281,7 +282,7 @@ mod tests {
         }
     }
 
-    /// 5 % of 100 px are 5 px, of 40 px 2 px, where the 3 px decide.
+    /// 5 % of 100 px are 5 px; 5 % of 40 px are 2 px, and the limit of 3 px decides.
     #[test]
     fn outliers_by_hand() {
         let truth = Plane::new(7, 1, vec![100.0, 100.0, 40.0, 40.0, -100.0, 0.0, f32::INFINITY]).unwrap();

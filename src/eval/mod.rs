@@ -1,7 +1,8 @@
-//! How good a disparity map is, and how good matches of interest points are, also where the second view was changed.
+//! Quality of disparity maps ([`score`]) and of matches of interest points, also under synthetic changes of the second
+//! view.
 //!
-//! A [`Truth`] tells where the second view has the points of the first, whatever [`conditions`] changed it. [`Judged`] holds
-//! matches against it, [`OfPoints`] relates them to all points that were found, and [`curves`] are read off them.
+//! A [`Truth`] maps points of the first view to the second, under any [`conditions`]. [`Judged`] compares matches with
+//! it, [`PointScores`] relates them to all detected points, and [`curves`] are computed from the judged matches.
 
 pub mod conditions;
 pub mod curves;
@@ -13,7 +14,7 @@ mod repeatability;
 pub mod scene;
 mod truth;
 
-pub use matches::{Judged, OfPoints, PointMatch};
+pub use matches::{Judged, PointMatch, PointScores};
 pub use metrics::{Bad, OUTLIER_PIXELS, OUTLIER_SHARE, Outliers, Score, score, score_pixels};
 pub use overlap::{NORMAL_RADIUS, Region, overlap_error};
 pub use repeatability::{MAX_OVERLAP_ERROR, Point, Repeatability};

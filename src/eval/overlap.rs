@@ -1,34 +1,34 @@
-//! How far two regions differ (Mikolajczyk, Tuytelaars, Schmid, Zisserman, Matas, Schaffalitzky, Kadir, Van Gool: 'A
+//! Overlap error of two regions (Mikolajczyk, Tuytelaars, Schmid, Zisserman, Matas, Schaffalitzky, Kadir, Van Gool: 'A
 //! comparison of affine region detectors', IJCV 65, 2005, section 4.1).
 
 use std::f64::consts::PI;
 
 use glam::{DMat2, DVec2};
 
-/// The radius, in pixels, that regions are given before they are compared: with their own, large ones would overlap
-/// whatever their distance.
+/// Radius to which regions are normalised before they are compared, in pixels: at their own size, large regions would
+/// overlap whatever their distance.
 pub const NORMAL_RADIUS: f64 = 30.0;
 
-/// Strips in which a common area is measured. At this number the error of a share is below 1e-4.
+/// Number of strips in which a common area is measured; the error of a share is then below 1e-4.
 const STRIPS: usize = 256;
 
 /// An ellipse: all `centre + shape * u` with `u` of length 1 at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Its centre in pixels.
+    /// Centre of the ellipse, in pixels.
     pub centre: DVec2,
-    /// What takes the unit circle to it; not singular.
+    /// Non-singular map from the unit circle to the ellipse, in pixels.
     pub shape: DMat2,
 }
 
 impl Region {
-    /// A circle.
+    /// A circle; centre and radius in pixels.
     pub fn circle(centre: DVec2, radius: f64) -> Self {
         Self { centre, shape: DMat2::from_diagonal(DVec2::splat(radius)) }
     }
 
-    /// Both regions larger by one factor, each about its own centre, so that the area of `self` is that of a circle of
-    /// [`NORMAL_RADIUS`]. Their distance stays.
+    /// Enlarges both regions by one factor, each about its own centre, so that the area of `self` becomes that of a
+    /// circle of [`NORMAL_RADIUS`]. The distance of the centres stays.
     fn normalised(self, other: Self) -> (Self, Self) {
         let factor = NORMAL_RADIUS / self.shape.determinant().abs().sqrt();
         let scaled = |region: Self| Self { shape: region.shape * factor, ..region };
@@ -36,16 +36,16 @@ impl Region {
     }
 }
 
-/// One minus the regions' common area by the area of both together, after normalisation to the size of `reference`: 0
-/// for the same region, 1 for those that have nothing in common.
+/// Overlap error: one minus intersection over union, after normalisation to the size of `reference`; 0 for equal
+/// regions, 1 for disjoint ones.
 pub fn overlap_error(reference: Region, other: Region) -> f64 {
     let (reference, other) = reference.normalised(other);
     error(reference, other)
 }
 
-/// The same of the regions as they are.
+/// Overlap error of two regions without normalisation.
 fn error(a: Region, b: Region) -> f64 {
-    // In coordinates in which `a` is the unit circle, shares of areas are the same.
+    // Ratios of areas do not change in coordinates in which `a` is the unit circle.
     let inverse = a.shape.inverse();
     let (centre, shape) = (inverse * (b.centre - a.centre), inverse * b.shape);
     let common = common_with_unit_circle(centre, shape);
@@ -53,7 +53,7 @@ fn error(a: Region, b: Region) -> f64 {
     (1.0 - common / union).clamp(0.0, 1.0)
 }
 
-/// The area that an ellipse has in common with the unit circle, by upright strips.
+/// Area of the intersection of an ellipse with the unit circle, integrated over vertical strips.
 fn common_with_unit_circle(centre: DVec2, shape: DMat2) -> f64 {
     // The ellipse is a dx^2 + 2 b dx dy + c dy^2 <= 1.
     let quadratic = (shape * shape.transpose()).inverse();
@@ -61,7 +61,7 @@ fn common_with_unit_circle(centre: DVec2, shape: DMat2) -> f64 {
     let strip = PI / STRIPS as f64;
     (0..STRIPS)
         .map(|i| {
-            // x = -cos(t): strips get narrow where the circle gets steep.
+            // With x = -cos(t), strips are narrow where the circle is steep.
             let (sin, cos) = ((i as f64 + 0.5) * strip).sin_cos();
             let dx = -cos - centre.x;
             let discriminant = b * b * dx * dx - c * (a * dx * dx - 1.0);
@@ -79,7 +79,7 @@ fn common_with_unit_circle(centre: DVec2, shape: DMat2) -> f64 {
 mod tests {
     use super::*;
 
-    /// One minus the share of common points on a fine grid.
+    /// Overlap error, counted on a fine grid of points.
     fn counted(a: Region, b: Region) -> f64 {
         let inside = |region: &Region, p: DVec2| (region.shape.inverse() * (p - region.centre)).length() <= 1.0;
         let (mut common, mut union) = (0, 0);

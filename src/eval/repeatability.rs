@@ -1,4 +1,5 @@
-//! Which interest points of two views correspond (Mikolajczyk et al., IJCV 65, 2005, section 4.1).
+//! Repeatability: correspondences between the interest points of two views (Mikolajczyk et al., IJCV 65, 2005,
+//! section 4.1).
 
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
@@ -9,15 +10,15 @@ use super::{
 };
 use crate::features::Feature;
 
-/// The largest overlap error of two regions that correspond.
+/// Largest overlap error of corresponding regions.
 pub const MAX_OVERLAP_ERROR: f64 = 0.4;
 
-/// An interest point as a detector reports it: a circle.
+/// An interest point as a detector reports it: a circular region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Its place in pixels.
+    /// Position, in pixels.
     pub at: DVec2,
-    /// Its size, in any unit that is the same for all points of both views; above 0.
+    /// Size, above 0, in any unit that is the same for all points of both views.
     pub scale: f64,
 }
 
@@ -27,18 +28,18 @@ impl From<&Feature> for Point {
     }
 }
 
-/// What two lists of points have in common.
+/// Correspondences between two lists of interest points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repeatability {
-    /// By point of the first view its corresponding point of the second. Each point corresponds to one other at most;
-    /// of several possibilities those with the least overlap error were taken first.
+    /// For each point of the first view the index of its corresponding point of the second. Each point corresponds to
+    /// one other at most; candidate pairs are taken in order of overlap error, the smallest first.
     pub partner: Vec<Option<usize>>,
-    /// The points of each view that lie in what both views show.
+    /// Number of points of each view in the area that both views show.
     pub shared: [usize; 2],
 }
 
 impl Repeatability {
-    /// Compares the points of two views. Only those count that lie in what both views show.
+    /// Finds the correspondences between the points of two views. Only points in the area that both views show count.
     pub fn new(first: &[Point], second: &[Point], truth: &Truth) -> Self {
         let shown: Vec<usize> = (0..first.len()).filter(|&i| truth.shows(first[i].at)).collect();
         let mut shared: Vec<usize> = (0..second.len()).filter(|&j| truth.is_shared(second[j].at)).collect();
@@ -65,32 +66,32 @@ impl Repeatability {
         Self { partner, shared: [shown.len(), shared.len()] }
     }
 
-    /// Pairs of corresponding points.
+    /// Number of correspondences.
     pub fn correspondences(&self) -> usize {
         self.partner.iter().flatten().count()
     }
 
-    /// Correspondences by the points in what both views show, of the view that has fewer: 0 to 1, NaN without points.
+    /// Repeatability: correspondences divided by [`Self::fewer`], 0 to 1; NaN without points.
     pub fn share(&self) -> f64 {
         self.correspondences() as f64 / self.fewer() as f64
     }
 
-    /// The points in what both views show, of the view that has fewer.
+    /// Number of points in the area that both views show, of the view with fewer points.
     pub fn fewer(&self) -> usize {
         self.shared[0].min(self.shared[1])
     }
 }
 
-/// How far from its true place, in pixels of the second view, a corresponding point can lie at most.
+/// Largest distance of a corresponding point from the true position, in pixels of the second view.
 ///
-/// The centre of an ellipse that has more than half of its area in a circle lies within the circle: a line through the
+/// The centre of an ellipse with more than half of its area inside a circle lies inside the circle: a line through the
 /// centre halves the ellipse.
 fn reach(linear: DMat2) -> f64 {
     NORMAL_RADIUS * (linear.x_axis.length_squared() + linear.y_axis.length_squared()).sqrt()
 }
 
-/// The overlap error in the first view, if it is small enough: the second point's circle is brought there by the inverse
-/// of what happens to the surroundings of the first.
+/// Overlap error of two points in the first view; `None` if it is above [`MAX_OVERLAP_ERROR`]. The second point's
+/// circle is mapped to the first view by the inverse of the local linear map at the first point.
 pub(super) fn corresponding(first: Point, second: Point, truth: &Truth) -> Option<f64> {
     let back = truth.linear(first.at).inverse();
     let displacement = back * (second.at - truth.locate(first.at)?);
@@ -129,10 +130,10 @@ mod tests {
             point(20.0, 70.0, 2.0),
         ];
         let second = [
-            point(41.5, 40.0, 2.0), // nearer to 1 than to 0, which still finds:
+            point(41.5, 40.0, 2.0), // nearer to point 1 than to point 0, which still finds the next one:
             point(39.0, 40.0, 2.0),
             point(70.0, 10.0, 4.0), // (3 / 4)^2 = 0.5625 is less than 0.6
-            point(95.0, 60.0, 2.0), // shows what the left view does not
+            point(95.0, 60.0, 2.0), // outside the area that the left view shows
         ];
         let found = Repeatability::new(&first, &second, &shift(10.0));
         assert_eq!(found.partner, [Some(1), Some(0), None, None, None]);

@@ -1,12 +1,12 @@
-//! Stereo pairs with known truth, as the benchmarks lay out their files.
+//! Stereo pairs with ground truth, in the file layouts of the benchmarks.
 //!
-//! | folder | views | truth of the left and the right view | where both views see (255) |
+//! | folder | views | ground truth of the left and the right view | non-occlusion mask (255: both views see the pixel) |
 //! |---|---|---|---|
 //! | as in `data/` | `left.png`, `right.png` (or .jpg, .ppm, .pgm) | `disp_left.pfm`, `disp_right.pfm` | `nonocc.png`, `nonocc_right.png` |
 //! | Middlebury 2014 | `im0.png`, `im1.png` | `disp0.pfm` (or `disp0GT.pfm`), `disp1.pfm` (or `disp1GT.pfm`) | `mask0nocc.png`, `mask1nocc.png` |
 //! | KITTI 2015 | `image_2/N_10.png`, `image_3/N_10.png` | `disp_occ_0/N_10.png`, none | where `disp_noc_0/N_10.png` is known |
 //!
-//! Masks may be missing, and the truth of a view that nobody asks for.
+//! Masks may be missing, and so may the ground truth of a view that is not read.
 
 use std::path::{Path, PathBuf};
 
@@ -18,20 +18,20 @@ use crate::{
     io::{Picture, disparities, load},
 };
 
-/// The kinds of pictures that `left` and `right` may be, in the order in which they are looked for.
+/// File extensions of `left` and `right`, in the order in which they are tried.
 const VIEW_EXTENSIONS: [&str; 4] = ["png", "jpg", "ppm", "pgm"];
 
-/// Errors above these count as wrong, in pixels.
+/// Error thresholds of the wrong-pixel shares, in pixels.
 pub const THRESHOLDS: [f32; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// Where the files of a scene are.
+/// Paths of a scene's files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFiles {
-    /// The folder's name; of KITTI's, the frame's.
+    /// Name of the folder; for KITTI the name of the frame.
     pub name: String,
     left: PathBuf,
     right: PathBuf,
-    /// Of the left and of the right view.
+    /// Ground truth of the left and of the right view.
     truth: [Option<TruthFiles>; 2],
 }
 
@@ -43,9 +43,9 @@ struct TruthFiles {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Mask {
-    /// A picture that is 255 where both views see.
+    /// Picture that is 255 at non-occluded pixels.
     Picture(PathBuf),
-    /// Disparities that are known where both views see.
+    /// Disparity map that is known at non-occluded pixels only.
     Disparities(PathBuf),
 }
 
@@ -56,39 +56,40 @@ impl Mask {
     }
 }
 
-/// A pair of views and what is known of one of them.
+/// A pair of views and the ground truth of one of them.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The left view.
     pub left: Picture,
     /// The right view.
     pub right: Picture,
-    /// The view that the truth belongs to.
+    /// The reference view, which the ground truth belongs to.
     pub reference: View,
-    /// Its disparities in pixels, +inf where unknown; positive where the right view's pixel lies further to the left.
+    /// True disparities of the reference view, in pixels, +inf where unknown; positive if the right view's pixel lies
+    /// further to the left.
     pub truth: Plane<f32>,
-    /// 255 where both views see the same point, if that is known.
+    /// Non-occlusion mask of the reference view, 255 where both views see the same point; `None` if there is no mask.
     pub non_occluded: Option<Plane<u8>>,
 }
 
-/// How good a map is, everywhere and where both views see.
+/// Scores of a map over all pixels and over the non-occluded ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scores {
-    /// Over all pixels whose truth is known.
+    /// Score over all pixels with ground truth.
     pub all: Score,
-    /// Over those of them that both views see; `None` where nobody knows which these are.
+    /// Score over the non-occluded pixels with ground truth; `None` without a mask.
     pub non_occluded: Option<Score>,
 }
 
 impl SceneFiles {
-    /// The scenes at `path`, in the order of their names: the folder of one, a KITTI folder with `image_2` in it or one
-    /// frame's picture in `image_2`, or a folder of such folders.
+    /// The scenes at `path`, sorted by name: the folder of a scene, a KITTI folder with `image_2` in it, one frame's
+    /// picture in `image_2`, or a folder of such folders.
     ///
     /// # Errors
-    /// [`Error::Io`] if there is nothing that can be read, [`Error::Format`] if there is no scene.
+    /// [`Error::Io`] if `path` cannot be read, [`Error::Format`] if it holds no scene.
     pub fn find(path: &Path) -> Result<Vec<Self>> {
         let failed = |source| Error::Io { path: path.into(), source };
-        // Also gives '.' and '..' a name.
+        // The canonical path gives '.' and '..' a name.
         let whole = path.canonicalize().map_err(failed)?;
         if whole.is_file() {
             return Self::frame(&whole).map(|frame| vec![frame]).ok_or_else(|| no_scene(path, "a file"));
@@ -103,8 +104,8 @@ impl SceneFiles {
         if scenes.is_empty() { Err(no_scene(path, "a folder without a scene")) } else { Ok(scenes) }
     }
 
-    /// What a folder holds itself; `None` where that is no scene. One that lacks a file is found all the same, so that
-    /// reading it names the file.
+    /// The scenes of a folder itself, not of its subfolders; `None` if it is no scene. A scene with a missing file is
+    /// found, too, so that reading it names the file.
     fn in_folder(folder: &Path) -> Option<Vec<Self>> {
         if let Some(scene) = Self::shipped(folder).or_else(|| Self::middlebury(folder)) {
             return Some(vec![scene]);
@@ -136,8 +137,8 @@ impl SceneFiles {
         })
     }
 
-    /// D. Scharstein et al., 'High-resolution stereo datasets with subpixel-accurate ground truth', GCPR 2014, as the
-    /// data sets have it and as the third version of the evaluation has it.
+    /// The layout of Middlebury 2014 (D. Scharstein et al., 'High-resolution stereo datasets with subpixel-accurate
+    /// ground truth', GCPR 2014), with the file names of the data sets or of the third version of the evaluation.
     fn middlebury(folder: &Path) -> Option<Self> {
         let [left, right] = ["im0.png", "im1.png"].map(|name| folder.join(name));
         let truth = |disparities: [&str; 2], masks: [&str; 2]| {
@@ -159,8 +160,8 @@ impl SceneFiles {
         })
     }
 
-    /// A left picture of KITTI 2015 (M. Menze and A. Geiger, 'Object Scene Flow for Autonomous Vehicles', CVPR 2015)
-    /// that has a truth: the first frame, N_10, of a training sequence.
+    /// The layout of KITTI 2015 (M. Menze and A. Geiger, 'Object Scene Flow for Autonomous Vehicles', CVPR 2015), from
+    /// the left picture of a frame with ground truth: the first frame, N_10, of a training sequence.
     fn frame(picture: &Path) -> Option<Self> {
         let (file, folder) = (picture.file_name()?, picture.parent()?);
         if folder.file_name()? != "image_2" {
@@ -187,24 +188,24 @@ impl SceneFiles {
         };
         truth.as_ref().ok_or_else(|| Error::Format {
             path: self.left.clone(),
-            reason: format!("this benchmark has no truth for the {side} view: match with the other view as reference"),
+            reason: format!("this benchmark has no truth for the {side} view: use the other view as reference"),
         })
     }
 
-    /// The files that a scene is made of: both views, the truth of `reference` and the mask, if there is one.
+    /// Paths of the scene's files: both views, the ground truth of `reference`, and its mask if there is one.
     ///
     /// # Errors
-    /// [`Error::Format`] if the benchmark has no truth for this view.
+    /// [`Error::Format`] if the benchmark has no ground truth for this view.
     pub fn files(&self, reference: View) -> Result<Vec<&Path>> {
         let truth = self.truth(reference)?;
         let mask = truth.non_occluded.as_ref().map(Mask::path);
         Ok([&*self.left, &*self.right, &*truth.disparities].into_iter().chain(mask).collect())
     }
 
-    /// Reads the scene with the truth of `reference`.
+    /// Reads the scene with the ground truth of `reference`.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] of the views.
+    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] if the views differ in size.
     pub fn read(&self, reference: View) -> Result<Scene> {
         let files = self.truth(reference)?;
         let (left, right) = (load::load(&self.left)?, load::load(&self.right)?);
@@ -228,7 +229,7 @@ impl SceneFiles {
 }
 
 impl Scene {
-    /// The view that the truth belongs to.
+    /// The picture of the reference view.
     pub fn reference_view(&self) -> &Picture {
         match self.reference {
             View::Left => &self.left,
@@ -236,10 +237,10 @@ impl Scene {
         }
     }
 
-    /// How good `map` is, in pixels, not finite where there is no estimate; errors above [`THRESHOLDS`] are bad.
+    /// Scores `map`, in pixels and not finite where there is no estimate, with the thresholds [`THRESHOLDS`].
     ///
     /// # Errors
-    /// [`Error::Parameter`] if its size is not the scene's.
+    /// [`Error::Parameter`] if the size of `map` differs from that of the scene.
     pub fn score(&self, map: &Plane<f32>) -> Result<Scores> {
         let score = |mask| score_pixels(map, &self.truth, mask, &THRESHOLDS);
         Ok(Scores {
@@ -263,21 +264,21 @@ fn no_scene(path: &Path, what: &str) -> Error {
     Error::Format {
         path: path.into(),
         reason: format!(
-            "{what}: a scene is a folder with left.png, right.png and disp_left.pfm, or with Middlebury's im0.png, \
-             im1.png and disp0.pfm, or KITTI's with image_2, image_3 and disp_occ_0, or a picture in such an image_2"
+            "{what}: a scene is a folder with left.png, right.png and disp_left.pfm, a folder of Middlebury with im0.png, \
+             im1.png and disp0.pfm, a folder of KITTI with image_2, image_3 and disp_occ_0, or a picture in image_2"
         ),
     }
 }
 
-fn same_size(path: &Path, (width, height): (u32, u32), wanted: (u32, u32)) -> Result<()> {
-    if (width, height) == wanted {
+fn same_size(path: &Path, (width, height): (u32, u32), views: (u32, u32)) -> Result<()> {
+    if (width, height) == views {
         return Ok(());
     }
     Err(Error::Format {
         path: path.into(),
         reason: format!(
             "its size is {width}x{height} and that of the views {}x{}: it belongs to other pictures",
-            wanted.0, wanted.1
+            views.0, views.1
         ),
     })
 }
@@ -290,7 +291,7 @@ mod tests {
         io::{disparity_png, pfm, png},
     };
 
-    /// Writes grey pictures of 3x2 pixels, all of one value.
+    /// Writes grey pictures of 3x2 pixels, each of one value.
     fn pictures(folder: &Path, names: &[(&str, u8)]) {
         for &(name, grey) in names {
             let path = folder.join(name);
@@ -301,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Writes a map of 3x2 disparities: a PNG, or a PFM.
+    /// Writes a map of 3x2 disparities as PNG or PFM, by the file extension.
     fn map(path: &Path, disparities: [i32; 6]) {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         let (map, mut bytes) = (DisparityMap::new(3, 2, disparities.to_vec()).unwrap(), Vec::new());

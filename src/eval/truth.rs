@@ -1,4 +1,5 @@
-//! Where the points of one view are in another: by a disparity map or a homography, and by what changed the second view.
+//! Ground truth of a pair of views: positions of the first view's points in the second, by a disparity map or a
+//! homography, combined with a change of the second view.
 
 use glam::{DAffine2, DMat2, DMat3, DVec2, DVec3};
 
@@ -8,24 +9,24 @@ use crate::{
     image::Plane,
 };
 
-/// The truth about a pair of views.
+/// Ground truth of a pair of views.
 #[derive(Clone, Debug)]
 pub struct Truth {
     model: Model,
     first_size: (u32, u32),
     second_size: (u32, u32),
-    /// What changed the second view: where things went, and what of it is [`VISIBLE`].
+    /// Change of the second view: map from its original to its changed pixels, and mask of what is [`VISIBLE`].
     change: Option<(DAffine2, Plane<u8>)>,
 }
 
 #[derive(Clone, Debug)]
 enum Model {
     Stereo {
-        /// In pixels; not finite where it is not known.
+        /// True disparities of the first view, in pixels; not finite where unknown.
         disparities: Plane<f32>,
-        /// By pixel of the first view: whether the second view shows it too.
+        /// For each pixel of the first view: whether the second view shows it, too.
         shown: Plane<bool>,
-        /// By pixel of the second view: whether it shows one of those.
+        /// For each pixel of the second view: whether it shows a pixel of the first.
         claimed: Plane<bool>,
     },
     Plane {
@@ -35,9 +36,11 @@ enum Model {
 }
 
 impl Truth {
-    /// Of a rectified pair: a left pixel `(x, y)` with disparity `d` is the right pixel `(x - d, y)`, where `d` is finite.
+    /// Ground truth of a rectified pair: the left pixel `(x, y)` with disparity `d` corresponds to the right pixel
+    /// `(x - d, y)`. `disparities` are in pixels, not finite where unknown.
     ///
-    /// `nonocc` is 255 where both views show the left pixel; without it they show all whose partner lies in the picture.
+    /// `nonocc` is 255 where both views show the left pixel; without a mask all pixels count whose partner lies in the
+    /// picture.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the sizes differ.
@@ -58,7 +61,7 @@ impl Truth {
         let mut claimed = Plane::filled(width, height, false);
         for y in 0..height {
             for x in (0..width).filter(|&x| shown.get(x, y)) {
-                // Both neighbours, so that a surface which the second view shows larger has no gaps.
+                // Both neighbouring columns, so that a surface which is larger in the second view has no gaps.
                 for column in [partner(x, y).floor(), partner(x, y).ceil()] {
                     claimed.set(column.clamp(0.0, f64::from(width - 1)) as u32, y, true);
                 }
@@ -68,10 +71,11 @@ impl Truth {
         Ok(Self { model, first_size: (width, height), second_size: (width, height), change: None })
     }
 
-    /// Of two views of a plane, or from one place: `matrix` takes `(x, y, 1)` of the first to the second.
+    /// Ground truth of two views of a plane, or of two views from one position: the homography `matrix` maps `(x, y,
+    /// 1)` of the first view to the second. Sizes are width and height in pixels.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if it has no inverse.
+    /// [`Error::Parameter`] if the matrix has no inverse.
     pub fn homography(matrix: DMat3, first_size: (u32, u32), second_size: (u32, u32)) -> Result<Self> {
         let inverse = matrix.inverse();
         if !matrix.is_finite() || !inverse.is_finite() {
@@ -84,24 +88,24 @@ impl Truth {
         Ok(Self { model: Model::Plane { matrix, inverse }, first_size, second_size, change: None })
     }
 
-    /// The truth where the second view was changed.
+    /// The ground truth after a change of the second view.
     ///
     /// # Panics
-    /// If it was changed already; several conditions make one [`Changed`].
+    /// If the second view was changed before; several conditions make one [`Changed`].
     #[must_use]
     pub fn changed(self, change: &Changed) -> Self {
         assert!(self.change.is_none(), "a second view is changed once");
         Self { change: Some((change.map, change.visible.clone())), ..self }
     }
 
-    /// Width and height of both views.
+    /// Width and height of the first and the second view, in pixels.
     pub fn sizes(&self) -> [(u32, u32); 2] {
         [self.first_size, self.second_size]
     }
 
-    /// Where the second view has a point of the first, whether it shows it or not; `None` where that is not known.
+    /// Position in the second view of a point of the first, visible or not, in pixels; `None` where unknown.
     ///
-    /// A disparity is that of the pixel which the point lies in.
+    /// The disparity of a point is that of the pixel it lies in.
     pub fn locate(&self, first: DVec2) -> Option<DVec2> {
         let place = match &self.model {
             Model::Stereo { disparities, .. } => {
@@ -113,7 +117,7 @@ impl Truth {
         Some(self.change.as_ref().map_or(place, |(map, _)| map.transform_point2(place)))
     }
 
-    /// Whether the second view shows a point of the first; not where its place is not known.
+    /// Whether the second view shows a point of the first; false where its position is unknown.
     pub fn shows(&self, first: DVec2) -> bool {
         let in_model = match &self.model {
             Model::Stereo { shown, .. } => value_at(shown, first) == Some(true),
@@ -122,7 +126,7 @@ impl Truth {
         in_model && self.locate(first).is_some_and(|second| self.is_visible(second))
     }
 
-    /// Whether a point of the second view shows something that the first shows too.
+    /// Whether the first view shows the scene point at a position of the second view, too.
     pub fn is_shared(&self, second: DVec2) -> bool {
         if !self.is_visible(second) {
             return false;
@@ -136,8 +140,8 @@ impl Truth {
         }
     }
 
-    /// How the surroundings of a point are turned, scaled and sheared on their way to the second view. A surface of a
-    /// stereo scene is taken to face the cameras.
+    /// Local linear map (rotation, scale, shear) from the surroundings of a point to the second view. Surfaces of a
+    /// stereo scene are assumed to face the cameras.
     pub fn linear(&self, first: DVec2) -> DMat2 {
         let model = match &self.model {
             Model::Stereo { .. } => DMat2::IDENTITY,
@@ -150,7 +154,7 @@ impl Truth {
         self.change.as_ref().map_or(model, |(map, _)| map.matrix2 * model)
     }
 
-    /// Whether the second view has this place and nothing stands in front of it.
+    /// Whether the position lies in the second view and is not occluded by a change.
     fn is_visible(&self, second: DVec2) -> bool {
         match &self.change {
             None => lies_in(second, self.second_size),
@@ -159,16 +163,16 @@ impl Truth {
     }
 }
 
-/// Whether a pixel of a picture of this size holds the place.
+/// Whether the position lies in a pixel of a picture of this size.
 fn lies_in(place: DVec2, (width, height): (u32, u32)) -> bool {
     let inside = |at: f64, side: u32| at >= -0.5 && at < f64::from(side) - 0.5;
     inside(place.x, width) && inside(place.y, height)
 }
 
-/// Where a homography takes a point; nowhere behind the camera.
+/// Maps a point by a homography; `None` behind the camera.
 fn project(matrix: &DMat3, point: DVec2) -> Option<DVec2> {
     let image = *matrix * point.extend(1.0);
-    // A homography is known up to its sign: that of its last element is the front.
+    // A homography is defined up to its sign; the sign of its last element marks the front.
     let front = image.z * matrix.z_axis.z.signum() > 0.0;
     front.then(|| image.truncate() / image.z)
 }
@@ -179,7 +183,7 @@ mod tests {
     use crate::{eval::conditions::Condition, io::Picture};
 
     fn stereo() -> Truth {
-        // Columns 0 and 1 leave the picture, column 4 is not known, column 5 is occluded.
+        // Columns 0 and 1 leave the picture, column 4 is unknown, column 5 is occluded.
         let disparities = Plane::from_fn(9, 3, |x, _| if x == 4 { f32::INFINITY } else { 2.0 });
         let nonocc = Plane::from_fn(9, 3, |x, _| if x == 5 { 0 } else { 255 });
         Truth::stereo(disparities, Some(&nonocc)).unwrap()
@@ -202,17 +206,18 @@ mod tests {
         let picture = Picture::filled(9, 3, [0; 4]);
         let turned = "rotation=90".parse::<Condition>().unwrap().apply(&picture, 1);
         let truth = stereo().changed(&turned);
-        // (6, 1) is (4, 1) of the second view, its centre; (8, 1) is (6, 1), now two below it: outside three rows.
+        // (6, 1) corresponds to (4, 1) of the second view, its centre; (8, 1) to (6, 1), which rotates to two rows
+        // below the centre, outside the three rows.
         assert_eq!(truth.locate(DVec2::new(6.0, 1.0)), Some(DVec2::new(4.0, 1.0)));
         assert_eq!(truth.locate(DVec2::new(8.0, 1.0)), Some(DVec2::new(4.0, 3.0)));
         assert!(truth.shows(DVec2::new(7.0, 1.0)) && !truth.shows(DVec2::new(8.0, 1.0)));
-        // They come from (5, 1) and from (3, 1), which the first view does not show.
+        // The two positions come from (5, 1), and from (3, 1), which the first view does not show.
         assert!(truth.is_shared(DVec2::new(4.0, 2.0)) && !truth.is_shared(DVec2::new(4.0, 0.0)));
         assert_eq!(truth.linear(DVec2::ZERO), turned.map.matrix2);
 
         let framed = "occlusion=0.6".parse::<Condition>().unwrap().apply(&picture, 1);
         let truth = stereo().changed(&framed);
-        // 2.7 columns on each side, so 3, and 0.9 rows, so 1.
+        // The frame is 2.7 columns wide, rounded to 3, and 0.9 rows high, rounded to 1.
         let shown: Vec<bool> = (0..9).map(|x| truth.shows(DVec2::new(x.into(), 1.0))).collect();
         assert_eq!(shown, [false, false, false, false, false, false, true, true, false]);
         assert!(!truth.is_shared(DVec2::new(1.0, 1.0)) && truth.is_shared(DVec2::new(5.0, 1.0)));
@@ -228,13 +233,13 @@ mod tests {
         assert!(truth.shows(DVec2::new(10.0, 30.0)) && !truth.shows(DVec2::new(99.0, 30.0)));
         assert!(truth.is_shared(place) && !truth.is_shared(DVec2::new(4.0, 10.0)));
         assert_eq!(truth.locate(DVec2::new(-100.0, 0.0)), None, "at infinity");
-        // The derivative against differences.
+        // The derivative agrees with finite differences.
         let (at, step) = (DVec2::new(10.0, 30.0), 1e-5);
         for axis in [DVec2::X, DVec2::Y] {
             let difference = (truth.locate(at + step * axis).unwrap() - place) / step;
             assert!((truth.linear(at) * axis - difference).length() < 1e-4);
         }
-        // The same up to its sign.
+        // The negated matrix is the same homography.
         let negative = Truth::homography(-matrix, (100, 80), (60, 50)).unwrap();
         assert_eq!(negative.locate(at), Some(place));
     }

@@ -1,11 +1,12 @@
-//! Smoothing.
+//! Gaussian smoothing.
 
 use rayon::prelude::*;
 
 use super::grey;
 use crate::image::Plane;
 
-/// A Gaussian of standard deviation `sigma` px, 0 for none, cut at three of them; beyond the edge its pixels go on.
+/// Smooths by a Gaussian of standard deviation `sigma` in pixels (0: none), truncated at 3 `sigma`; border pixels are
+/// repeated beyond the edge.
 pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8; N]> {
     if sigma == 0.0 {
         return plane.clone();
@@ -34,7 +35,7 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
     })
 }
 
-/// As [`Plane::from_fn`], several rows at a time.
+/// As [`Plane::from_fn`], with rows computed in parallel.
 fn in_parallel<T: Clone + Send>(width: u32, height: u32, value: impl Fn(u32, u32) -> T + Sync) -> Plane<T> {
     let row = |y| (0..width).map(|x| value(x, y)).collect::<Vec<T>>();
     let rows: Vec<Vec<T>> = (0..height).into_par_iter().map(row).collect();
@@ -50,7 +51,7 @@ mod tests {
         let mut point = Plane::filled(41, 41, [0, 255]);
         point.set(20, 20, [255, 255]);
         let smooth = gaussian(&point, 1.0);
-        // 255 / (2 pi) = 40.6, with exp(-1/2) and exp(-1) of it beside and diagonally.
+        // 255 / (2 pi) = 40.6 in the middle, exp(-1/2) of that beside it and exp(-1) diagonally.
         let [middle, beside, diagonal] = [(20, 20), (21, 20), (19, 19)].map(|(x, y)| smooth.get(x, y)[0]);
         assert!(middle.abs_diff(41) <= 1 && beside.abs_diff(25) <= 1 && diagonal.abs_diff(15) <= 1);
         assert!(smooth.data().iter().all(|pixel| pixel[1] == 255), "flat channels stay");

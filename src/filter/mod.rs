@@ -1,5 +1,5 @@
-//! Pictures smoothed and resampled, on the host: the same bytes on every machine, by `f64` arithmetic and the functions of
-//! `libm`, which are arithmetic themselves. Planes of any number of channels, 8 bits each.
+//! Smoothing and resampling of pictures, on the host, for planes of any number of 8-bit channels. Results are the same
+//! bytes on every machine: only `f64` arithmetic and functions of `libm` are used, which are arithmetic themselves.
 
 mod gaussian;
 mod resample;
@@ -7,7 +7,7 @@ mod resample;
 pub use gaussian::gaussian;
 pub use resample::{about_centre, resample};
 
-/// The nearest grey value, halves up.
+/// Rounds to the nearest grey value, halves up, and clamps to 0 to 255.
 pub(crate) fn grey(value: f64) -> u8 {
     (value + 0.5).floor().clamp(0.0, 255.0) as u8
 }

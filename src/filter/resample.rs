@@ -1,14 +1,14 @@
-//! Pictures turned, scaled and moved.
+//! Resampling by an affine map.
 
 use glam::{DAffine2, DVec2};
 
 use super::grey;
 use crate::image::Plane;
 
-/// The similarity about the centre of a picture of `size`: `angle` degrees clockwise on the screen, and `scale` times as
-/// large.
+/// Similarity about the centre of a picture of `size` (width and height in pixels): rotates by `angle` degrees,
+/// clockwise on the screen, and enlarges by `scale`.
 ///
-/// Whole quarter turns are exact; all else differs from them by the rounding of `f64` alone.
+/// Multiples of 90 degrees are exact; other angles are exact up to the rounding of `f64`.
 pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAffine2 {
     let quarters = (angle / 90.0).round();
     let rest = (angle - 90.0 * quarters).to_radians();
@@ -24,11 +24,11 @@ pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAff
     DAffine2::from_mat2_translation(linear, centre - linear * centre)
 }
 
-/// The picture of `size` that shows at `map(p)` what `plane` shows at `p`, and what of it that is: 255 where it shows the
-/// plane, 0 beyond its edge, where it is `fill`.
+/// Resamples `plane` to a picture of `size` (width and height in pixels) that shows at `map(p)` the value of `plane` at
+/// `p`. Returns the picture and a mask: 255 where it shows the plane; 0 beyond the plane's edge, where it is `fill`.
 ///
-/// Interpolated by Catmull-Rom splines (Keys 1981, a = -1/2); where `map` makes things smaller, the mean of as many
-/// samples a pixel as keep pace with it, up to 8x8.
+/// Interpolation by Catmull-Rom splines (Keys 1981, a = -1/2). If `map` shrinks the plane, a pixel is the mean of
+/// enough samples to cover it, up to 8x8.
 pub fn resample<const N: usize>(
     plane: &Plane<[u8; N]>,
     map: DAffine2,
@@ -59,7 +59,7 @@ pub fn resample<const N: usize>(
     (changed, visible)
 }
 
-/// Adds the values at a place between pixels.
+/// Adds the interpolated values at the position `at` to `sum`.
 fn add_interpolated<const N: usize>(plane: &Plane<[u8; N]>, at: DVec2, sum: &mut [f64; N]) {
     let (left, top) = (at.x.floor(), at.y.floor());
     let (across, down) = (weights(at.x - left), weights(at.y - top));
@@ -71,7 +71,7 @@ fn add_interpolated<const N: usize>(plane: &Plane<[u8; N]>, at: DVec2, sum: &mut
     }
 }
 
-/// What the pixels at -1, 0, 1 and 2 contribute at `t`, 0 to 1.
+/// Weights of the pixels at -1, 0, 1 and 2 for the position `t`, 0 to 1.
 fn weights(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)]
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(weights(0.0), [0.0, 1.0, 0.0, 0.0]);
         for t in [0.1, 0.5, 0.9] {
             assert!((weights(t).iter().sum::<f64>() - 1.0).abs() < 1e-12);
-            // A straight line stays one.
+            // A linear ramp is reproduced exactly.
             let line: f64 = weights(t).iter().zip([-1.0, 0.0, 1.0, 2.0]).map(|(w, x)| w * x).sum();
             assert!((line - t).abs() < 1e-12);
         }
@@ -118,7 +118,7 @@ mod tests {
         let picture = Plane::from_fn(20, 20, |x, _| [10 * x as u8, 0, 0, 255]);
         let map = about_centre((20, 20), 0.0, 0.5);
         let (small, visible) = resample(&picture, map, (20, 20), [9; 4]);
-        // Column 7 shows columns 4 and 5 of before: 9.5 + 2 (7 - 9.5) = 4.5.
+        // Column 7 shows the original columns 4 and 5: 9.5 + 2 (7 - 9.5) = 4.5.
         assert_eq!(
             (small.get(7, 10)[0], small.get(4, 10), visible.get(4, 10), visible.get(5, 10)),
             (45, [9; 4], 0, 255)

@@ -10,22 +10,22 @@ use std::{
 
 use crate::error::{Error, Result};
 
-/// Gives `write` a file that takes its place at `path` only once all of it is written. Whatever
-/// fails, an older file at `path` stays as it was.
+/// Writes a file to a temporary place and moves it to `path` only when it is complete. If anything fails, an older file
+/// at `path` stays unchanged.
 ///
-/// A file that is replaced hands on its permissions, and one that is read-only is not replaced; a
-/// link is followed; what is no regular file (`/dev/null`, a pipe) is written to directly.
+/// The new file takes over the permissions of the file it replaces; a read-only file is not replaced; a link is
+/// followed; a path that is no regular file (`/dev/null`, a pipe) is written to directly.
 ///
 /// # Errors
-/// [`Error::Io`] with `path`, whatever went wrong.
+/// [`Error::Io`] with `path`, for any failure.
 pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<T> {
     let (staged, written) = Staged::write(path, write)?;
     staged.put()?;
     Ok(written)
 }
 
-/// A file that is written but not yet in its place, so that several can appear together or not at
-/// all. It vanishes if it is dropped.
+/// A written file that is not yet moved to its place, so that several files appear together or not at all. Dropping it
+/// removes the file.
 #[derive(Debug)]
 pub struct Staged {
     path: PathBuf,
@@ -33,7 +33,7 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// Writes what shall stand at `path`, next to it; the rules are those of [`write_whole`].
+    /// Writes the content for `path` to a temporary file next to it; the rules are those of [`write_whole`].
     ///
     /// # Errors
     /// As [`write_whole`].
@@ -43,7 +43,7 @@ impl Staged {
         Ok((Self { path: path.into(), file }, written))
     }
 
-    /// Puts the file in its place.
+    /// Moves the file to its place.
     ///
     /// # Errors
     /// As [`write_whole`].
@@ -59,7 +59,7 @@ impl Staged {
     }
 }
 
-/// The file and where it goes; none where it was written to directly.
+/// The temporary file and its target path; `None` if the target was written to directly.
 type Temporary = Option<(tempfile::NamedTempFile, PathBuf)>;
 
 fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<(Temporary, T)> {
@@ -83,35 +83,35 @@ fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     Ok((Some((temporary, target)), written))
 }
 
-/// Every temporary file that was made, also those that are gone or in their place by now.
+/// Paths of all temporary files ever made, including those that are removed or moved by now.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the temporary files that are not in their place yet. For a process that is interrupted and
-/// ends without dropping anything: from here on no thread can make another.
+/// Removes the temporary files that are not moved to their place yet, and keeps all threads from making another. For an
+/// interrupted process that ends without dropping anything.
 pub fn abandon() {
     let temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
     for path in temporaries.iter() {
-        // Most are gone already.
+        // Most of the files are removed or moved already.
         let _ = fs::remove_file(path);
     }
     mem::forget(temporaries);
 }
 
-/// A file in `folder` that is gone once dropped: also how to find out, before any work, whether
-/// files can be written there.
+/// A temporary file in `folder`, removed when dropped. Also the way to check, before any work, whether files can be
+/// written in `folder`.
 ///
 /// # Errors
-/// Those of the system.
+/// The errors of the system, and an error if `folder` does not exist.
 pub fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     if !folder.is_dir() {
         let reason = format!("there is no folder '{}': create it first", folder.display());
         return Err(io::Error::new(io::ErrorKind::NotFound, reason));
     }
     let mut builder = tempfile::Builder::new();
-    // A temporary file is its owner's alone unless told otherwise; the umask still applies.
+    // By default only the owner can read a temporary file; the umask still applies to these permissions.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // The temporary file's name in these errors would say nothing to anyone.
+    // Only the kind of the error is kept: its text names the temporary file, which means nothing to the user.
     builder.prefix(".hsad-");
     let mut temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
     let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
@@ -126,7 +126,7 @@ fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<
     Ok(written)
 }
 
-/// The folder that `path` is in.
+/// The parent folder of `path`.
 fn folder(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent.into(),

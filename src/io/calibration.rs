@@ -1,4 +1,4 @@
-//! What turns disparities into metres, and Middlebury's file for it.
+//! Calibration of a rectified pair, depth from disparity, and Middlebury's file format.
 //!
 //! `calib.txt` of the Middlebury 2014 data (Scharstein et al., 'High-resolution stereo datasets
 //! with subpixel-accurate ground truth', GCPR 2014):
@@ -21,7 +21,7 @@ use crate::{
     image::Plane,
 };
 
-/// A calibration file is a few lines; this is room for many comments.
+/// Longest calibration file that is read, in bytes: a few lines, with room for many comments.
 const MAX_BYTES: u64 = 1 << 16;
 
 /// The geometry of a rectified pair.
@@ -31,20 +31,21 @@ pub struct Calibration {
     pub focal: f64,
     /// Distance between the cameras, in metres.
     pub baseline: f64,
-    /// Column of the right camera's principal point less that of the left one's, in pixels: what
-    /// has to be added to a disparity before it is 0 at infinity.
+    /// Difference of the principal points' columns, right minus left (cx1 - cx0), in pixels: `disparity + doffs` is 0
+    /// at infinity.
     pub doffs: f64,
-    /// Column of the principal point, in pixels: the left camera's, as files have it, or the right
-    /// one's after [`Self::seen_from_right`].
+    /// Column of the principal point, in pixels: of the left camera, as in files, or of the right camera after
+    /// [`Self::seen_from_right`].
     pub cx: f64,
-    /// Row of the principal points, in pixels.
+    /// Row of both principal points, in pixels.
     pub cy: f64,
-    /// Width and height of the pictures that this holds for, where they are known.
+    /// Width and height of the calibrated pictures, in pixels; `None` if unknown.
     pub size: Option<(u32, u32)>,
 }
 
 impl Calibration {
-    /// For pictures of `size`, with the principal point in their middle.
+    /// A calibration for pictures of `size` (width and height in pixels) with the principal point at their centre.
+    /// `focal` and `doffs` are in pixels, `baseline` in metres.
     ///
     /// # Errors
     /// As [`Self::validate`].
@@ -63,12 +64,11 @@ impl Calibration {
         Self::parse(String::from_utf8_lossy(&read_whole(path, MAX_BYTES)?).trim_start_matches('\u{feff}'), path)
     }
 
-    /// The calibration in the text of a `calib.txt`; `path` is named in errors. `cam0`, `doffs` and
-    /// `baseline` must be there, `cam1`, `width` and `height` are taken into account, and what
-    /// other keys say is left alone.
+    /// Parses the text of a `calib.txt`; `path` is named in errors. The keys `cam0`, `doffs` and `baseline` are
+    /// required, `cam1`, `width` and `height` are optional, and other keys are ignored.
     ///
     /// # Errors
-    /// [`Error::Format`] that names the line, or the key that is missing.
+    /// [`Error::Format`] with the line that is wrong, or the key that is missing.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         let entries = Entries::new(text, path)?;
         let left = entries.required("cam0")?.camera()?;
@@ -95,16 +95,15 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// Refuses what no pair of cameras can have.
+    /// Checks that all values are plausible for a pair of cameras.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the rule.
+    /// [`Error::Parameter`] with the accepted range, for a value outside it.
     pub fn validate(&self) -> Result<()> {
         let check = |name, value: f64, ok: bool, rule: &str| {
             if ok { Ok(()) } else { Err(Error::Parameter { name, value: value.to_string(), expected: rule.into() }) }
         };
-        // Beyond a thousand kilometres or a million pixels lies a mistake, not a camera; depths of such
-        // numbers would all be 0 or infinite.
+        // A value above a thousand kilometres or a million pixels is a mistake; its depths would all be 0 or infinite.
         let positive = |value: f64| (1e-6..=1e6).contains(&value);
         let within = |value: f64| value.abs() <= 1e6;
         check("the focal length", self.focal, positive(self.focal), "it must be 10^-6 to 10^6 pixels")?;
@@ -114,45 +113,43 @@ impl Calibration {
         check("cy", self.cy, within(self.cy), "it must be -10^6 to 10^6 pixels")
     }
 
-    /// Refuses pictures of another size than the one that this holds for: scaled pictures have
+    /// Checks that the calibration is for pictures of this size (width and height in pixels): scaled pictures have
     /// another focal length.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with both sizes.
+    /// [`Error::Parameter`] with both sizes, if they differ.
     pub fn check_size(&self, (width, height): (u32, u32)) -> Result<()> {
         match self.size {
             Some((w, h)) if (w, h) != (width, height) => Err(Error::Parameter {
                 name: "the calibration",
                 value: format!("for pictures of {w}x{h} pixels"),
-                expected: format!(
-                    "these are {width}x{height}: take the calibration or the pictures that belong to them"
-                ),
+                expected: format!("these are {width}x{height}: use the calibration that belongs to the pictures"),
             }),
             _ => Ok(()),
         }
     }
 
-    /// The same pair in the right camera's coordinates, whose principal point lies `doffs` further
-    /// to the right.
+    /// The calibration in the coordinates of the right camera, whose principal point lies `doffs` pixels further to the
+    /// right.
     pub fn seen_from_right(self) -> Self {
         Self { cx: self.cx + self.doffs, ..self }
     }
 
-    /// The distance along the optical axis, in metres, of what has this disparity in pixels; `None`
-    /// at infinity and beyond.
+    /// Depth along the optical axis, in metres, for a disparity in pixels: `baseline * focal / (disparity + doffs)`;
+    /// `None` at infinity and beyond.
     pub fn depth(&self, disparity: f64) -> Option<f64> {
         let denominator = disparity + self.doffs;
         (denominator > 0.0).then(|| self.baseline * self.focal / denominator)
     }
 }
 
-/// The depth of each pixel of the map's view in metres; +inf where there is none.
+/// Depth of each pixel of the map's view, in metres; +inf where there is no disparity or the depth is infinite.
 pub fn depth_map(map: &DisparityMap, calibration: &Calibration) -> Plane<f32> {
     let depth = |&d: &i32| calibration.depth(f64::from(disparity::pixels(d)?));
     map.map(|d| depth(d).map_or(f32::INFINITY, |z| z as f32))
 }
 
-/// One camera's matrix, `[f 0 cx; 0 f cy; 0 0 1]`.
+/// Camera matrix `[f 0 cx; 0 f cy; 0 0 1]`, in pixels.
 struct Camera {
     focal: f64,
     cx: f64,
@@ -215,7 +212,7 @@ impl Entry<'_> {
     }
 
     fn positive(&self, rule: &str) -> Result<f64> {
-        // Not so small that another unit would make it 0.
+        // Subnormal numbers are refused: the change of units would make them 0.
         finite(self.value).filter(|&value| value >= f64::MIN_POSITIVE).ok_or_else(|| self.wrong(rule))
     }
 
@@ -241,7 +238,7 @@ impl Entry<'_> {
     }
 }
 
-/// The number that `text` is, unless it is a NaN or infinite.
+/// Parses a finite number.
 fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }

@@ -1,15 +1,15 @@
-//! Disparities and their errors in false colours, for people to look at.
+//! False colours of disparities and of their errors.
 
 use crate::{
     disparity::{DisparityMap, NONE},
     image::Plane,
 };
 
-/// Where the colours of disparities begin on Turbo, which is nearly black at 0.
+/// Position on Turbo of the smallest disparity, 0 to 1; at 0 Turbo is nearly black.
 const FAR: f32 = 0.05;
 
-/// The smallest and the largest disparity that are told apart, in 1/256 px: the 1st and the 99th
-/// percentile of `map`, so that a few outliers do not take all the colours. `None` if it is empty.
+/// Disparity range for [`disparity_colors`], in 1/256 px: the 1st and the 99th percentile of `map`, so that a few
+/// outliers do not take up all colours. `None` if the map has no disparity.
 pub fn disparity_range(map: &DisparityMap) -> Option<(i32, i32)> {
     let mut known: Vec<i32> = map.data().iter().copied().filter(|&d| d != NONE).collect();
     let last = known.len().checked_sub(1)?;
@@ -20,16 +20,16 @@ pub fn disparity_range(map: &DisparityMap) -> Option<(i32, i32)> {
     Some((smallest, largest))
 }
 
-/// `map` in Turbo's colours: blue at the smallest (far) and red at the largest (near) disparity of
-/// `range`, which is in 1/256 px; beyond its ends their colours go on. [`NONE`] is black.
+/// Colours `map` by Turbo: blue at the smallest (far) and red at the largest (near) disparity of `range`, in 1/256 px;
+/// disparities outside the range are clamped to it. [`NONE`] is black.
 pub fn disparity_colors(map: &DisparityMap, range: (i32, i32)) -> Plane<[u8; 3]> {
     let (low, high) = (f64::from(range.0), f64::from(range.1));
     let share = |d: i32| if high > low { ((f64::from(d) - low) / (high - low)) as f32 } else { 0.5 };
     map.map(|&d| if d == NONE { [0; 3] } else { turbo(FAR + (1.0 - FAR) * share(d).clamp(0.0, 1.0)) })
 }
 
-/// The colours of errors, each with the largest error in pixels that it stands for: from blue, which is good, to red,
-/// after the diverging scheme RdYlBu of C. Brewer, <https://colorbrewer2.org>.
+/// Colours of errors, each with the largest error it stands for, in pixels: from blue (small) to red (large), after the
+/// diverging scheme RdYlBu of C. Brewer, <https://colorbrewer2.org>.
 pub const ERROR_COLORS: [(f32, [u8; 3]); 5] = [
     (0.5, [44, 123, 182]),
     (1.0, [171, 217, 233]),
@@ -38,31 +38,31 @@ pub const ERROR_COLORS: [(f32, [u8; 3]); 5] = [
     (f32::INFINITY, [215, 25, 28]),
 ];
 
-/// The colour of a pixel that has a true disparity and no estimate.
+/// Colour of a pixel with ground truth but without an estimate.
 pub const NO_ESTIMATE: [u8; 3] = [255; 3];
 
-/// The errors of `map` in the colours of [`ERROR_COLORS`], and [`NO_ESTIMATE`]. Where `mask`, if there is one, is not
-/// 255, the pixel is occluded and has a third of its brightness; where the truth is unknown it is black. A disparity
-/// (in pixels) that is not finite is missing in `map` and unknown in `truth`.
+/// Colours the errors of `map` by [`ERROR_COLORS`] and [`NO_ESTIMATE`]. Pixels where `mask` is not 255 are occluded and
+/// have a third of their brightness; pixels without ground truth are black. Disparities are in pixels; one that is not
+/// finite is missing in `map` and unknown in `truth`.
 ///
 /// # Panics
 /// If the sizes differ.
 pub fn error_colors(map: &Plane<f32>, truth: &Plane<f32>, mask: Option<&Plane<u8>>) -> Plane<[u8; 3]> {
     assert!(map.size() == truth.size() && mask.is_none_or(|mask| mask.size() == truth.size()), "the sizes differ");
     Plane::from_fn(truth.width(), truth.height(), |x, y| {
-        let (found, wanted) = (map.get(x, y), truth.get(x, y));
-        if !wanted.is_finite() {
+        let (found, expected) = (map.get(x, y), truth.get(x, y));
+        if !expected.is_finite() {
             return [0; 3];
         }
-        let error = (found - wanted).abs();
+        let error = (found - expected).abs();
         let reached = ERROR_COLORS.iter().find(|(limit, _)| error <= *limit).filter(|_| found.is_finite());
         let color = reached.map_or(NO_ESTIMATE, |&(_, color)| color);
         if mask.is_none_or(|mask| mask.get(x, y) == 255) { color } else { color.map(|channel| channel / 3) }
     })
 }
 
-/// Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour
-/// map: 'Turbo, An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
+/// The colour of Turbo at `t`, 0 (dark blue) to 1 (dark red), by R. Du's polynomial for A. Mikhailov's colour map:
+/// 'Turbo, An Improved Rainbow Colormap for Visualization', Google AI Blog, 2019;
 /// <https://gist.github.com/mikhailov-work/0d177465a8151eb6ede1768d51d476c7>.
 pub fn turbo(t: f32) -> [u8; 3] {
     /// Coefficients of red, green and blue, from t^0 to t^5.
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn turbo_by_hand() {
-        // 255 times the constant terms, and 255 times the sums of the coefficients.
+        // At 0: 255 times the constant terms; at 1: 255 times the sums of the coefficients.
         assert_eq!(turbo(0.0), [35, 23, 27]);
         assert_eq!(turbo(1.0), [144, 13, 0]);
         assert_eq!(turbo(-1.0), turbo(0.0));
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn range_is_the_first_and_last_percentile() {
-        // 0..=200 in a mixed order, among as many pixels without a disparity.
+        // The disparities 0 to 200 in mixed order, and as many pixels without a disparity.
         let map = DisparityMap::from_fn(201, 2, |x, y| if y == 0 { (x * 77 % 201) as i32 } else { NONE });
         assert_eq!(disparity_range(&map), Some((2, 198)));
         assert_eq!(disparity_range(&DisparityMap::new(3, 1, vec![5, -7, 6]).unwrap()), Some((-7, 6)));

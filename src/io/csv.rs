@@ -1,26 +1,27 @@
 //! Tables of numbers: comma-separated values with a header row.
 //!
-//! Columns are known by their names and may come in any order, with others among them. Blank lines do not count; quotes
-//! are not understood, as no number needs them.
+//! Columns are identified by name and may come in any order, with other columns among them. Blank lines are skipped;
+//! quotes are not supported, since numbers need none.
 
 use std::path::Path;
 
 use super::{malformed, read_whole};
 use crate::error::{Error, Result};
 
-/// The longest table that is read, in bytes.
+/// Longest table that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// The wanted columns of a table.
+/// The requested columns of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// By row: its line in the file, counted from 1, and its values in the order in which the columns were asked for.
+    /// For each row its line in the file, counted from 1, and its values in the order of the requested columns.
     pub rows: Vec<(usize, Vec<f64>)>,
-    /// Which of the optional columns are there; they come after the needed ones.
+    /// For each optional column whether the table has it; the values of optional columns follow those of the needed
+    /// ones.
     pub has: Vec<bool>,
 }
 
-/// Reads the columns `needed` of a table and those of `optional` that it has.
+/// Reads the columns `needed` of a table, and the columns of `optional` that it has.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, otherwise as [`decode`].
@@ -28,11 +29,11 @@ pub fn read(path: &Path, needed: &[&str], optional: &[&str]) -> Result<Table> {
     decode(&read_whole(path, MAX_BYTES)?, path, needed, optional)
 }
 
-/// The columns of a table in a file's bytes; `path` is named in errors.
+/// Decodes the columns of a table from a file's bytes; `path` is named in errors.
 ///
 /// # Errors
-/// [`Error::Format`] where a needed column is missing, a row is too short, or a value of a wanted column is no finite
-/// number, each with its line.
+/// [`Error::Format`] if a needed column is missing, or with the line of a row that is too short or of a value that is
+/// no finite number.
 pub fn decode(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]) -> Result<Table> {
     let text = std::str::from_utf8(bytes).map_err(|_| malformed(path, "not a table: it is no UTF-8 text"))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -63,7 +64,7 @@ pub fn decode(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]) -> 
     Ok(Table { rows, has })
 }
 
-/// What is wrong with a line of a table.
+/// An error at a line of a table.
 pub fn at(path: &Path, line: usize, reason: impl AsRef<str>) -> Error {
     malformed(path, format!("line {line}: {}", reason.as_ref()))
 }

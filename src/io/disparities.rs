@@ -1,15 +1,15 @@
-//! Disparities in pixels, from whichever kind of file holds them.
+//! Disparity maps from PNG or PFM files.
 
 use std::path::Path;
 
 use super::{disparity_png, load, malformed, pfm};
 use crate::{disparity, error::Result, image::Plane};
 
-/// Reads the disparities of a 16-bit PNG ([`disparity_png`]) or of a PFM ([`pfm`]): in pixels,
-/// as exact as the file has them, +inf where there is none.
+/// Reads a disparity map from a 16-bit PNG ([`disparity_png`]) or a PFM ([`pfm`]): in pixels, not rounded, +inf for no
+/// disparity. The format is recognised by the content.
 ///
 /// # Errors
-/// [`crate::Error::Io`] if the file cannot be read, [`crate::Error::Format`] if it is neither.
+/// [`crate::Error::Io`] if the file cannot be read, [`crate::Error::Format`] if it is neither a PNG nor a PFM.
 pub fn read(path: &Path) -> Result<Plane<f32>> {
     let bytes = load::read_bytes(path)?;
     if bytes.starts_with(disparity_png::SIGNATURE) {

@@ -1,10 +1,9 @@
-//! Disparities as 16-bit grey PNG, the form of KITTI's benchmarks.
+//! Disparities as 16-bit grey PNG, the format of the KITTI benchmarks.
 //!
-//! A value is 256 times the disparity in pixels, and 0 is 'none' (Menze and Geiger, 'Object Scene
-//! Flow for Autonomous Vehicles', CVPR 2015, development kit). That is this crate's fixed point, so
-//! nothing is rounded; but what lies outside 1/256 to 65535/256 px cannot be told. A disparity of
-//! exactly 0 becomes 1/256 px; negative ones and those from 256 px on become 'none' and are counted.
-//! A PFM ([`super::pfm`]) holds them all.
+//! A value is 256 times the disparity in pixels, and 0 stands for no disparity (Menze and Geiger, 'Object Scene Flow
+//! for Autonomous Vehicles', CVPR 2015, development kit). The scale is this crate's fixed point, so nothing is rounded,
+//! but the format is limited to 1/256 to 65535/256 px. A disparity of exactly 0 becomes 1/256 px; disparities below 0
+//! or from 256 px on become 'no disparity' and are counted. A PFM ([`super::pfm`]) holds all disparities.
 
 use std::{
     io::{self, Write},
@@ -22,33 +21,33 @@ use crate::{
 
 pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// How many disparities a 16-bit PNG cannot tell, and shows as 'none'.
+/// Number of disparities that a 16-bit PNG cannot hold and stores as 'no disparity'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lost {
-    /// Below 0.
+    /// Number of disparities below 0.
     pub negative: usize,
-    /// 256 px and more.
+    /// Number of disparities of 256 px or more.
     pub too_large: usize,
 }
 
 impl Lost {
-    /// All that are lost.
+    /// Number of all lost disparities.
     pub fn total(&self) -> usize {
         self.negative + self.too_large
     }
 }
 
-/// Writes `map` and tells what was lost.
+/// Writes `map`, in 1/256 px, and returns the number of lost disparities.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write(out: &mut impl Write, map: &DisparityMap) -> io::Result<Lost> {
     let (values, lost) = to_values(map);
     png::write_grey16(out, &values)?;
     Ok(lost)
 }
 
-/// Reads a map.
+/// Reads a disparity map, in 1/256 px.
 ///
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, otherwise as [`decode`].
@@ -56,10 +55,10 @@ pub fn read(path: &Path) -> Result<DisparityMap> {
     decode(&load::read_bytes(path)?, path)
 }
 
-/// The map in a PNG's bytes; `path` is named in errors.
+/// Decodes the disparity map in a PNG's bytes, in 1/256 px; `path` is named in errors.
 ///
 /// # Errors
-/// [`crate::Error::Format`] if they are no sound PNG of 16-bit grey.
+/// [`crate::Error::Format`] if the bytes are no valid PNG of 16-bit grey.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<DisparityMap> {
     if !bytes.starts_with(SIGNATURE) {
         return Err(malformed(path, "not a PNG: disparities are read from 16-bit grey PNG and from PFM"));

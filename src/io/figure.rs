@@ -3,30 +3,29 @@
 use super::Picture;
 use crate::{features::Feature, image::Plane};
 
-/// A match to be drawn: column and row in the left view, and in the right.
+/// A match to draw: column and row in the left view, then in the right view, in pixels.
 pub type PointPair = ([f32; 2], [f32; 2]);
 
-/// Radius of a feature's circle in scales: a blob's edge and a little around it.
+/// Radius of a feature's circle, in units of its scale: the blob's edge and a little around it.
 const RADIUS_PER_SCALE: f32 = 2.5;
 
 /// Radius of the circle around a matched point, in pixels.
 const MATCH_RADIUS: f32 = 3.0;
 
-/// Columns between two pictures side by side.
+/// Gap between two pictures side by side, in pixels.
 const GAP: u32 = 8;
 
-/// Lines are this wide, in pixels.
+/// Width of lines, in pixels.
 const LINE_WIDTH: f32 = 1.25;
 
-/// A dark blob on light ground.
+/// Colour of a dark blob on light ground.
 const DARK_BLOB: [u8; 3] = [255, 72, 48];
 
-/// A light blob on dark ground.
+/// Colour of a light blob on dark ground.
 const LIGHT_BLOB: [u8; 3] = [48, 176, 255];
 
-/// `picture` in grey with a circle around each feature, its radius 2.5 scales: red for dark blobs,
-/// blue for light ones. A line from the centre shows the orientation, except where it is exactly 0,
-/// as in upright mode.
+/// Draws `picture` in grey with a circle around each feature, of a radius of 2.5 scales: red for dark blobs, blue for
+/// light ones. A line from the centre shows the orientation, unless it is exactly 0, as in upright mode.
 pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
     let mut canvas = Canvas(grey(picture));
     for feature in features {
@@ -41,8 +40,8 @@ pub fn keypoints(picture: &Picture, features: &[Feature]) -> Plane<[u8; 3]> {
     canvas.0
 }
 
-/// Both pictures in grey, side by side, with a line between the points of each pair and a circle
-/// around them, neighbours of the list in colours that differ.
+/// Draws both pictures in grey, side by side, with a line between the points of each pair and a circle around each
+/// point. Neighbours in the list have distinct colours.
 pub fn matches(left: &Picture, right: &Picture, pairs: &[PointPair]) -> Plane<[u8; 3]> {
     let start = left.width() + GAP;
     let mut canvas = Canvas(side_by_side(&[&grey(left), &grey(right)]));
@@ -60,10 +59,10 @@ fn grey(picture: &Picture) -> Plane<[u8; 3]> {
     picture.luma().map(|&grey| [grey; 3])
 }
 
-/// Pictures in a row, their tops level, black around them.
+/// Places pictures in a row, aligned at the top, on black.
 ///
 /// # Panics
-/// If there are none.
+/// If `pictures` is empty.
 pub fn side_by_side(pictures: &[&Plane<[u8; 3]>]) -> Plane<[u8; 3]> {
     let width = pictures.iter().map(|picture| picture.width() + GAP).sum::<u32>() - GAP;
     let height = pictures.iter().map(|picture| picture.height()).max().unwrap_or(0);
@@ -76,8 +75,8 @@ pub fn side_by_side(pictures: &[&Plane<[u8; 3]>]) -> Plane<[u8; 3]> {
     canvas.0
 }
 
-/// The `index`-th of a list of saturated colours: steps of the golden angle around the circle of
-/// hues keep neighbours apart, however long the list.
+/// The `index`-th of a list of saturated colours: steps of the golden angle around the hue circle keep neighbours
+/// apart, however long the list.
 fn distinct(index: u32) -> [u8; 3] {
     let hue = (f64::from(index) * 0.618_033_988_749_895).fract() * 6.0;
     // Red, green and blue are ramps around their own hue, at 0, 2 and 4 of 6.
@@ -88,7 +87,7 @@ fn distinct(index: u32) -> [u8; 3] {
     })
 }
 
-/// A picture that is drawn on; what lies outside is left out.
+/// A picture to draw on; strokes are clipped to it.
 struct Canvas(Plane<[u8; 3]>);
 
 impl Canvas {
@@ -100,8 +99,8 @@ impl Canvas {
         }
     }
 
-    /// Lays `color` over a pixel whose centre is `distance` from the middle of a line: wholly inside
-    /// it, not at all beyond it, and in proportion where the edge crosses the pixel.
+    /// Blends `color` over a pixel whose centre is `distance` pixels from the middle of a line: fully inside the line,
+    /// not at all outside, and in proportion where the edge crosses the pixel.
     fn stroke(&mut self, x: u32, y: u32, distance: f32, color: [u8; 3]) {
         let cover = (LINE_WIDTH / 2.0 + 0.5 - distance).clamp(0.0, 1.0);
         let under = self.0.get(x, y);
@@ -116,7 +115,7 @@ impl Canvas {
         let reach = radius + LINE_WIDTH;
         for y in pixels(cy - reach, cy + reach, self.0.height()) {
             let dy = y as f32 - cy;
-            // Only the two arcs that this row cuts, not all that lies between them.
+            // Only the two arcs that this row crosses are visited, not the pixels between them.
             let outer = (reach * reach - dy * dy).max(0.0).sqrt();
             let inner_radius = (radius - LINE_WIDTH).max(0.0);
             let inner = (inner_radius * inner_radius - dy * dy).max(0.0).sqrt();
@@ -135,7 +134,7 @@ impl Canvas {
         if !length.is_finite() || length == 0.0 {
             return;
         }
-        // Along the axis that it follows most, the other one is never further than this.
+        // Along its major axis, the line extends at most this far across.
         let reach = LINE_WIDTH * std::f32::consts::SQRT_2;
         let steep = dy.abs() > dx.abs();
         let (major, minor) = if steep { (1, 0) } else { (0, 1) };
@@ -144,7 +143,7 @@ impl Canvas {
             let middle = from[minor] + (along as f32 - from[major]) * slope;
             for across in pixels(middle - reach, middle + reach, sides[minor]) {
                 let (x, y) = if steep { (across, along) } else { (along, across) };
-                // The cross product with the direction is the distance from the endless line.
+                // The cross product with the direction gives the distance from the infinite line.
                 let distance = ((x as f32 - from[0]) * dy - (y as f32 - from[1]) * dx).abs() / length;
                 self.stroke(x, y, distance, color);
             }
@@ -152,7 +151,7 @@ impl Canvas {
     }
 }
 
-/// The whole numbers from `first` to `last` that are pixels of a side; none for a NaN.
+/// The pixel indices from `first` to `last`, clipped to a side of `side` pixels; empty for NaN.
 fn pixels(first: f32, last: f32, side: u32) -> std::ops::Range<u32> {
     if first.is_nan() || last.is_nan() || last < first.max(0.0) {
         return 0..0;
@@ -179,7 +178,7 @@ mod tests {
     fn a_level_line_by_hand() {
         let mut canvas = canvas(7, 5);
         canvas.line([1.0, 2.0], [4.0, 2.0], WHITE);
-        // 0 and 1 px from its middle, a line of 1.25 px covers all and an eighth of a pixel.
+        // A line of 1.25 px covers a pixel at its middle fully, and a pixel 1 px away by an eighth.
         let rows: Vec<Vec<u8>> = (0..5).map(|y| canvas.0.row(y).iter().map(|rgb| rgb[0]).collect()).collect();
         assert_eq!(rows[0], [0; 7]);
         assert_eq!(rows[1], [0, 32, 32, 32, 32, 0, 0]);

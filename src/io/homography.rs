@@ -1,4 +1,4 @@
-//! Homographies as data sets of plane scenes have them (Oxford's, HPatches'): nine numbers in text, row by row.
+//! Homographies in the format of data sets of planar scenes (Oxford, HPatches): nine numbers in text, row by row.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use glam::DMat3;
 use super::{malformed, read_whole};
 use crate::error::Result;
 
-/// The longest file that is read, in bytes: nine numbers in any notation, and all the space that someone may want.
+/// Longest file that is read, in bytes: nine numbers in any notation, with plenty of white space.
 const MAX_BYTES: u64 = 1 << 12;
 
-/// Reads a homography, which takes `(x, y, 1)` of one view to another.
+/// Reads a homography, which maps `(x, y, 1)` of one view to another, in pixels.
 ///
 /// # Errors
 /// [`Error::Io`](crate::Error::Io) if the file cannot be read, otherwise as [`decode`].
@@ -18,10 +18,10 @@ pub fn read(path: &Path) -> Result<DMat3> {
     decode(&read_whole(path, MAX_BYTES)?, path)
 }
 
-/// The homography in a file's bytes; `path` is named in errors.
+/// Decodes the homography in a file's bytes; `path` is named in errors.
 ///
 /// # Errors
-/// [`Error::Format`](crate::Error::Format) if they are anything else than nine finite numbers.
+/// [`Error::Format`](crate::Error::Format) if the bytes are not exactly nine finite numbers.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<DMat3> {
     let wrong = |what: String| malformed(path, format!("{what}: a homography is nine numbers, row by row"));
     let text = std::str::from_utf8(bytes).map_err(|_| wrong("it is no UTF-8 text".into()))?;

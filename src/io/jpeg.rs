@@ -1,31 +1,31 @@
-//! What the JPEG decoder keeps to itself: that a file is cut off (it fills the rest with grey) and
-//! that it holds CMYK (it converts it by guess).
+//! Checks of JPEG files that the decoder does not report: truncation (it fills the rest with grey) and CMYK (it
+//! converts the colours by guess).
 //!
-//! Only the markers are read; ITU-T T.81, annex B. A scan that ends early, before a proper end marker, is not noticed:
-//! nothing but its own codes says how long it is, and the decoder, which reads them, does not tell.
+//! Only the markers are read (ITU-T T.81, annex B). A scan that ends early, before a proper end marker, goes unnoticed:
+//! only its entropy codes tell its length, and the decoder, which reads them, does not report it.
 
 const START_OF_SCAN: u8 = 0xda;
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// What is wrong with a JPEG file as a picture to be matched, if anything.
+/// The reason why a JPEG file cannot be used for matching; `None` for a usable file.
 pub(super) fn objection(bytes: &[u8]) -> Option<&'static str> {
     const CUT_OFF: &str = "the JPEG is cut off: copy or export it again";
-    // The start of the image, FF D8.
+    // The first two bytes are the start-of-image marker, FF D8.
     let mut rest = bytes.get(2..).unwrap_or_default();
     loop {
         let Some((marker, behind)) = next_marker(rest) else { return Some(CUT_OFF) };
         rest = behind;
         match marker {
             END_OF_IMAGE => return None,
-            // Markers that stand alone: restarts and TEM.
+            // Markers without a segment: restarts and TEM.
             0xd0..=0xd7 | 0x01 => continue,
             _ => {}
         }
         let Some((segment, behind)) = split_segment(rest) else { return Some(CUT_OFF) };
         rest = behind;
         match (marker, segment) {
-            // A frame header: precision, height, width, then the number of components. DHT, JPG and
-            // DAC lie in the same range.
+            // Frame header: precision, height, width, then the number of components. DHT, JPG and DAC lie in the same
+            // range of codes.
             (0xc0..=0xc3 | 0xc5..=0xc7 | 0xc9..=0xcb | 0xcd..=0xcf, [_, _, _, _, _, 4, ..]) => {
                 return Some("a JPEG in CMYK: convert it to RGB, its colours depend on a printing profile");
             }
@@ -35,20 +35,20 @@ pub(super) fn objection(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// The next marker and what follows it; fill bytes and stray ones before it are skipped.
+/// The code of the next marker and the bytes behind it; fill bytes and stray bytes before the marker are skipped.
 fn next_marker(bytes: &[u8]) -> Option<(u8, &[u8])> {
     let start = bytes.iter().position(|&byte| byte == 0xff)?;
     let code = start + bytes[start..].iter().position(|&byte| byte != 0xff)?;
     Some((bytes[code], &bytes[code + 1..]))
 }
 
-/// A segment without its two bytes of length, and what follows it.
+/// A segment without its two length bytes, and the bytes behind it.
 fn split_segment(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk()?;
     rest.split_at_checked(usize::from(u16::from_be_bytes(*length)).checked_sub(2)?)
 }
 
-/// Everything from the first marker on that is neither a stuffed FF nor a restart.
+/// Skips entropy-coded data: returns the bytes from the first marker on that is neither a stuffed FF nor a restart.
 fn skip_entropy_coded(bytes: &[u8]) -> &[u8] {
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0x00 | 0xd0..=0xd7 | 0xff);
     let length = bytes.windows(2).position(is_marker).unwrap_or(bytes.len());
@@ -59,8 +59,8 @@ fn skip_entropy_coded(bytes: &[u8]) -> &[u8] {
 mod tests {
     use super::*;
 
-    /// Start, a comment that holds an end marker, a frame of `components`, a scan with a stuffed FF
-    /// and a restart, end.
+    /// A JPEG of a start marker, a comment that contains an end marker, a frame of `components`, a scan with a stuffed
+    /// FF and a restart, and an end marker.
     fn jpeg(components: u8) -> Vec<u8> {
         let mut bytes = vec![0xff, 0xd8, 0xff, 0xfe, 0, 4, 0xff, 0xd9];
         bytes.extend([0xff, 0xff, 0xc0, 0, 8, 8, 0, 1, 0, 1, components]);

@@ -1,14 +1,13 @@
-//! Photographs from PNG, JPEG, PNM, BMP, TIFF and WebP files.
+//! Loading of photographs from PNG, JPEG, PNM, BMP, TIFF and WebP files.
 //!
 //! Grey and RGB of 8 and 16 bits, with or without alpha, become RGBA of 8 bits:
-//! - of 16 bits the upper 8 are kept (`>> 8`), so that 8 bits stored as 16 (`257 * v`) come back;
-//! - alpha is dropped, not composited: what is matched is what the camera saw, and a background
-//!   would add edges of its own;
-//! - a picture is turned as its EXIF orientation says, as viewers do;
-//! - colour profiles and gamma are left alone: both views have the same.
+//! - 16-bit values keep their upper 8 bits (`>> 8`), which restores 8-bit values stored as 16 bits (`257 * v`);
+//! - alpha is dropped, not composited: the camera's picture is matched, and a background would add edges of its own;
+//! - pictures are rotated by their EXIF orientation, as in viewers;
+//! - colour profiles and gamma are ignored: both views have the same.
 //!
-//! CMYK and floats are refused, since their 8-bit values would be a guess. Of several frames or
-//! pages the first is read.
+//! CMYK and floating-point pictures are refused, since their conversion to 8 bits would be a guess. Only the first
+//! frame or page of a file is read.
 
 use std::{io::Cursor, path::Path};
 
@@ -17,13 +16,13 @@ use ::image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageErr
 use super::{MAX_PIXELS, Picture, check_pixels, jpeg, malformed, read_whole};
 use crate::error::{Error, Result};
 
-/// The largest sample layout that is accepted, RGBA of 16 bits.
+/// Bytes per pixel of the largest accepted layout, RGBA of 16 bits.
 const MAX_BYTES_PER_PIXEL: u64 = 8;
 
-/// What a codec may need beside the pixels and the file.
+/// Memory that a codec may need besides the pixels and the file, in bytes.
 const CODEC_BYTES: u64 = 1 << 22;
 
-/// Loads a picture.
+/// Loads a picture file as RGBA of 8 bits.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, otherwise as [`decode`].
@@ -31,11 +30,11 @@ pub fn load(path: &Path) -> Result<Picture> {
     decode(&read_bytes(path)?, path)
 }
 
-/// The picture in a file's bytes; `path` is named in errors.
+/// Decodes the picture in a file's bytes to RGBA of 8 bits; `path` is named in errors.
 ///
 /// # Errors
-/// [`Error::Format`] if they are no picture of a known kind, are damaged or cut off, or hold more
-/// than [`MAX_PIXELS`].
+/// [`Error::Format`] if the bytes are no picture of a supported format, are damaged or cut off, or hold more than
+/// [`MAX_PIXELS`].
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
     use DynamicImage as Image;
     let image = decode_image(bytes, path)?;
@@ -55,7 +54,7 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
     Picture::new(width, height, pixels)
 }
 
-/// Pixels of `N` samples as RGBA without transparency.
+/// Converts pixels of `N` samples to opaque RGBA.
 fn opaque<T, const N: usize>(samples: &[T], rgb: impl Fn(&[T; N]) -> [u8; 3]) -> Vec<[u8; 4]> {
     let opaque = |pixel| {
         let [red, green, blue] = rgb(pixel);
@@ -64,12 +63,12 @@ fn opaque<T, const N: usize>(samples: &[T], rgb: impl Fn(&[T; N]) -> [u8; 3]) ->
     samples.as_chunks().0.iter().map(opaque).collect()
 }
 
-/// The bytes of a picture's file; the longest that is accepted has no compression at all.
+/// Reads the bytes of a picture file, up to the length of the largest uncompressed picture.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     read_whole(path, MAX_PIXELS * MAX_BYTES_PER_PIXEL)
 }
 
-/// The picture as it is stored, turned upright.
+/// Decodes a picture in its stored sample format, rotated upright.
 pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     let damaged = |error| explain(error, path);
     let mut reader = ImageReader::new(Cursor::new(bytes))
@@ -77,7 +76,10 @@ pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
         .map_err(|error| malformed(path, format!("not a picture: {error}")))?;
     match reader.format() {
         None => {
-            return Err(malformed(path, "not a picture that is known here: PNG, JPEG, PNM, BMP, TIFF and WebP are"));
+            return Err(malformed(
+                path,
+                "not a picture of a supported format: PNG, JPEG, PNM, BMP, TIFF and WebP are read",
+            ));
         }
         Some(ImageFormat::Jpeg) => {
             if let Some(objection) = jpeg::objection(bytes) {
@@ -93,7 +95,7 @@ pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     check_pixels(width, height, path)?;
-    // Other claims of the header need no more than the pixels and the file itself do.
+    // Whatever else the header claims, no more memory is needed than for the pixels and the file itself.
     let pixels = u64::from(width) * u64::from(height);
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES_PER_PIXEL * pixels + bytes.len() as u64 + CODEC_BYTES);
@@ -114,7 +116,7 @@ pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     Ok(image)
 }
 
-/// A colour type in words.
+/// Name of a colour type.
 pub(super) fn describe(color: ColorType) -> &'static str {
     match color {
         ColorType::L8 => "8-bit grey",

@@ -1,11 +1,11 @@
-//! Files in and out: pictures, disparity maps, calibrations, homographies, tables, point clouds and figures.
+//! File formats: pictures, disparity maps, calibrations, homographies, tables, point clouds and figures.
 //!
-//! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes
-//! and its path, which is there to be named in errors. No header is believed: memory is reserved
-//! only for bytes that are really there, or up to [`MAX_PIXELS`] where a codec expands them.
+//! Encoders write to anything that implements [`std::io::Write`]; decoders take the file's bytes, and its path for
+//! error messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to
+//! [`MAX_PIXELS`] where a codec expands them.
 //!
-//! Reading pictures comes with the feature `pictures`, writing them and whole files with `cli`; PFM,
-//! calibrations, PLY, tables, homographies and colour maps are always there.
+//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `cli`. PFM, calibrations, PLY,
+//! tables, homographies and colour maps are always available.
 
 #[cfg(feature = "cli")]
 pub mod atomic;
@@ -39,16 +39,16 @@ use crate::{
     luma::MAX_SIDE,
 };
 
-/// The most pixels of a picture or map that is read: 2^27, about 134 million.
+/// Largest number of pixels of a picture or map that is read: 2^27, about 134 million.
 ///
-/// A file of a few kilobytes can claim to hold any number of them.
+/// The limit is needed because a file of a few kilobytes can claim any number of pixels.
 pub const MAX_PIXELS: u64 = 1 << 27;
 
-/// The bytes of a file, if there are any and at most `limit`.
+/// Reads a file of 1 to `limit` bytes.
 fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let failed = |source| Error::Io { path: path.into(), source };
     let mut bytes = Vec::new();
-    // The length that the system reports says nothing about pipes and devices, so it is not asked.
+    // The file length that the system reports is not used: it is meaningless for pipes and devices.
     File::open(path).map_err(failed)?.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty: it was not written, or not copied"));
@@ -59,7 +59,8 @@ fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Refuses a size that is empty or above [`MAX_PIXELS`], or that no kernel has the workgroups for.
+/// Refuses an empty size, a size above [`MAX_PIXELS`], and a side above [`MAX_SIDE`], the limit of the kernels'
+/// workgroups.
 fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(malformed(path, format!("its size is {width}x{height}: there is nothing in it")));

@@ -1,9 +1,9 @@
-//! Portable float maps, the lossless form of disparities and depths.
+//! Portable float maps (PFM), the lossless format of disparities and depths.
 //!
-//! `Pf`, width and height, and a scale, in text; then 32-bit floats, the **bottom row first**. The
-//! sign of the scale is the byte order (negative: little endian), its magnitude is ignored as
-//! Middlebury's tools do. +inf stands for 'unknown'; NaN and -inf, which some programs write for it, are read
-//! alike. P. Debevec, 'PFM Portable FloatMap Image Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
+//! A header of text, `Pf`, width and height, and a scale; then 32-bit floats, the **bottom row first**. The sign of the
+//! scale gives the byte order (negative: little endian); its magnitude is ignored, as in Middlebury's tools. +inf
+//! stands for 'unknown'; NaN and -inf, which some programs write instead, are read as +inf. P. Debevec, 'PFM Portable
+//! FloatMap Image Format', <https://www.pauldebevec.com/Research/HDR/PFM/>.
 
 use std::{
     io::{self, Write},
@@ -17,13 +17,13 @@ use crate::{
     image::Plane,
 };
 
-/// The longest word of a header: no number of use is longer.
+/// Longest word of a header, in bytes: no useful number is longer.
 const MAX_WORD: usize = 32;
 
-/// Room for a header with comments.
+/// Longest header, with room for comments, in bytes.
 const MAX_HEADER: u64 = 1 << 16;
 
-/// Reads a single-channel PFM. Values are numbers or, where the file has none, +inf.
+/// Reads a single-channel PFM. Values that are not finite become +inf.
 ///
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, otherwise as [`decode`].
@@ -31,23 +31,23 @@ pub fn read(path: &Path) -> Result<Plane<f32>> {
     decode(&read_whole(path, 4 * MAX_PIXELS + MAX_HEADER)?, path)
 }
 
-/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`disparity::NONE`], anything else the
-/// nearest 1/256 px (halves away from 0).
+/// Reads a single-channel PFM of disparities in pixels; +inf becomes [`disparity::NONE`], other values are rounded to
+/// the nearest 1/256 px (halves away from 0).
 ///
 /// # Errors
-/// As [`read`]; also [`crate::Error::Format`] where a disparity is beyond [`DisparityRange::LIMIT`].
+/// As [`read`]; also [`crate::Error::Format`] for a disparity beyond [`DisparityRange::LIMIT`].
 pub fn read_disparities(path: &Path) -> Result<DisparityMap> {
     fixed_point(&read(path)?, path)
 }
 
-/// The values of a single-channel PFM; `path` is named in errors.
+/// Decodes the values of a single-channel PFM; `path` is named in errors.
 ///
-/// NaN and -inf become +inf. Comments (`#` to the end of the line) and CRLF in the header are understood, though the
-/// format knows neither.
+/// NaN and -inf become +inf. Comments (`#` to the end of the line) and CRLF in the header are accepted, although the
+/// format has neither.
 ///
 /// # Errors
-/// [`crate::Error::Format`] where `bytes` are no such PFM: another magic word, sizes or a scale that are
-/// none, fewer or more values than the size says.
+/// [`crate::Error::Format`] for another magic word, an invalid size or scale, or fewer or more values than the size
+/// needs.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let mut header = Header { bytes, path };
     match &*header.word("magic word")? {
@@ -71,7 +71,7 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
 /// Writes `plane` as a little-endian PFM.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write(out: &mut impl Write, plane: &Plane<f32>) -> io::Result<()> {
     write!(out, "Pf\n{} {}\n-1\n", plane.width(), plane.height())?;
     for y in (0..plane.height()).rev() {
@@ -81,11 +81,11 @@ pub fn write(out: &mut impl Write, plane: &Plane<f32>) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes disparities in pixels as a little-endian PFM, [`disparity::NONE`] as +inf. Nothing is lost below
-/// 65536 px, where a float still holds each 1/256.
+/// Writes disparities in pixels as a little-endian PFM, [`disparity::NONE`] as +inf. Lossless below 65536 px, where a
+/// float holds every 1/256.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write_disparities(out: &mut impl Write, map: &DisparityMap) -> io::Result<()> {
     write(out, &disparity::in_pixels(map))
 }
@@ -104,14 +104,14 @@ fn fixed_point(pixels: &Plane<f32>, path: &Path) -> Result<DisparityMap> {
     Ok(pixels.map(|&d| disparity::fixed_point(d)))
 }
 
-/// What is left of a file while its header is read.
+/// The unread rest of a file while its header is parsed.
 struct Header<'a> {
     bytes: &'a [u8],
     path: &'a Path,
 }
 
 impl Header<'_> {
-    /// The next word, behind white space and comments.
+    /// Reads the next word, after white space and comments.
     fn word(&mut self, what: &str) -> Result<String> {
         loop {
             self.bytes = self.bytes.trim_ascii_start();
@@ -147,10 +147,11 @@ impl Header<'_> {
         }
     }
 
-    /// The `needed` bytes of values behind the one white-space character that ends the header.
+    /// The `needed` bytes of values, after the single white-space character that ends the header.
     fn values(&self, needed: usize, (width, height): (u32, u32)) -> Result<&[u8]> {
         let values = match self.bytes {
-            // A header with CRLF ends in two; the length tells a line feed from a first value's byte.
+            // A header with CRLF ends in two characters; the length decides whether a line feed belongs to the first
+            // value.
             [b'\r', b'\n', values @ ..] if values.len() == needed => values,
             [_, values @ ..] => values,
             [] => &[],
@@ -173,7 +174,7 @@ mod tests {
     use super::*;
     use crate::Error;
 
-    /// 2x2: top row 1 2, bottom row 3 +inf.
+    /// A map of 2x2 pixels: top row 1 2, bottom row 3 +inf.
     const LITTLE: &[u8] = b"Pf\n2 2\n-1\n\0\0\x40\x40\0\0\x80\x7f\0\0\x80\x3f\0\0\0\x40";
     const BIG: &[u8] = b"Pf\n2 2\n1.0\n\x40\x40\0\0\x7f\x80\0\0\x3f\x80\0\0\x40\0\0\0";
 

@@ -2,22 +2,22 @@
 
 use crate::image::{Luma, Plane, luma_of};
 
-/// A colour picture: red, green, blue and alpha, 8 bits each. Alpha means nothing here.
+/// A colour picture: red, green, blue and alpha, 8 bits each. Alpha is ignored.
 pub type Picture = Plane<[u8; 4]>;
 
 impl Picture {
-    /// Its bytes, four a pixel, row by row: what a GPU's `Rgba8Unorm` texture or buffer takes.
+    /// The bytes of the picture, four per pixel, row by row, as for an `Rgba8Unorm` texture or a buffer.
     pub fn rgba(&self) -> &[u8] {
         self.data().as_flattened()
     }
 
-    /// The red, green and blue at `(x, y)`.
+    /// Red, green and blue at `(x, y)`.
     pub fn rgb(&self, x: u32, y: u32) -> [u8; 3] {
         let [red, green, blue, _] = self.get(x, y);
         [red, green, blue]
     }
 
-    /// The grey picture that the kernels see.
+    /// The grey picture that is matched.
     pub fn luma(&self) -> Luma {
         self.map(|&[red, green, blue, _]| luma_of([red, green, blue]))
     }

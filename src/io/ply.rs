@@ -1,7 +1,7 @@
 //! Coloured point clouds as PLY, the Stanford polygon format.
 //!
-//! Points are in the camera coordinates of the view that the depth belongs to, in metres: x right, y down, z forward.
-//! Viewers that take y as up show them upside down; turn them by 180 degrees around x.
+//! Points are in camera coordinates of the depth map's view, in metres: x right, y down, z forward. Viewers that take y
+//! as up show them upside down; rotate the points by 180 degrees around x.
 
 use std::io::{self, Write};
 
@@ -11,20 +11,20 @@ use crate::{
     image::Plane,
 };
 
-/// A point with its colour.
+/// A coloured point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// x (right), y (down) and z (forward) in metres.
+    /// x (right), y (down) and z (forward), in metres.
     pub position: [f32; 3],
-    /// Red, green and blue.
+    /// Red, green and blue, 8 bits each.
     pub color: [u8; 3],
 }
 
-/// The points that a depth map and the picture it belongs to make, in raster order. Pixels without
-/// a depth make none.
+/// The points of a depth map in metres, coloured by its picture, in raster order. Pixels without a finite depth are
+/// left out.
 ///
 /// # Errors
-/// [`Error::Parameter`] if the two differ in size.
+/// [`Error::Parameter`] if depth map and picture differ in size.
 pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
     if depth.size() != picture.size() {
         return Err(Error::Parameter {
@@ -50,7 +50,7 @@ pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) 
 /// Writes `points` as a binary little-endian PLY.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write(out: &mut impl Write, points: &[Point]) -> io::Result<()> {
     write!(
         out,

@@ -1,4 +1,4 @@
-//! PNG pictures.
+//! Writing of PNG pictures.
 
 use std::io::{self, Write};
 
@@ -6,26 +6,26 @@ use ::image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncod
 
 use crate::image::{Luma, Plane};
 
-/// Writes colours of 8 bits.
+/// Writes an 8-bit RGB PNG.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write_rgb8(out: &mut impl Write, picture: &Plane<[u8; 3]>) -> io::Result<()> {
     encode(out, picture.data().as_flattened(), picture.size(), ExtendedColorType::Rgb8)
 }
 
-/// Writes grey values of 8 bits.
+/// Writes an 8-bit grey PNG.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write_grey8(out: &mut impl Write, picture: &Luma) -> io::Result<()> {
     encode(out, picture.data(), picture.size(), ExtendedColorType::L8)
 }
 
-/// Writes grey values of 16 bits.
+/// Writes a 16-bit grey PNG.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write_grey16(out: &mut impl Write, picture: &Plane<u16>) -> io::Result<()> {
     encode(out, bytemuck::cast_slice(picture.data()), picture.size(), ExtendedColorType::L16)
 }

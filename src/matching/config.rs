@@ -1,29 +1,30 @@
-//! What counts as a match.
+//! Parameters of descriptor matching.
 
 use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
 };
 
-/// How descriptors of two views are matched, and which matches are kept.
+/// Parameters of [`match_features`](super::match_features): how descriptors of two views are matched, and which matches
+/// are kept.
 ///
-/// The default knows nothing about the geometry of the views, as the diagnosis of a pair that may not be rectified
-/// needs it: [`MatchConfig::max_dy`] would hide exactly what is to be found.
+/// The default assumes no geometry of the views, because the diagnosis of rectification needs matches in any row:
+/// [`MatchConfig::max_dy`] would hide exactly the errors it looks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchConfig {
-    /// The largest ratio of the distance of the nearest descriptor to that of its rival; above 0, and 1 keeps every
-    /// match that has the smaller distance.
+    /// Ratio test: largest ratio of the distance of the nearest descriptor to that of its rival, above 0, at most 1;
+    /// 1 keeps every nearest descriptor.
     pub ratio: f32,
-    /// Keep a match only if each of the two is the other's nearest.
+    /// Keep a match only if each of the two features is the other's nearest.
     pub mutual: bool,
-    /// Match bright blobs with bright ones and dark with dark only (the sign of the Laplacian; Bay et al. 2008,
-    /// section 4.3).
+    /// Match bright blobs only with bright ones and dark blobs only with dark ones (the sign of the Laplacian; Bay et
+    /// al. 2008, section 4.3).
     pub same_contrast: bool,
-    /// The largest difference of rows in pixels. Only for pairs known to be rectified.
+    /// Largest row difference of a match, in pixels, at least 0; only for pairs known to be rectified. `None`: any row.
     pub max_dy: Option<f32>,
-    /// The disparities (left column minus right column) of a match, both ends included.
+    /// Range of the disparity (left column minus right column) of a match, in pixels, both ends included. `None`: any.
     pub disparities: Option<DisparityRange>,
-    /// Keep this many matches, the most confident ones.
+    /// Number of matches to keep, the most confident ones, at least 1. `None`: all.
     pub strongest: Option<usize>,
 }
 
@@ -34,10 +35,10 @@ impl Default for MatchConfig {
 }
 
 impl MatchConfig {
-    /// Refuses what no match could satisfy.
+    /// Checks all parameters.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the accepted range.
+    /// [`Error::Parameter`] with the accepted range, for a value outside it.
     pub fn validate(&self) -> Result<()> {
         let check = |ok: bool, name, value: String, expected: &str| {
             if ok { Ok(()) } else { Err(Error::Parameter { name, value, expected: expected.into() }) }
@@ -62,7 +63,7 @@ impl MatchConfig {
         check(self.strongest != Some(0), "strongest", "0".into(), "it must be at least 1")
     }
 
-    /// The same demands with the two views exchanged.
+    /// The configuration for exchanged views: the disparity range is negated.
     pub(super) fn swapped(&self) -> Self {
         let disparities = self.disparities.map(|range| DisparityRange { min: -range.last(), count: range.count });
         Self { disparities, ..self.clone() }

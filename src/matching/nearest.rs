@@ -1,10 +1,11 @@
-//! For every feature of one view the nearest descriptor of the other, by brute force and exactly.
+//! Exact nearest-neighbour search: for every feature of one view the nearest descriptor of the other, by brute force.
 //!
-//! Both lists are sorted by contrast and row first, so that the candidates of a feature are one stretch of the other
-//! list. Candidates lie in blocks of [`LANES`] with their values interleaved, and [`QUERIES`] features meet a block at
-//! a time: the inner loop is then plain multiply-and-add over whole registers without any horizontal sum. The registers
-//! are glam's, as the compiler's own vectorisation of plain arrays came out at a quarter of the speed. The order of the
-//! additions is fixed, so that results do not depend on the machine or the number of threads.
+//! Both lists are first sorted by contrast and row, so that the candidates of a feature are one range of the other
+//! list. Candidates are stored in blocks of [`LANES`] with their values interleaved, and [`QUERIES`] features are
+//! compared with a block at a time: the inner loop is then plain multiply-and-add over whole registers without any
+//! horizontal sum. The registers are glam's, because the compiler's own vectorisation of plain arrays reached a quarter
+//! of the speed. The order of the additions is fixed, so that results do not depend on the machine or the number of
+//! threads.
 
 use std::ops::Range;
 
@@ -14,33 +15,33 @@ use rayon::prelude::*;
 use super::MatchConfig;
 use crate::features::{DESCRIPTOR_LENGTH, Feature};
 
-/// Candidates in a register.
+/// Number of candidates per register.
 const WIDTH: usize = 4;
-/// Candidates in a block.
+/// Number of candidates per block.
 const LANES: usize = 2 * WIDTH;
-/// Features that meet a block together: 4 x 8 sums just fit the registers of SSE2 and NEON.
+/// Number of features that are compared with a block at a time: 4 x 8 sums just fit the registers of SSE2 and NEON.
 const QUERIES: usize = 4;
 
-/// A value for each candidate of a block.
+/// One value per candidate of a block.
 type Lanes = [Vec4; LANES / WIDTH];
 
-/// A detection this close to the nearest one, in units of its scale, shows the same structure and is no rival.
+/// Radius around the nearest feature, in units of its scale, within which other detections show the same structure and
+/// are no rivals.
 const RIVAL_RADIUS: f32 = 3.0;
 
-/// The nearest descriptor and how far ahead of the others it is.
+/// The nearest descriptor and its rival.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest {
     /// Index of the feature in the other view.
     pub index: usize,
     /// Euclidean distance of the descriptors.
     pub distance: f32,
-    /// Distance to the nearest descriptor of another structure; infinite where there is none.
+    /// Distance to the nearest descriptor of another structure; infinite if there is none.
     pub rival: f32,
 }
 
-/// For every query its nearest candidate that satisfies `config`, if there is any.
-///
-/// `config` sees the queries as the left view.
+/// For every query its nearest candidate that satisfies `config`, which takes the queries as the left view; `None` if
+/// there is no such candidate.
 pub(super) fn nearest(queries: &[Feature], candidates: &[Feature], config: &MatchConfig) -> Vec<Option<Nearest>> {
     let order = sorted(queries, config.same_contrast);
     let candidates = Candidates::new(candidates, config);
@@ -57,7 +58,7 @@ pub(super) fn nearest(queries: &[Feature], candidates: &[Feature], config: &Matc
     result
 }
 
-/// Indices of the features that have a place and a descriptor, by contrast (where it matters) and row.
+/// Indices of the features with a finite position and a usable descriptor, sorted by contrast (if it matters) and row.
 fn sorted(features: &[Feature], same_contrast: bool) -> Vec<usize> {
     let numbers =
         |f: &Feature| f.x.is_finite() && f.y.is_finite() && f.descriptor.iter().all(|value| value.is_finite());
@@ -68,12 +69,12 @@ fn sorted(features: &[Feature], same_contrast: bool) -> Vec<usize> {
     order
 }
 
-/// Distances of one group of queries to all blocks of their stretch.
+/// Distances of one group of queries to all blocks of their candidate range.
 #[derive(Default)]
 struct Scratch {
-    /// By query, then candidate of the stretch: squared distances.
+    /// Squared distances by query, then candidate of the range.
     squared: [Vec<Lanes>; QUERIES],
-    /// By query, then block: the smallest of the block.
+    /// Smallest squared distance by query, then block.
     least: [Vec<f32>; QUERIES],
 }
 
@@ -128,7 +129,7 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// The positions in `order` of all candidates that a query from `first` to `last` of the sorted queries can have.
+    /// The range in `order` of the candidates for the sorted queries from `first` to `last`.
     fn stretch(&self, first: &Feature, last: &Feature) -> Range<usize> {
         let reach = self.config.max_dy.unwrap_or(f32::INFINITY);
         let before = |limit: &Feature, past: bool| {
@@ -160,9 +161,9 @@ fn squared_distances(
     let mut sums = [[Vec4::ZERO; LANES / WIDTH]; QUERIES];
     for (k, values) in block.iter().enumerate() {
         for (query, sums) in queries.iter().zip(&mut sums) {
-            let wanted = Vec4::splat(query[k]);
+            let query_value = Vec4::splat(query[k]);
             for (sum, &value) in sums.iter_mut().zip(values) {
-                let difference = wanted - value;
+                let difference = query_value - value;
                 *sum += difference * difference;
             }
         }
@@ -170,7 +171,7 @@ fn squared_distances(
     sums
 }
 
-/// One query's distances to its stretch of candidates.
+/// Distances of one query to its candidate range.
 struct Row<'a> {
     candidates: &'a Candidates<'a>,
     first: usize,
@@ -192,7 +193,8 @@ impl Row<'_> {
         Some(Nearest { index, distance: squared.sqrt(), rival: rival.map_or(f32::INFINITY, |(_, d)| d.sqrt()) })
     }
 
-    /// The candidate with the smallest squared distance, the lowest index among equals, of those that `admit` lets in.
+    /// The candidate with the smallest squared distance among those that `admit` accepts; among equals the lowest
+    /// index.
     fn smallest(&self, admit: impl Fn(usize) -> bool) -> Option<(usize, f32)> {
         let mut best: Option<(usize, f32)> = None;
         for (block, (squared, &least)) in self.squared.iter().zip(self.least).enumerate() {

@@ -1,36 +1,37 @@
-//! The position of a match, made as exact as the dense half would make it.
+//! Sub-pixel refinement of the position of a match, by block matching.
 //!
-//! A feature is located within its own scale, and differently so in the two views; a window of the picture around it is
-//! located to a fraction of a pixel. So the window around the left feature is sought again near the right one (paper,
-//! step 5: blocks of 7x7, 'interpolation is performed between the nearest matching window and its neighbors').
+//! The position of a feature is only as exact as its scale, and differs between the two views; a window of the picture
+//! around it can be located to a fraction of a pixel. So the window around the left feature is searched for near the
+//! right one (paper, step 5: blocks of 7x7, 'interpolation is performed between the nearest matching window and its
+//! neighbors').
 
 use rayon::prelude::*;
 
 use super::Match;
 use crate::{features::Feature, image::Luma};
 
-/// Half the side of the 7x7 window.
+/// Half the side of the 7x7 window, in pixels.
 pub(crate) const HALF: i64 = 3;
-/// How far from the match the window is sought along its row, in pixels.
+/// Search radius along the row, in pixels.
 const REACH: i64 = 3;
-/// Places where the window is compared.
+/// Number of positions at which windows are compared.
 const PLACES: usize = 2 * REACH as usize + 1;
-/// A window is clear if its cost is at most this share of the cost anywhere else within reach.
+/// A minimum is distinct if its cost is at most this share of the second best cost within reach.
 ///
-/// Measured on nine scenes: 78 % of the matches are within 1 px without this demand and 91 % with it, for a sixth of
-/// the matches fewer.
+/// Measured on nine scenes: 78 % of the matches are within 1 px without this condition and 91 % with it, at the price
+/// of a sixth of the matches.
 const CLEAR: f32 = 0.75;
 
-/// Which row of the right view shows a row of the left one.
+/// The row of the right view that is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rows {
-    /// The same, as in a rectified pair: seeds have a `dy` of 0, whatever the features' rows.
+    /// The row of the left feature, as in a rectified pair: seeds have a `dy` of 0, whatever the features' rows.
     Equal,
-    /// The one in which the match lies: seeds keep the `dy` of the features, which is finer than a row.
+    /// The row of the right feature: seeds keep the `dy` of the features, which is finer than a row.
     Matched,
 }
 
-/// A point of the left view with its disparity.
+/// A refined match: a point of the left view with its disparity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seed {
     /// Column in the left view, in pixels.
@@ -39,35 +40,35 @@ pub struct Seed {
     pub y: f32,
     /// Left column minus right column, in pixels.
     pub disparity: f32,
-    /// Right row minus left row, in pixels: 0 everywhere in a rectified pair.
+    /// Right row minus left row, in pixels; 0 in a rectified pair.
     pub dy: f32,
     /// Confidence of the match, 0 to 1.
     pub confidence: f32,
 }
 
 impl Seed {
-    /// The match as the features have it.
+    /// The unrefined match, at the positions of its features.
     pub fn from_match(left: &[Feature], right: &[Feature], found: &Match) -> Self {
         let (l, r) = (&left[found.left], &right[found.right]);
         Self { x: l.x, y: l.y, disparity: l.x - r.x, dy: r.y - l.y, confidence: found.confidence }
     }
 
-    /// Column in the right view.
+    /// Column in the right view, in pixels.
     pub fn right_x(&self) -> f32 {
         self.x - self.disparity
     }
 
-    /// Row in the right view.
+    /// Row in the right view, in pixels.
     pub fn right_y(&self) -> f32 {
         self.y + self.dy
     }
 }
 
-/// Finds every match's place with the window, the most confident first, equals in the order of `matches`.
+/// Refines all matches by 7x7 windows; the most confident seed comes first, equal ones in the order of `matches`.
 ///
-/// A seed lies on whole pixels of the left view; its confidence is that of the match, lowered as its window is less
-/// clear. Matches whose window has no clear place near the match are left out: dropping them measures better than
-/// keeping them as they are (73 % within 1 px).
+/// A seed lies on whole pixels of the left view. Its confidence is that of the match times `sqrt(1 - ratio)`, where
+/// `ratio` is the least cost divided by the second best. Matches without a distinct cost minimum are dropped: keeping
+/// them unrefined measured worse (73 % within 1 px).
 pub fn refine(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), matches: &[Match], rows: Rows) -> Vec<Seed> {
     let mut seeds: Vec<Seed> = matches
         .par_iter()
@@ -77,7 +78,7 @@ pub fn refine(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), matches
     seeds
 }
 
-/// One match's place by a window of `2 * half + 1` pixels a side, as [`refine`] finds it.
+/// Refines one match as [`refine`] does, with a window of `2 * half + 1` pixels per side.
 pub(crate) fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows, half: i64) -> Option<Seed> {
     let (x, y) = (seed.x.round() as i64, seed.y.round() as i64);
     let (row, dy) = match rows {
@@ -93,24 +94,25 @@ pub(crate) fn locate((left, right): (&Luma, &Luma), seed: &Seed, rows: Rows, hal
     Some(Seed { x: x as f32, y: y as f32, disparity: first as f32 + place, dy, confidence })
 }
 
-/// Where the costs are least, to a fraction of a step, and the ratio of the least to its rival.
+/// Position of the distinct cost minimum, to a fraction of a step, and the ratio of the least cost to the second best;
+/// `None` without a distinct minimum.
 ///
-/// Two lines of opposite slope through the least and its neighbours (Shimizu and Okutomi, ICCV 2001): a sum of absolute
-/// differences has an edge where a parabola has a bow.
+/// Equiangular interpolation: two lines of opposite slope through the least cost and its neighbours (Shimizu and
+/// Okutomi, ICCV 2001), since a sum of absolute differences has a corner at its minimum, not the curve of a parabola.
 fn clear_minimum(costs: &[f32; PLACES]) -> Option<(f32, f32)> {
     let least = (1..PLACES - 1).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
     let (before, at, after) = (costs[least - 1], costs[least], costs[least + 1]);
     let rival = (0..PLACES).filter(|i| i.abs_diff(least) > 1).map(|i| costs[i]).min_by(f32::total_cmp)?;
     let slope = before.max(after) - at;
-    // A rival that fits as exactly as can be leaves nothing clear, and no ratio either.
+    // A second best cost of 0 makes the minimum ambiguous and the ratio undefined.
     if at > before || at > after || slope <= 0.0 || at > CLEAR * rival || rival == 0.0 {
         return None;
     }
     Some((least as f32 + (before - after) / (2.0 * slope), at / rival))
 }
 
-/// The pixels of a window less their mean, and divided by their mean deviation from it: neither brightness nor
-/// contrast plays a part in a difference of two.
+/// The pixels of a window minus their mean, divided by the sum of their absolute deviations: the difference of two
+/// windows depends neither on brightness nor on contrast.
 struct Window(Vec<f32>);
 
 impl Window {
@@ -118,7 +120,7 @@ impl Window {
         let row = |dy: i64| (-half..=half).map(move |dx| f32::from(view.get_clamped(x + dx, y + dy)));
         let mut values: Vec<f32> = (-half..=half).flat_map(row).collect();
         let mean = values.iter().sum::<f32>() / values.len() as f32;
-        // A flat window has no contrast to divide by.
+        // A flat window has no contrast; the divisor is at least 1.
         let contrast = values.iter().map(|value| (value - mean).abs()).sum::<f32>().max(1.0);
         values.iter_mut().for_each(|value| *value = (*value - mean) / contrast);
         Self(values)
@@ -171,14 +173,14 @@ mod tests {
     }
 
     #[test]
-    fn flat_or_foreign_surroundings_give_no_seed() {
+    fn flat_or_different_surroundings_give_no_seed() {
         assert_eq!(refined(|_, _| 90.0, Rows::Equal, (24.0, 20.0)), None);
         assert_eq!(refined(|x, y| pattern(x + 7.0, y), Rows::Equal, (30.0, 20.0)), None, "7 px are out of reach");
     }
 
     #[test]
     fn minimum_by_hand() {
-        // A fall of 32 a step through (1, 40) and (2, 8) meets a rise of 32 through (3, 24) at 2.25; the rival is 64.
+        // A fall of 32 per step through (1, 40) and (2, 8) meets a rise of 32 through (3, 24) at 2.25; the rival is 64.
         assert_eq!(clear_minimum(&[90.0, 40.0, 8.0, 24.0, 64.0, 80.0, 90.0]), Some((2.25, 0.125)));
         assert_eq!(clear_minimum(&[90.0, 40.0, 10.0, 20.0, 60.0, 12.0, 90.0]), None, "the rival is as good");
         assert_eq!(clear_minimum(&[5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), None, "lowest at the end");

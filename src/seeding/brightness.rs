@@ -1,32 +1,35 @@
-//! How much brighter one view is than the other.
+//! Gain and offset between the grey values of the two views.
 
 use crate::{image::Luma, matching::Seed};
 
-/// Half the side of the 7x7 window over which grey values are averaged.
+/// Half the side of the 7x7 window over which grey values are averaged, in pixels.
 const HALF: i64 = 3;
-/// Seeds that are used, the most confident ones: the slopes of all their pairs are looked at.
+/// Largest number of seeds used, the most confident ones: the slopes of all their pairs are computed.
 const MOST: usize = 500;
-/// Seeds that it takes.
+/// Smallest number of seeds needed.
 const NEEDED: usize = 12;
-/// Grey values that two windows must differ by for their slope to mean something.
+/// Smallest difference of two windows, in grey values, for their slope to be meaningful.
 const CONTRAST: f32 = 10.0;
 
-/// The straight line between the grey values of the two views: right = gain * left + offset.
+/// Linear relation between the grey values of the two views: right = gain * left + offset.
+///
+/// The relation is measured; [`crate::dense::Brightness`] is the change that equalises the views.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brightness {
-    /// Ratio of the contrasts, right by left.
+pub struct BrightnessRelation {
+    /// Contrast of the right view divided by that of the left view.
     pub gain: f32,
-    /// Difference of the grey values where the left view is black.
+    /// Grey value of the right view where the left view is black, in grey values of 0 to 255.
     pub offset: f32,
-    /// How far the grey values of corresponding windows lie from the line, robust standard deviation.
+    /// Robust standard deviation of corresponding windows from the line, in grey values.
     pub residual: f32,
 }
 
-impl Brightness {
-    /// Fits the line to the means of corresponding windows; none where there are too few, or all alike.
+impl BrightnessRelation {
+    /// Fits the line to the mean grey values of corresponding windows; `None` for fewer than 12 usable seeds, or
+    /// without contrast between their windows.
     ///
     /// The slope is the median of the slopes of all pairs (Theil 1950, Sen 1968), which up to 29 % of wrong seeds
-    /// cannot move far. Windows with a black or a white pixel are left out, as the sensor cut them off.
+    /// cannot move far. Windows with a black or a white pixel are left out, since the sensor may have clipped them.
     pub(super) fn new(left: &Luma, right: &Luma, seeds: &[Seed]) -> Option<Self> {
         let means: Vec<(f32, f32)> = seeds
             .iter()
@@ -59,7 +62,7 @@ fn mean(view: &Luma, x: f32, y: f32) -> Option<f32> {
     Some(sum as f32 / count as f32)
 }
 
-/// The middle value, the upper one of two.
+/// Median, the upper middle value of an even number; `None` without values.
 pub(super) fn median(mut values: Vec<f32>) -> Option<f32> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
@@ -79,7 +82,7 @@ mod tests {
                 Seed { x: 45.0 + (i % 10) as f32 * 5.0, y: 5.0 + i as f32, disparity, dy: 0.0, confidence: 1.0 }
             })
             .collect();
-        let found = Brightness::new(&left, &right, &seeds).unwrap();
+        let found = BrightnessRelation::new(&left, &right, &seeds).unwrap();
         assert!((found.gain - 0.5).abs() < 0.03 && (found.offset - 20.0).abs() < 3.0, "{found:?}");
     }
 
@@ -87,10 +90,10 @@ mod tests {
     fn nothing_is_claimed_without_contrast_or_seeds() {
         let grey = Luma::filled(50, 50, 90);
         let seeds = [Seed { x: 20.0, y: 20.0, disparity: 1.0, dy: 0.0, confidence: 1.0 }; 20];
-        assert_eq!(Brightness::new(&grey, &grey, &seeds), None);
-        assert_eq!(Brightness::new(&grey, &grey, &[]), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &seeds), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &[]), None);
         let white = Luma::filled(50, 50, 255);
-        assert_eq!(Brightness::new(&white, &grey, &seeds), None);
+        assert_eq!(BrightnessRelation::new(&white, &grey, &seeds), None);
     }
 
     #[test]

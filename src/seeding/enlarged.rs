@@ -1,20 +1,20 @@
-//! What was found in reduced views, in the pixels of the whole ones.
+//! Conversion of results from reduced views to pixels of the full-size views.
 
 use super::{Rectification, Seeding};
 use crate::{disparity::DisparityRange, features::Feature, matching::Seed};
 
-/// The place, in the whole picture, of a place in one that is smaller by `factor`: the centre of a block.
+/// Coordinate in the full-size picture of a coordinate in the picture reduced by `factor`: the centre of a block.
 fn place(reduced: f32, factor: f32) -> f32 {
     factor * reduced + (factor - 1.0) / 2.0
 }
 
-/// A feature of a picture that is smaller by `factor`, in the whole one.
+/// Converts a feature of a picture reduced by `factor` to pixels of the full-size picture.
 pub fn enlarged_feature(feature: Feature, factor: u32) -> Feature {
     let factor = factor as f32;
     Feature { x: place(feature.x, factor), y: place(feature.y, factor), scale: factor * feature.scale, ..feature }
 }
 
-/// All whole disparities that become one of `range` in views that are smaller by `factor`.
+/// The range of all whole disparities that a reduction of the views by `factor` rounds into `range`.
 pub(super) fn enlarged_range(range: DisparityRange, factor: u32) -> DisparityRange {
     let limit = DisparityRange::LIMIT;
     let factor = factor as i32;
@@ -24,9 +24,9 @@ pub(super) fn enlarged_range(range: DisparityRange, factor: u32) -> DisparityRan
 }
 
 impl Seeding {
-    /// The same for views that are larger by `factor` than those it was found in.
+    /// Converts the result to views enlarged by `factor`.
     ///
-    /// Lengths grow with the views, and so does what counts as rectified: 1.5 px of the reduced views.
+    /// All lengths grow by `factor`, and so does the tolerance of the verdict `Rectified`: 1.5 px of the reduced views.
     #[must_use]
     pub fn enlarged(self, factor: u32) -> Self {
         let scale = factor as f32;
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn a_range_holds_whatever_is_rounded_into_it() {
         let range = DisparityRange::inclusive(-2, 5).unwrap();
-        // In blocks of three: -2 stands for -8 to -4, 5 for 13 to 17.
+        // With blocks of three pixels, -2 stands for -8 to -4, and 5 for 13 to 17.
         assert_eq!(enlarged_range(range, 3), DisparityRange::inclusive(-8, 17).unwrap());
         assert_eq!(enlarged_range(range, 1), range);
     }

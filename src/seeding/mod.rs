@@ -1,7 +1,7 @@
-//! What the matches of two views tell about the pair as a whole: the disparity range, whether rows correspond,
-//! how the brightness differs, and how far a result can be trusted.
+//! Seeding: facts about a pair from the matches of its features, namely disparity range, rectification, brightness
+//! relation and trust.
 //!
-//! None of this makes a pixel's disparity: where seeds are thin, the whole range is searched.
+//! Seeds do not set disparities of single pixels: dense matching searches the whole range, also where seeds are rare.
 
 mod brightness;
 mod enlarged;
@@ -9,7 +9,7 @@ mod range;
 mod rectification;
 mod support;
 
-pub use brightness::Brightness;
+pub use brightness::BrightnessRelation;
 pub use enlarged::enlarged_feature;
 pub use range::ThinSupport;
 pub use rectification::{Rectification, Verdict};
@@ -23,15 +23,15 @@ use crate::{
     matching::{MatchConfig, Rows, Seed, match_features, refine},
 };
 
-/// Median absolute deviations in a standard deviation of a normal distribution.
+/// Standard deviation of a normal distribution divided by its median absolute deviation.
 const DEVIATIONS: f32 = 1.4826;
 
-/// How seeds are found and used.
+/// Parameters of [`Seeding::find`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeedingConfig {
-    /// How features are matched. Its `max_dy` is not used: the rows are what has to be found out.
+    /// Parameters of descriptor matching. `max_dy` is ignored, since the row differences have to be measured first.
     pub matching: MatchConfig,
-    /// The largest difference of rows of two features in a pair that is rectified, in pixels.
+    /// Largest row difference of two features in a rectified pair, in pixels.
     pub max_dy: f32,
 }
 
@@ -41,28 +41,28 @@ impl Default for SeedingConfig {
     }
 }
 
-/// What is known about a pair before any dense work.
+/// Facts about a pair, known before dense matching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seeding {
-    /// The disparities to be searched, or why they are not known.
+    /// The disparity range to search, or why it is unknown.
     pub range: std::result::Result<DisparityRange, ThinSupport>,
     /// Whether rows correspond.
     pub rectification: Rectification,
-    /// How the grey values of the views differ, where enough seeds tell.
-    pub brightness: Option<Brightness>,
-    /// How far a dense result can be trusted, 0 to 1: the share of all matches, found without any demand on their
-    /// rows, that lie in corresponding rows and in the range; lower where they are few (half at 30 of them).
+    /// Relation of the grey values of the views; `None` if there are too few seeds.
+    pub brightness: Option<BrightnessRelation>,
+    /// Trust in a dense result, 0 to 1: the share of all matches, found in any row, that lie in corresponding rows and
+    /// in the range; multiplied by `n / (n + 30)` for `n` of these matches.
     pub trust: f32,
-    /// The seeds that their neighbours confirm, the most confident first.
+    /// The seeds that their neighbours support, the most confident first.
     pub seeds: Vec<Seed>,
 }
 
 impl Seeding {
-    /// Matches the features of two views and draws all conclusions.
+    /// Matches the features of two views and measures rectification, range, brightness relation and trust.
     ///
     /// # Errors
     /// [`Error::SizesDiffer`] if the views differ in size, [`Error::Parameter`] if the configuration is not valid.
-    /// That a range is not found is no error here, as the caller may have one: see [`Self::range`].
+    /// An unknown range is no error here, since the caller may have one: see [`Self::range`].
     pub fn find(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), config: &SeedingConfig) -> Result<Self> {
         if views.0.size() != views.1.size() {
             return Err(Error::SizesDiffer { left: views.0.size(), right: views.1.size() });
@@ -85,7 +85,7 @@ impl Seeding {
         let seeds = support::supported(&seeds);
         let range = range::disparity_range(&seeds, count);
         Ok(Self {
-            brightness: Brightness::new(views.0, views.1, &seeds),
+            brightness: BrightnessRelation::new(views.0, views.1, &seeds),
             trust: range.map_or(0.0, |range| trust(&raw, range, config.max_dy)),
             range,
             rectification,
@@ -94,9 +94,9 @@ impl Seeding {
     }
 }
 
-/// The share of the matches that a search along rows in `range` could find, less where they are few.
+/// Share of the matches that a search along rows in `range` can find, reduced for small numbers.
 fn trust(raw: &[Seed], range: DisparityRange, max_dy: f32) -> f32 {
-    /// Matches that deserve half the trust of many.
+    /// Number of matches at which the share is halved.
     const FEW: f32 = 30.0;
     let found = |seed: &&Seed| seed.dy.abs() <= max_dy && range.contains(seed.disparity.round() as i32);
     let consistent = raw.iter().filter(found).count() as f32;

@@ -1,4 +1,4 @@
-//! The disparities worth searching, found from the seeds.
+//! The disparity range to search, from the seeds.
 
 use std::fmt;
 
@@ -8,26 +8,26 @@ use crate::{
     matching::Seed,
 };
 
-/// Seeds that it takes to believe in a range. With 14 of them, in a quarter of a scene, 38 % of the pixels were missed.
+/// Smallest number of seeds for a range. With 14 seeds, in a quarter of a scene, the range missed 38 % of the pixels.
 const NEEDED: usize = 20;
-/// What is added beyond the farthest of many seeds, as a share of the seeds' extent.
+/// Margin beyond the farthest of many seeds, as a share of the seeds' extent.
 const FAR_MARGIN: f32 = 0.15;
-/// What is added beyond the nearest of many seeds. Much more than at the far end: what is near is large, smooth and
-/// often cut by the border, so it bears few features or none. The nine scenes need up to 0.34 here and 0.08 at the
-/// far end.
+/// Margin beyond the nearest of many seeds, as a share of the seeds' extent. It is larger than at the far end, because
+/// near objects are large, smooth and often cut by the border, and so bear few features or none. The nine scenes need
+/// up to 0.34 here and 0.08 at the far end.
 const NEAR_MARGIN: f32 = 0.4;
-/// The number of seeds at which the margins double: the fewer there are, the more of the scene they miss, as halves
-/// and quarters cut from the nine scenes show.
+/// Number of seeds at which the margins double: fewer seeds miss more of the scene, as halves and quarters cut from the
+/// nine scenes show.
 const FEW: f32 = 40.0;
-/// The least that is added at either end, in pixels.
+/// Smallest margin at either end, in pixels.
 const LEAST_MARGIN: f32 = 3.0;
 
-/// Too few seeds confirm each other to tell the disparity range.
+/// Too few seeds support each other to determine the disparity range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ThinSupport {
-    /// Points that were found in both views.
+    /// Number of seeds, matched points with a distinct cost minimum.
     pub seeds: usize,
-    /// Those that their neighbours confirm.
+    /// Number of the seeds that their neighbours support.
     pub supported: usize,
 }
 
@@ -45,7 +45,7 @@ impl From<ThinSupport> for Error {
     }
 }
 
-/// The range that the `supported` ones of `seeds` points span, with its margins.
+/// The range that the `supported` seeds span, with margins; `seeds` is the number of all seeds.
 pub(super) fn disparity_range(supported: &[Seed], seeds: usize) -> std::result::Result<DisparityRange, ThinSupport> {
     let thin = ThinSupport { seeds, supported: supported.len() };
     if supported.len() < NEEDED {
@@ -55,7 +55,7 @@ pub(super) fn disparity_range(supported: &[Seed], seeds: usize) -> std::result::
     widened(far, near, 1.0 + FEW / supported.len() as f32).map_err(|_| thin)
 }
 
-/// The smallest and the largest.
+/// Smallest and largest disparity.
 pub(super) fn extent(disparities: impl Iterator<Item = f32>) -> (f32, f32) {
     disparities.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)))
 }
@@ -79,9 +79,9 @@ mod tests {
         // 200 seeds from 10 to 50: 1.2 * 0.15 * 40 = 7.2 px below, 1.2 * 0.4 * 40 = 19.2 px above.
         let many = seeds((0..200).map(|i| if i % 2 == 0 { 10.0 } else { 50.0 }));
         assert_eq!(disparity_range(&many, 250).unwrap(), DisparityRange::inclusive(2, 70).unwrap());
-        // 20 of them: three times the margins, 18 px and 48 px.
+        // 20 seeds: three times the margins, 18 px and 48 px.
         assert_eq!(disparity_range(&many[..20], 25).unwrap(), DisparityRange::inclusive(-8, 98).unwrap());
-        // A plane at -7.5: 3 px on both sides, to whole pixels.
+        // A plane at -7.5 px: 3 px on both sides, rounded outwards to whole pixels.
         let plane = seeds([-7.5; 20]);
         assert_eq!(disparity_range(&plane, 20).unwrap(), DisparityRange::inclusive(-11, -4).unwrap());
     }

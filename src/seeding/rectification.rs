@@ -1,4 +1,5 @@
-//! Whether corresponding points lie in the same row, and if not, why.
+//! Diagnosis of rectification: whether corresponding points lie in the same row, and if not, by how much the views are
+//! shifted, rotated and scaled.
 
 use std::fmt;
 
@@ -7,59 +8,61 @@ use glam::{DMat3, DVec3};
 use super::brightness::median;
 use crate::matching::Seed;
 
-/// Seeds on which candidate fits are tried.
+/// Number of seeds on which candidate fits are tested, the most confident ones.
 const TRIED: usize = 1000;
-/// Candidate fits.
+/// Number of candidate fits.
 const FITS: usize = 1000;
-/// A row this close to the fit agrees with it, in pixels: features are located to about half a pixel.
+/// Largest row error of an inlier, in pixels: features are located to about half a pixel.
 const AGREEMENT: f64 = 1.5;
-/// Seeds, and the share of all seeds, that must agree with a fit. Chance lets about one seed in a hundred agree.
+/// Smallest number of inliers, and their smallest share of all seeds. By chance about one seed in a hundred is an
+/// inlier.
 const NEEDED: (usize, f64) = (15, 0.2);
-/// Steps of the robust fit, of which the last ones change nothing any more.
+/// Number of steps of the robust fit; the last ones no longer change it.
 const STEPS: usize = 10;
-/// Rows that correspond to this many pixels anywhere in the picture count as rectified.
+/// Largest row difference anywhere in the picture that counts as rectified, in pixels.
 const TOLERANCE: f64 = 1.5;
 
-/// What is known about the rows.
+/// Whether a pair is rectified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Corresponding points lie in the same row.
     Rectified,
-    /// They do not: a search along rows would find nothing but noise.
+    /// Corresponding points lie in different rows: a search along rows would find nothing but noise.
     NotRectified,
     /// Too few seeds agree with each other.
     Unknown,
 }
 
-/// The rows of one view against those of the other.
+/// The similarity between the rows of the two views.
 ///
-/// The figures are the similarity that turns the left view's rows into the right view's, seen from midway between the
-/// two: exchanging the views negates offset and rotation and inverts the scale.
+/// The figures describe the map from the left view's rows to the right view's, seen from midway between the two:
+/// exchanging the views negates offset and rotation and inverts the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectification {
-    /// What follows from the figures.
+    /// The verdict from the figures below.
     pub verdict: Verdict,
     /// Right row minus left row at the centre of the picture, in pixels.
     pub offset: f32,
-    /// How far the right view is turned against the left, in degrees, clockwise on the screen.
+    /// Rotation of the right view against the left, in degrees, clockwise on the screen.
     pub rotation: f32,
-    /// Vertical size of things in the right view by that in the left.
+    /// Vertical size of an object in the right view divided by that in the left view.
     pub scale: f32,
-    /// How far rows lie from this fit, in pixels, robust standard deviation of the seeds that agree with it.
+    /// Robust standard deviation of the inliers' rows from the fit, in pixels.
     pub residual: f32,
-    /// The largest difference of rows that the fit has in the picture, in pixels.
+    /// Largest row difference of the fit anywhere in the picture, in pixels.
     pub largest: f32,
-    /// Seeds that agree with the fit.
+    /// Number of inliers, seeds that agree with the fit.
     pub agreeing: usize,
-    /// All seeds.
+    /// Number of all seeds.
     pub seeds: usize,
 }
 
 impl Rectification {
-    /// From seeds that were found without any demand on their rows, the most confident first.
+    /// Fits the similarity to seeds matched in any row, the most confident first; `size` is width and height of the
+    /// views, in pixels.
     ///
-    /// Random consensus (Fischler and Bolles 1981) with a fixed sequence, then reweighted least squares (Tukey's
-    /// biweight); the same seeds give the same figures.
+    /// Random sample consensus (Fischler and Bolles 1981) with a fixed random sequence, then reweighted least squares
+    /// (Tukey's biweight); the same seeds give the same figures.
     pub fn new(seeds: &[Seed], size: (u32, u32)) -> Self {
         let points: Vec<Point> = seeds.iter().map(|seed| Point::new(seed, size)).collect();
         let fit = consensus(&points[..points.len().min(TRIED)]).and_then(|fit| refined(fit, &points));
@@ -128,10 +131,12 @@ impl fmt::Display for Rectification {
     }
 }
 
-/// Midway between the two views' points, from the centre of the picture, and the difference of rows.
+/// A seed as a sample of the fit.
 #[derive(Clone, Copy)]
 struct Point {
+    /// `(1, x, y)`, with the midpoint of the two views' positions relative to the picture centre, in pixels.
     at: DVec3,
+    /// Row difference, in pixels.
     dy: f64,
 }
 
@@ -143,12 +148,12 @@ impl Point {
     }
 }
 
-/// dy = offset + a x + b y.
+/// Coefficients `(offset, a, b)` of dy = offset + a x + b y.
 #[derive(Clone, Copy, Debug)]
 struct Fit(DVec3);
 
 impl Fit {
-    /// The least squares of weighted points; none where they do not span the picture.
+    /// Weighted least-squares fit; `None` if the points lie on a line.
     fn least_squares(points: impl Iterator<Item = (Point, f64)>) -> Option<Self> {
         let (mut normal, mut moment) = (DMat3::ZERO, DVec3::ZERO);
         for (point, weight) in points {
@@ -173,8 +178,8 @@ impl Fit {
         self.0.x.abs() + self.0.y.abs() * x + self.0.z.abs() * y
     }
 
-    /// Rotation in degrees and scale. With points as complex numbers, right = w left, the difference of the two is
-    /// z = 2 (w - 1) / (w + 1) times what lies midway; its real part is b and its imaginary part a.
+    /// Rotation in degrees, and scale. With points as complex numbers and right = w left, the difference of the two is
+    /// z = 2 (w - 1) / (w + 1) times their midpoint; the real part of z is b and its imaginary part is a.
     fn similarity(&self) -> (f64, f64) {
         let (a, b) = (self.0.y, self.0.z);
         let rotation = a.atan2(2.0 + b) - (-a).atan2(2.0 - b);
@@ -182,14 +187,14 @@ impl Fit {
     }
 }
 
-/// The fit through three points with which most others agree.
+/// The fit through three points that has the most inliers.
 fn consensus(points: &[Point]) -> Option<Fit> {
     if points.len() < 3 {
         return None;
     }
     let mut state = 1u64;
     let mut pick = || {
-        // Knuth's MMIX generator; its upper bits are the good ones.
+        // Knuth's MMIX generator; only its upper bits are random enough.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         points[(state >> 33) as usize % points.len()]
     };
@@ -205,7 +210,7 @@ fn consensus(points: &[Point]) -> Option<Fit> {
     best.map(|(_, fit)| fit)
 }
 
-/// Reweighted least squares from a first fit.
+/// Reweighted least squares, starting from a first fit.
 fn refined(mut fit: Fit, points: &[Point]) -> Option<Fit> {
     for _ in 0..STEPS {
         fit = Fit::least_squares(points.iter().map(|&point| {
@@ -222,8 +227,8 @@ mod tests {
 
     const SIZE: (u32, u32) = (641, 481);
 
-    /// Seeds of a scene of many depths whose right view is turned, scaled and shifted about the picture's centre; every
-    /// third is wrong.
+    /// Seeds of a scene of many depths whose right view is rotated, scaled and shifted about the picture's centre;
+    /// every third seed is wrong.
     fn seeds(degrees: f32, scale: f32, offset: f32) -> Vec<Seed> {
         let (sin, cos) = degrees.to_radians().sin_cos();
         (0..120)

@@ -1,24 +1,24 @@
-//! Which seeds their neighbours confirm.
+//! Support of seeds by their neighbours.
 
 use rayon::prelude::*;
 
 use crate::matching::Seed;
 
-/// Neighbours that are asked.
+/// Number of nearest neighbours that are compared with a seed.
 const NEIGHBOURS: usize = 6;
-/// Neighbours that have to agree.
+/// Number of neighbours that have to agree.
 const AGREEING: usize = 2;
-/// The largest change of a disparity per pixel of distance between neighbours on one surface: far below the limit of
-/// human vision, 1 (Pollard, Mayhew, Frisby: 'PMF', Perception 14, 1985), as most surfaces of a scene are.
+/// Disparity gradient limit: largest change of disparity per pixel of distance between neighbours on one surface. It is
+/// far below the limit of human vision, 1 (Pollard, Mayhew, Frisby: 'PMF', Perception 14, 1985), as are most surfaces.
 pub(crate) const GRADIENT: f32 = 0.15;
-/// What a disparity may differ at no distance, in pixels.
+/// Tolerance of disparity and row at distance 0, in pixels.
 pub(crate) const SLACK: f32 = 1.0;
 
 /// The seeds that agree with at least two of their six nearest neighbours, in their order.
 ///
-/// A wrong match lands anywhere in its row, so it takes a conspiracy to confirm one; what a right match stands on is
-/// mostly large enough to bear another. Measured on nine scenes, 2 % of the seeds are left out; on the largest scene 65
-/// of the 84 left out, and 15 of the 3,119 kept, are wrong by more than 3 px.
+/// A wrong match lands anywhere in its row, so neighbours rarely support it by chance; the surface of a right match is
+/// mostly large enough to bear others. On nine scenes 2 % of the seeds are dropped; on the largest scene 65 of the 84
+/// dropped seeds, and 15 of the 3,119 kept ones, are wrong by more than 3 px.
 pub(super) fn supported(seeds: &[Seed]) -> Vec<Seed> {
     seeds.par_iter().enumerate().filter(|&(i, seed)| is_supported(seeds, i, seed)).map(|(_, seed)| *seed).collect()
 }
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn two_of_six_neighbours_must_agree() {
-        // At 10 px of distance 2.5 px are allowed, at 20 px 4 px.
+        // At a distance of 10 px a difference of 2.5 px is allowed, at 20 px one of 4 px.
         let seeds = [seed(0.0, 7.0, 0.0), seed(10.0, 9.5, 0.0), seed(20.0, 11.0, 0.0)];
         assert_eq!(supported(&seeds).len(), 3);
         assert_eq!(supported(&seeds[..2]).len(), 0, "one neighbour is not enough");

@@ -1,4 +1,4 @@
-//! How far the neighbours of a match agree with it.
+//! Support of a match by its neighbours.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,12 @@ use crate::{
     seeding::{GRADIENT, SLACK},
 };
 
-/// Neighbours that are asked.
+/// Number of nearest neighbours that can support a seed.
 const NEIGHBOURS: usize = 8;
-/// By seed the share of its eight nearest neighbours that agree with it. Those further away than `reach` do not, nor do
-/// those at the same place, which are other detections of the same thing.
+
+/// For each seed the share, 0 to 1, of its eight nearest neighbours that agree with it in disparity and row. Neighbours
+/// further away than `reach` pixels do not count, nor do seeds at the same position, which are other detections of the
+/// same structure.
 pub(super) fn agreement(seeds: &[Seed], reach: f32) -> Vec<f32> {
     seeds.par_iter().map(|seed| share(seeds, seed, reach)).collect()
 }
@@ -18,7 +20,7 @@ pub(super) fn agreement(seeds: &[Seed], reach: f32) -> Vec<f32> {
 fn share(seeds: &[Seed], seed: &Seed, reach: f32) -> f32 {
     let distance = |other: &Seed| (other.x - seed.x).hypot(other.y - seed.y);
     let mut nearest: Vec<(f32, usize)> = (0..).zip(seeds).map(|(i, other)| (distance(other), i)).collect();
-    // A window moved by two pixels still sees mostly the same.
+    // Windows two pixels apart still show mostly the same pixels.
     nearest.retain(|&(distance, _)| distance > 2.0 && distance <= reach);
     let order = |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
     if nearest.len() > NEIGHBOURS {
@@ -39,7 +41,8 @@ mod tests {
     #[test]
     fn by_hand() {
         let seed = |x, disparity, dy| Seed { x, y: 5.0, disparity, dy, confidence: 0.5 };
-        // At 10 px 2.5 px are allowed; the third is the first again, the fourth too far, the last in another row.
+        // At a distance of 10 px a difference of 2.5 px is allowed; the third seed is a second detection of the first,
+        // the fourth is too far away, the last one lies in another row.
         let seeds =
             [seed(0.0, 7.0, 0.0), seed(10.0, 9.5, 0.0), seed(1.0, 7.2, 0.0), seed(90.0, 7.0, 0.0), seed(5.0, 7.0, 3.0)];
         assert_eq!(agreement(&seeds, 40.0), [0.125, 0.25, 0.125, 0.0, 0.0]);

@@ -1,11 +1,11 @@
-//! The second view turned and scaled like the first, so that what is upright in one is upright in the other, and rows
-//! correspond where the views are those of a rectified pair.
+//! Alignment: rotates and scales the second view like the first, so that upright descriptors match, and rows correspond
+//! if the views are those of a rectified pair.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::{Detecting, MAX_DY, View};
+use super::{DetectorCache, MAX_DY, View};
 use crate::{
     error::Result,
     features::{Feature, FeatureConfig},
@@ -15,48 +15,49 @@ use crate::{
     seeding::{Rectification, Verdict},
 };
 
-/// Times that the second view is turned, each time by what is still missing.
+/// Largest number of corrections of the alignment, each by the remaining similarity.
 const ROUNDS: usize = 4;
-/// Rows of a view that was turned are corrected until they differ by no more than this, in pixels: refinement along rows
-/// keeps what they are off.
+/// An aligned view is corrected until rows differ by at most this, in pixels: refinement along rows keeps the
+/// difference.
 const EXACT: f32 = 0.25;
-/// Matches whose orientations differ by so much less or more than the others' show another turn.
+/// Largest deviation of a match's rotation from the common rotation, in radians.
 const SAME_TURN: f64 = PI / 18.0;
-/// The same of the natural logarithm of their scales.
+/// Largest deviation of the natural logarithm of a match's scale ratio from the common one.
 const SAME_SCALE: f64 = 0.3;
-/// Matches that have to show the same turn and scale.
+/// Smallest number of matches with a common rotation and scale.
 const NEEDED: usize = 10;
 
-/// Of matches that agree with a fit, the least share that lies in equal rows where these correspond.
+/// Smallest ratio of the matches in equal rows to the matches that agree with a fit, for rows to count as
+/// corresponding.
 const LEVEL: f64 = 0.9;
 
-/// The second view as the first one's camera would have it.
+/// The second view, rotated and scaled like the first.
 pub(super) struct Aligned {
     pub(super) view: View,
-    /// From the second view's pixels to those of `view`.
+    /// Map from pixels of the second view to pixels of `view`.
     pub(super) map: DAffine2,
-    /// Whether rows correspond now. Never of a plane or a scene seen from elsewhere.
+    /// Whether rows correspond after the alignment; false for a plane seen obliquely or a scene seen from elsewhere.
     pub(super) rectified: bool,
 }
 
-/// Turns and scales the second view by what matches show, over and over until rows correspond.
+/// Rotates and scales the second view by the similarity that matches show, repeatedly, until rows correspond.
 ///
-/// Upright points tell small turns and all scales by their rows, which depth does not move ([`Rectification`]); where they
-/// tell nothing, points with orientations are asked. Where rows do not correspond in the end, the views stay turned
-/// alike as far as is known.
+/// Upright features measure small rotations and all scales by their rows, which do not depend on depth
+/// ([`Rectification`]); if they match too rarely, features with orientations are matched once. If rows do not
+/// correspond in the end, the last alignment is kept.
 pub(super) async fn align(
-    detecting: &mut Detecting<'_>,
+    detectors: &mut DetectorCache<'_>,
     first: &View,
     second: &Luma,
     features: &FeatureConfig,
     matching: &MatchConfig,
 ) -> Result<Aligned> {
     let mut aligned = Aligned {
-        view: View::new(detecting, second.clone(), features).await?,
+        view: View::new(detectors, second.clone(), features).await?,
         map: DAffine2::IDENTITY,
         rectified: false,
     };
-    let mut asked_orientations = false;
+    let mut tried_orientations = false;
     for round in 0..=ROUNDS {
         let matches = match_features(&first.features, &aligned.view.features, matching)?;
         let seeds: Vec<Seed> =
@@ -78,34 +79,34 @@ pub(super) async fn align(
                 dy: rows.offset.into(),
             };
             similarity.undone(centre(&first.luma), centre(&first.luma)) * aligned.map
-        } else if asked_orientations {
+        } else if tried_orientations {
             break;
         } else {
-            asked_orientations = true;
+            tried_orientations = true;
             let oriented = FeatureConfig { upright: false, ..features.clone() };
             let views =
-                [detecting.features(&first.luma, &oriented).await?, detecting.features(second, &oriented).await?];
+                [detectors.features(&first.luma, &oriented).await?, detectors.features(second, &oriented).await?];
             let matches = match_features(&views[0], &views[1], matching)?;
             let centres = [centre(&first.luma), centre(second)];
             let Some(similarity) = Similarity::shown([&views[0], &views[1]], &matches, centres) else { break };
             similarity.undone(centres[0], centres[1])
         };
-        aligned = Aligned { rectified: false, ..turned(detecting, &first.luma, second, missing, features).await? };
+        aligned = Aligned { rectified: false, ..turned(detectors, &first.luma, second, missing, features).await? };
     }
     Ok(aligned)
 }
 
-/// Whether rows that seem not to correspond do so as far as matches show. Where all of these lie close together, a
-/// fit to them turns the rest of the picture by chance; then as many are as close to their own rows as to the fit.
+/// Whether rows correspond although the fit says otherwise. If all matches lie close together, the fit extrapolates a
+/// random rotation to the rest of the picture; then as many matches lie in equal rows as agree with the fit.
 fn are_level(seeds: &[Seed], rows: &Rectification) -> bool {
     let level = seeds.iter().filter(|seed| seed.dy.abs() <= MAX_DY).count();
     rows.verdict != Verdict::Unknown && level as f64 >= LEVEL * rows.agreeing as f64
 }
 
-/// The second view under `map`, in the rows of the first, and as many columns as it has there, up to one width more on
-/// either side.
+/// The second view resampled by `map`, with the rows of the first view and all columns that it covers, limited to one
+/// width of the first view beyond either side.
 async fn turned(
-    detecting: &mut Detecting<'_>,
+    detectors: &mut DetectorCache<'_>,
     first: &Luma,
     second: &Luma,
     map: DAffine2,
@@ -121,7 +122,7 @@ async fn turned(
     let size = ((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
-    Ok(Aligned { view: View::new(detecting, luma, features).await?, map, rectified: false })
+    Ok(Aligned { view: View::new(detectors, luma, features).await?, map, rectified: false })
 }
 
 fn mean(luma: &Luma) -> u8 {
@@ -132,23 +133,25 @@ fn centre(luma: &Luma) -> DVec2 {
     DVec2::new(f64::from(luma.width() - 1), f64::from(luma.height() - 1)) / 2.0
 }
 
-/// How the second view is turned, scaled and moved down against the first, about the centres of both.
+/// Rotation, scale and vertical shift of the second view against the first, about the centres of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Similarity {
-    /// Radians, clockwise on the screen.
+    /// Rotation in radians, clockwise on the screen.
     turn: f64,
+    /// Size of the second view's structures divided by that of the first's.
     scale: f64,
+    /// Shift downwards, in pixels of the first view.
     dy: f64,
 }
 
 impl Similarity {
-    /// What takes the second view's pixels to where the first has the same.
+    /// The inverse similarity, from pixels of the second view to pixels of the first; both centres in pixels.
     fn undone(self, first: DVec2, second: DVec2) -> DAffine2 {
         let linear = DMat2::from_angle(-self.turn) * (1.0 / self.scale);
         DAffine2::from_mat2_translation(linear, first - linear * second - DVec2::new(0.0, self.dy))
     }
 
-    /// What most matches of points with orientations show; `dy` in pixels of the first view.
+    /// The similarity that most matches of features with orientations share; `None` for fewer than [`NEEDED`].
     fn shown([first, second]: [&[Feature]; 2], matches: &[Match], centres: [DVec2; 2]) -> Option<Self> {
         let pairs: Vec<(&Feature, &Feature)> =
             matches.iter().map(|found| (&first[found.left], &second[found.right])).collect();
@@ -174,12 +177,12 @@ impl Similarity {
     }
 }
 
-/// An angle as one from -pi to below pi.
+/// Wraps an angle in radians to the range from -pi to below pi.
 fn half_turn(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The middle value, the upper one of two; none of nothing.
+/// Median, the upper middle value of an even number; `None` without values.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
@@ -204,7 +207,8 @@ mod tests {
             };
             (0..40).map(|i| seed(place(i))).collect()
         };
-        // A degree, seen where it is half a row at most, and all over the picture.
+        // A rotation by one degree: matches near the centre differ by half a row at most, matches all over the picture
+        // by more.
         for (middle, level) in [(30.0, true), (300.0, false)] {
             let seeds = seeds(middle, |x| 0.0175 * x);
             let rows = Rectification::new(&seeds, size);

@@ -1,15 +1,15 @@
-//! Points of one view found in another of which nothing is known: it may be turned, larger or smaller, blurred, noisy, or
-//! of another size.
+//! Wide-baseline matching: interest points of one view matched to a second view without prior knowledge. The second
+//! view may be rotated, scaled, blurred, noisy, or of another size.
 //!
-//! align (turn, scale, rows) -> features and matches of both, also with one of them or both smoothed -> refined along rows
-//! from either view -> confirmed by their neighbours. Pictures of one size share a detector.
+//! align (rotation, scale, rows) -> detect and match features, also with one view or both smoothed -> refine along
+//! rows, from either view -> keep matches that their neighbours support. Pictures of one size share a detector.
 //!
-//! What presupposes the rows of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], is used only where rows
-//! were found to correspond after the views were turned alike.
+//! Constraints of a rectified pair, [`MatchConfig::max_dy`] and [`Rows::Equal`], apply only if rows were found to
+//! correspond after the alignment.
 
 mod agreement;
 mod align;
-mod detecting;
+mod detector_cache;
 
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
@@ -22,21 +22,22 @@ use crate::{
     image::Luma,
     matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
 };
-use detecting::Detecting;
+use detector_cache::DetectorCache;
 
-/// How points are found and matched.
+/// Parameters of [`match_views`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct WideBaselineConfig {
-    /// How interest points are found and described.
+    /// Parameters of the interest point detector and descriptor.
     pub features: FeatureConfig,
-    /// How they are matched. Its `max_dy` is set to 1.5 px where rows turn out to correspond.
+    /// Parameters of descriptor matching. `max_dy` is set to 1.5 px if rows correspond after the alignment.
     pub matching: MatchConfig,
-    /// Turn, scale and smooth the views so that they become alike. Without it they are matched as they are, in any row.
+    /// Rotate, scale and smooth the views so that they become alike, and keep only matches that their neighbours
+    /// support. Otherwise the views are matched as they are, in any row.
     pub adapt: bool,
 }
 
 impl Default for WideBaselineConfig {
-    /// Weaker points than for seeds: of more matches the best ones are better.
+    /// Accepts weaker points than seeding (threshold 0.00003): the best of more matches are better.
     fn default() -> Self {
         let features = FeatureConfig { threshold: 0.000_03, ..FeatureConfig::default() };
         Self { features, matching: MatchConfig::default(), adapt: true }
@@ -44,94 +45,95 @@ impl Default for WideBaselineConfig {
 }
 
 impl WideBaselineConfig {
-    /// Refuses what no step could work with.
+    /// Checks all parameters.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] with the accepted range.
+    /// [`crate::Error::Parameter`] with the accepted range, for a value outside it.
     pub fn validate(&self) -> Result<()> {
         self.features.validate()?;
         self.matching.validate()
     }
 }
 
-/// A point of the first view and where the second shows it.
+/// A match between two views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WideBaselineMatch {
-    /// Place in the first view, in pixels.
+    /// Position in the first view, in pixels.
     pub first: DVec2,
-    /// Place in the second view, in pixels.
+    /// Position in the second view, in pixels.
     pub second: DVec2,
-    /// 0 to 1.
+    /// Confidence of the match, 0 to 1.
     pub confidence: f32,
-    /// The indices of the features that were matched.
+    /// Indices of the matched features in [`WideBaselineMatches::features`], first view and second view.
     pub points: [usize; 2],
 }
 
-/// What was found.
+/// Result of [`match_views`].
 #[derive(Clone, Debug)]
-pub struct Sparse {
-    /// Interest points of both views, in their pixels. Scales and directions of the second are those of the picture in
-    /// which they were found.
+pub struct WideBaselineMatches {
+    /// Interest points of both views. Positions and scales are in pixels of their own view; orientations and
+    /// descriptors of the second view are those of the aligned picture.
     pub features: [Vec<Feature>; 2],
     /// Matches, the most confident first.
     pub matches: Vec<WideBaselineMatch>,
-    /// From the second view's pixels to those of the picture that was made of it to be like the first.
+    /// Map from pixels of the second view to pixels of its aligned picture, rotated and scaled like the first view.
     pub alignment: DAffine2,
-    /// Whether rows correspond after that.
+    /// Whether rows correspond after the alignment.
     pub rectified: bool,
-    /// Standard deviations, in pixels, of the Gaussians that both pictures were smoothed by.
+    /// Standard deviations of the Gaussians that smoothed the first and the second view, in pixels; 0 for none.
     pub smoothing: [f64; 2],
 }
 
-/// Standard deviations, in pixels, of the Gaussians that are tried where it is not known which view is blurred or noisy:
-/// on one of them, as long as more smoothing brings no fewer matches, and the first one on both. 0, for none, leads.
+/// Standard deviations of the Gaussians that are tried, in pixels, since it is unknown which view is blurred or noisy:
+/// on one view, as long as more smoothing does not lose matches, and the first Gaussian on both views. 0 stands for
+/// none.
 const SIGMAS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
-/// Smoothing must bring so many times the matches to be better than none: it takes away details.
+/// Smoothing must yield at least this factor more matches to be chosen, since it removes detail.
 const CLEARLY_MORE: f64 = 1.25;
-/// Rows of features in corresponding rows differ by so much at most, in pixels.
+/// Largest row difference of features in corresponding rows, in pixels.
 const MAX_DY: f32 = 1.5;
-/// What a point may be off after it was sought in the other view and back, in pixels.
+/// Left-right consistency: largest distance of a point after it was matched to the other view and back, in pixels.
 const MAX_RETURN: f32 = 1.0;
-/// Neighbours confirm a match up to this part of the first view's larger side.
+/// Radius in which neighbours support a match, as a share of the first view's larger side.
 const NEIGHBOURHOOD: f32 = 1.0 / 12.0;
-/// The least share of its neighbours that agree with a match.
+/// Smallest share of the neighbours that must agree with a match.
 const LEAST_AGREEMENT: f32 = 0.375;
 
 /// A picture and its features.
 struct View {
     luma: Luma,
     features: Vec<Feature>,
-    /// Standard deviation, in pixels, of the Gaussian that it was smoothed by.
+    /// Standard deviation of the Gaussian that smoothed the picture, in pixels; 0 for none.
     sigma: f64,
 }
 
 impl View {
-    /// A picture as it is.
-    async fn new(detecting: &mut Detecting<'_>, luma: Luma, config: &FeatureConfig) -> Result<Self> {
-        let features = detecting.features(&luma, config).await?;
+    /// The features of an unsmoothed picture.
+    async fn new(detectors: &mut DetectorCache<'_>, luma: Luma, config: &FeatureConfig) -> Result<Self> {
+        let features = detectors.features(&luma, config).await?;
         Ok(Self { luma, features, sigma: 0.0 })
     }
 }
 
-/// A view, and the same smoothed by as many of [`SIGMAS`] as were asked for.
-struct Smoothed(Vec<View>);
+/// A view smoothed by the first [`SIGMAS`], computed on demand.
+struct SmoothedViews(Vec<View>);
 
-impl Smoothed {
-    /// The view by the Gaussian at `index` of [`SIGMAS`].
-    async fn by(&mut self, index: usize, detecting: &mut Detecting<'_>, config: &FeatureConfig) -> Result<&View> {
+impl SmoothedViews {
+    /// The view smoothed by the Gaussian at `index` of [`SIGMAS`].
+    async fn by(&mut self, index: usize, detectors: &mut DetectorCache<'_>, config: &FeatureConfig) -> Result<&View> {
         while self.0.len() <= index {
             let sigma = SIGMAS[self.0.len()];
             let luma = gaussian(&self.0[0].luma.map(|&grey| [grey]), sigma).map(|&[grey]| grey);
-            self.0.push(View { sigma, ..View::new(detecting, luma, config).await? });
+            self.0.push(View { sigma, ..View::new(detectors, luma, config).await? });
         }
         Ok(&self.0[index])
     }
 }
 
-/// A match's place and the indices of its features.
+/// Position of a match and the indices of its features.
 type Indexed = (Seed, [usize; 2]);
 
-/// Finds the points of `first` in `second`.
+/// Matches the interest points of `first` to `second`. The views may differ in size, rotation, scale and sharpness.
 ///
 /// # Errors
 /// [`crate::Error::Parameter`]; and as [`Backend::features`].
@@ -140,34 +142,34 @@ pub async fn match_views(
     first: &Luma,
     second: &Luma,
     config: &WideBaselineConfig,
-) -> Result<Sparse> {
+) -> Result<WideBaselineMatches> {
     config.validate()?;
     let WideBaselineConfig { features, matching, adapt } = config;
-    let mut detecting = Detecting::new(backend);
-    let first = View::new(&mut detecting, first.clone(), features).await?;
+    let mut detectors = DetectorCache::new(backend);
+    let first = View::new(&mut detectors, first.clone(), features).await?;
     if !adapt {
-        let second = View::new(&mut detecting, second.clone(), features).await?;
+        let second = View::new(&mut detectors, second.clone(), features).await?;
         let found = match_features(&first.features, &second.features, matching)?;
         let seeds = refined(&first, &second, &found, Rows::Matched);
-        return Ok(finished([first, second], seeds, DAffine2::IDENTITY, false));
+        return Ok(in_picture_pixels([first, second], seeds, DAffine2::IDENTITY, false));
     }
 
     let reach = NEIGHBOURHOOD * first.luma.width().max(first.luma.height()) as f32;
-    let mut firsts = Smoothed(vec![first]);
-    // Before the second view is turned, as that has another size then.
-    firsts.by(1, &mut detecting, features).await?;
+    let mut firsts = SmoothedViews(vec![first]);
+    // The first view is smoothed now, while the cached detector has its size: the aligned second view has another.
+    firsts.by(1, &mut detectors, features).await?;
     let align::Aligned { view: second, map, rectified } =
-        align::align(&mut detecting, &firsts.0[0], second, features, matching).await?;
+        align::align(&mut detectors, &firsts.0[0], second, features, matching).await?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
-    let mut seconds = Smoothed(vec![second]);
+    let mut seconds = SmoothedViews(vec![second]);
     let mut found = async |[a, b]: [usize; 2]| -> Result<Vec<Indexed>> {
         let (first, second) =
-            (firsts.by(a, &mut detecting, features).await?, seconds.by(b, &mut detecting, features).await?);
+            (firsts.by(a, &mut detectors, features).await?, seconds.by(b, &mut detectors, features).await?);
         let found = match_features(&first.features, &second.features, &matching)?;
         let mut seeds = refined(first, second, &found, rows);
-        seeds.retain(|(seed, _)| returns(first, second, seed, rows));
-        Ok(confirmed(seeds, reach))
+        seeds.retain(|(seed, _)| is_consistent(first, second, seed, rows));
+        Ok(with_support(seeds, reach))
     };
     let mut chosen = [0, 0];
     let mut seeds = found(chosen).await?;
@@ -194,10 +196,10 @@ pub async fn match_views(
     }
     more_in([1, 1]).await?;
     let views = [firsts.0.swap_remove(chosen[0]), seconds.0.swap_remove(chosen[1])];
-    Ok(finished(views, seeds, map, rectified))
+    Ok(in_picture_pixels(views, seeds, map, rectified))
 }
 
-/// The matches that have a clear place, with the indices of their features.
+/// Matches with a distinct cost minimum, refined to a fraction of a pixel, with the indices of their features.
 fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<Indexed> {
     let refine_one = |found: &Match| {
         let seed = Seed::from_match(&first.features, &second.features, found);
@@ -207,24 +209,25 @@ fn refined(first: &View, second: &View, matches: &[Match], rows: Rows) -> Vec<In
     matches.par_iter().filter_map(refine_one).collect()
 }
 
-/// Half the side of the window that matches are refined by. Where one view has to be smoothed to be like the other, both
-/// show nothing finer than that Gaussian, and it takes a larger window to see as much.
+/// Half the side of the refinement window, in pixels. If one view was smoothed to resemble the other, both lack detail
+/// finer than that Gaussian, and a larger window is needed for the same information.
 fn window(first: &View, second: &View) -> i64 {
     matching::HALF + (first.sigma - second.sigma).abs().round() as i64
 }
 
-/// Whether the window around the place in the second view is found again where it comes from. At the edge of a surface,
-/// or where one view shows what the other hides, it is not.
-fn returns(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
+/// Left-right consistency of a match: whether the window around its position in the second view leads back to the
+/// first. The window is lost at the edge of a surface, or at an occlusion.
+fn is_consistent(first: &View, second: &View, seed: &Seed, rows: Rows) -> bool {
     let there =
         Seed { x: seed.right_x(), y: seed.right_y(), disparity: -seed.disparity, dy: -seed.dy, confidence: 1.0 };
     let back = locate((&second.luma, &first.luma), &there, rows, window(first, second));
-    // Both disparities, whose signs differ: places are on whole pixels, each of its own view.
+    // The two disparities have opposite signs. They are compared instead of positions, which are whole pixels of each
+    // view.
     back.is_some_and(|back| (back.disparity + seed.disparity).abs() <= MAX_RETURN)
 }
 
-/// Those that enough neighbours agree with, as confident as these agree.
-fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
+/// Keeps the matches that enough neighbours agree with, and multiplies their confidence by the share that agrees.
+fn with_support(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
     let places: Vec<Seed> = seeds.iter().map(|(seed, _)| *seed).collect();
     let each = seeds.into_iter().zip(agreement::agreement(&places, reach));
     each.filter(|(_, share)| *share >= LEAST_AGREEMENT)
@@ -232,8 +235,14 @@ fn confirmed(seeds: Vec<Indexed>, reach: f32) -> Vec<Indexed> {
         .collect()
 }
 
-/// What was found in `views`, in the pixels of the pictures; `map` leads from the second one to its view.
-fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rectified: bool) -> Sparse {
+/// Converts features and matches from pixels of the aligned views to pixels of the original pictures; `map` leads from
+/// the second picture to its aligned view.
+fn in_picture_pixels(
+    [first, second]: [View; 2],
+    seeds: Vec<Indexed>,
+    map: DAffine2,
+    rectified: bool,
+) -> WideBaselineMatches {
     let smoothing = [first.sigma, second.sigma];
     let back = map.inverse();
     let place = |x: f32, y: f32| back.transform_point2(DVec2::new(x.into(), y.into()));
@@ -253,7 +262,7 @@ fn finished([first, second]: [View; 2], seeds: Vec<Indexed>, map: DAffine2, rect
         Feature { x: at.x as f32, y: at.y as f32, scale: growth * feature.scale, ..feature }
     };
     let features = [first.features, second.features.into_iter().map(moved).collect()];
-    Sparse { features, matches, alignment: map, rectified, smoothing }
+    WideBaselineMatches { features, matches, alignment: map, rectified, smoothing }
 }
 
 #[cfg(test)]
@@ -266,7 +275,7 @@ mod tests {
         io::Picture,
     };
 
-    /// Blobs of several sizes, everywhere others.
+    /// A picture of random blobs of several sizes.
     fn picture() -> Picture {
         let mut state = 5u32;
         let mut grey = vec![0.0f64; 200 * 160];
@@ -288,8 +297,8 @@ mod tests {
         Picture::new(200, 160, grey.iter().map(|v| [(128.0 + v).clamp(0.0, 255.0) as u8; 4]).collect()).unwrap()
     }
 
-    /// Matches of the picture with itself, changed, and the share that is right within 1.5 px.
-    fn matched(condition: &str, adapt: bool) -> (Sparse, f64) {
+    /// Matches of the picture with its changed copy, and their precision at 1.5 px.
+    fn matched(condition: &str, adapt: bool) -> (WideBaselineMatches, f64) {
         let picture = picture();
         let changed = Changed::by(&[condition.parse().unwrap()], &picture, 1);
         let backend = Backend::open(&DeviceChoice::Cpu).unwrap();

@@ -12,7 +12,7 @@ use std::{
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// The longest that an answer or a state of the page may take; software that plays a GPU on a busy machine is slow.
+/// Timeout of an answer or a state of the page; a software GPU on a busy machine is slow.
 const PATIENCE: Duration = Duration::from_secs(240);
 
 /// A browser with one page.
@@ -22,22 +22,23 @@ pub struct Browser {
     messages: Receiver<Value>,
     last_id: u64,
     session: Option<String>,
-    /// What the page complained about on its console.
+    /// Errors on the console of the page.
     pub complaints: Vec<String>,
-    /// Its profile; gone with it.
+    /// The browser's profile, removed with it.
     _profile: TempDir,
 }
 
 impl Browser {
-    /// Starts the browser with an empty page of `width` x `height`; `HSAD_CHROMIUM` names another one than Debian's.
+    /// Starts the browser with an empty page of `width` x `height` pixels; `HSAD_CHROMIUM` names another browser than
+    /// Debian's.
     pub fn start(width: u32, height: u32) -> Self {
         let chromium = std::env::var("HSAD_CHROMIUM").unwrap_or("chromium".into());
         let profile = tempfile::tempdir().unwrap();
-        // The protocol's pipes are the descriptors 3 and 4.
+        // The protocol uses the file descriptors 3 and 4 as pipes.
         let mut process = Command::new("sh")
             .args(["-c", r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null 2>&1"#, &chromium])
             .args(["--headless=new", "--no-sandbox", "--no-first-run", "--remote-debugging-pipe"])
-            // WebGPU and WebGL on the software driver that comes with Chromium.
+            // WebGPU and WebGL run on Chromium's own software driver.
             .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-unsafe-swiftshader"])
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .stdin(Stdio::piped())
@@ -100,7 +101,7 @@ impl Browser {
         }
     }
 
-    /// The value of an expression, once its promise is kept.
+    /// The value of an expression, after its promise is resolved.
     pub fn evaluate(&mut self, expression: &str) -> Value {
         let params = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
         let mut answer = self.call("Runtime.evaluate", params);
@@ -108,20 +109,20 @@ impl Browser {
         answer["result"]["value"].take()
     }
 
-    /// The numbers in an array that an expression yields, or promises.
+    /// The numbers in the array of an expression, or of its promise.
     pub fn numbers<T: TryFrom<i64>>(&mut self, expression: &str) -> Vec<T> {
         let text = self.evaluate(&format!("Promise.resolve({expression}).then((numbers) => numbers.join())"));
         let number = |text: &str| text.parse::<i64>().ok().and_then(|number| number.try_into().ok()).expect("a number");
         text.as_str().expect("an array").split(',').map(number).collect()
     }
 
-    /// Opens a page and waits until it is in `state`.
+    /// Opens a page and waits for `state`.
     pub fn open(&mut self, url: &str, state: &str) {
         self.call("Page.navigate", json!({ "url": url }));
         self.wait_for(state);
     }
 
-    /// Chooses files for a side, as someone does in a dialog.
+    /// Chooses files for a side, as in the file dialog.
     pub fn choose(&mut self, side: &str, files: &[PathBuf]) {
         let document = self.call("DOM.getDocument", json!({}))["root"]["nodeId"].clone();
         let selector = json!({ "nodeId": document, "selector": format!("#{side} input") });
@@ -129,15 +130,15 @@ impl Browser {
         self.call("DOM.setFileInputFiles", json!({ "files": files, "nodeId": input }));
     }
 
-    /// Ends the process that all GPU work of the browser goes through, as a driver's crash does. It is started again.
+    /// Ends the browser's GPU process, as a driver's crash does. The browser starts it again.
     pub fn crash_gpu(&mut self) {
-        // This is asked of the browser and not of the page.
+        // This call goes to the browser, not to the page.
         let session = self.session.take();
         self.call("Browser.crashGpuProcess", json!({}));
         self.session = session;
     }
 
-    /// Waits until the page is in `state`, and panics where it gets into another end instead.
+    /// Waits until the page is in `state`; panics if the page ends in another state.
     pub fn wait_for(&mut self, state: &str) {
         let start = Instant::now();
         loop {
@@ -152,7 +153,7 @@ impl Browser {
         }
     }
 
-    /// What the page tells in its middle.
+    /// The message in the middle of the page.
     pub fn message(&mut self) -> String {
         self.evaluate("document.getElementById('message').innerText").as_str().unwrap_or_default().into()
     }
@@ -182,7 +183,7 @@ fn from_base64(text: &str) -> Vec<u8> {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // It may have gone by itself.
+        // The browser may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -1,4 +1,4 @@
-//! Picture files that browsers and the library would decode to different bytes, if each did it its own way.
+//! Picture files that browsers and the library decode to different bytes by default.
 
 use std::io::Cursor;
 
@@ -10,12 +10,12 @@ use image::{
 
 const SIZE: (u32, u32) = (24, 16);
 
-/// Files by their names.
+/// All files, with their names.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     let (width, height) = SIZE;
     let picture = Picture::from_fn(width, height, |x, y| [(x * 10) as u8, (y * 15) as u8, (200 - 3 * x) as u8, 255]);
     let grey = GrayAlphaImage::from_fn(width, height, |x, y| LumaA([(7 * x + 3 * y) as u8, (9 * x) as u8]));
-    // Upper bytes that rounding to 8 bits would change.
+    // Values whose upper bytes rounding to 8 bits would change.
     let deep = ImageBuffer::from_fn(width, height, |x, y| Rgb([x, y, x + y].map(|v| (v * 1500 + 255) as u16)));
     vec![
         ("transparent.png", transparent_png(&picture)),
@@ -27,7 +27,7 @@ pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// The picture with every opacity there is.
+/// The picture with pixels of every opacity.
 pub fn transparent_png(picture: &Picture) -> Vec<u8> {
     let pixel = |x, y| {
         let [red, green, blue] = picture.rgb(x, y);

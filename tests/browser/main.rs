@@ -1,7 +1,7 @@
-//! The page in a headless Chromium: it computes the same bytes as the library does here, and says what is wrong with bad
+//! The page in a headless Chromium: it computes the same bytes as the native library, and names what is wrong with bad
 //! input.
 //!
-//! Ignored unless asked for, because it needs a browser: `cargo test --test browser -- --ignored`.
+//! Ignored by default, because it needs a browser: `cargo test --test browser -- --ignored`.
 #![cfg(feature = "cli")]
 
 mod devtools;
@@ -26,7 +26,8 @@ use hsad::{
 };
 use serde_json::json;
 
-/// What tests do in the page; `choose` puts what `files` yields into the input of a side, as if someone had chosen it there.
+/// Helper functions in the page; `choose` puts `files` (promises of files) into the input of a side, as the file dialog
+/// does.
 const HELPERS: &str = r#"
 async function choose(side, files) {
   delete document.body.dataset.state;
@@ -43,7 +44,7 @@ async function view(side, rows = 0, share = 1) {
   canvas.getContext("2d").drawImage(bitmap, 0, rows);
   return new File([await canvas.convertToBlob()], `${side}.png`);
 }
-/** What the cloud's canvas holds. */
+/** The pixels of the cloud's canvas. */
 function pixels() {
   const { gl } = cloud;
   const bytes = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
@@ -65,7 +66,7 @@ struct Server {
 
 impl Server {
     fn start() -> Self {
-        // Any port that is free.
+        // Port 0 stands for any free port.
         let arguments = ["run", "--package", "hsad-web", "--", "0"];
         let mut command = Command::new(env!("CARGO"));
         let command = command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).stderr(Stdio::piped());
@@ -83,13 +84,13 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // It may have gone by itself.
+        // The server may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// One browser and one page for all, because both are slow to begin.
+/// All tests share one browser and one page, because both are slow to start.
 #[test]
 #[ignore = "needs Chromium and builds the page: cargo test --test browser -- --ignored"]
 fn the_page_in_chromium() {
@@ -101,7 +102,7 @@ fn the_page_in_chromium() {
     takes_files_as_the_command_line_does(&mut browser);
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
     if let Some(path) = std::env::var_os("HSAD_SCREENSHOT") {
-        // From a little beside, where depth shows.
+        // The view is a little to the side, where depth is visible.
         browser.evaluate("cloud.look(0.24, 0.13, 1.16); new Promise((drawn) => setTimeout(drawn, 1000))");
         fs::write(path, browser.screenshot()).unwrap();
     }
@@ -197,12 +198,12 @@ fn says_what_is_wrong(browser: &mut Browser) {
         assert!(message.contains(headline) && message.contains(detail), "{act}: {message}");
         assert!(!message.contains("--"), "an option of the command line: {message}");
     }
-    // And after all that it still works.
+    // After all errors the page still works.
     browser.evaluate("choose('right', [view('left'), view('right')])");
     browser.wait_for("done");
 }
 
-/// A match that is still going on must not replace what went wrong since.
+/// A match in progress must not replace the message of a later error.
 fn keeps_an_error_that_came_meanwhile(browser: &mut Browser) {
     choose_preset(browser, "quality");
     browser.evaluate("choose('left', [new File(['not at all'], 'notes.txt')])");
@@ -219,7 +220,7 @@ fn keeps_an_error_that_came_meanwhile(browser: &mut Browser) {
 }
 
 fn survives_the_loss_of_the_gpu(browser: &mut Browser) {
-    // How many pixels of the cloud's canvas are drawn; read before the browser takes them away.
+    // The number of drawn pixels of the cloud's canvas, read before the browser clears it.
     let drawn = "cloud.look(0.24, 0.13, 1.16); cloud.drawNow(0); pixels().filter((_, i) => i % 4 === 3).reduce((a, b) => a + b)";
     let before = browser.evaluate(drawn);
     assert_ne!(before, 0);
@@ -260,7 +261,7 @@ fn draws_pictures_wider_than_a_texture(browser: &mut Browser) {
     assert_eq!(browser.evaluate(&colors(true)), "0,0,255");
 }
 
-/// A panic ends the worker; the next one does the work.
+/// A panic ends the worker; the next worker takes over.
 fn survives_a_panic(browser: &mut Browser, url: &str) {
     browser.open(url, "idle");
     browser.evaluate(

@@ -1,4 +1,4 @@
-//! What cannot be done ends in one line, a code, and no file.
+//! Bad input ends with one line on stderr, an exit code, and no file.
 
 use std::{fs, path::Path};
 
@@ -10,7 +10,7 @@ use crate::{
     pictures::cmyk_tiff,
 };
 
-/// `hsad match` of two files, which has to fail and leave nothing.
+/// Runs `hsad match` on two files, which must fail and write nothing.
 #[track_caller]
 fn pair_fails(left: &Path, right: &Path, args: &[&str], code: i32, expected: &str) {
     let temporary = folder();
@@ -113,7 +113,7 @@ fn folders_that_cannot_be_written() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let file = temporary.path().join("file");
     fs::write(&file, "mine").unwrap();
-    // Noticed before the pictures are: there are none.
+    // The output folder is checked before the pictures, which do not exist.
     let missing = temporary.path().join("missing.png");
     fails(match_on_cpu(&missing, &missing, &file), 1, "the results need a folder");
     fails(match_on_cpu(&missing, &missing, &file.join("below")), 1, "the folder cannot be created");
@@ -129,7 +129,7 @@ fn folders_that_cannot_be_written() {
     assert_eq!(names(temporary.path()), ["file"]);
     assert_eq!(fs::read(&file).unwrap(), b"mine");
 
-    // One of the files cannot be replaced: none appears, and the older ones stay.
+    // One file cannot be replaced: no new file appears, and the older files stay.
     let out = temporary.path().join("out");
     fs::create_dir_all(out.join("report.json")).unwrap();
     fs::write(out.join("disparity.pfm"), "old").unwrap();
@@ -159,7 +159,7 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
     grey_png(&lower, &Plane::from_fn(340, 255, |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 6)));
     pair_fails(&left, &lower, &[], 3, "rectify it first, or search along rows all the same with --force");
 
-    // A quarter turn, which only oriented points recognise.
+    // A rotation by 90 degrees, which only features with orientations match.
     let [square, turned] = ["square.png", "turned.png"].map(|name| temporary.path().join(name));
     grey_png(&square, &Plane::from_fn(255, 255, |x, y| picture.get(x, y)));
     grey_png(&turned, &Plane::from_fn(255, 255, |x, y| picture.get(y, 254 - x)));

@@ -1,4 +1,4 @@
-//! What the tests of all subcommands share.
+//! Helpers shared by the tests of all subcommands.
 
 use std::{
     fs,
@@ -53,7 +53,7 @@ pub fn grey_png(path: &Path, picture: &Plane<u8>) {
     fs::write(path, bytes).expect("a file in a temporary folder");
 }
 
-/// Values without any structure, others for another `seed`.
+/// Random grey values, different for each `seed`.
 pub fn noise(width: u32, height: u32, seed: u32) -> Plane<u8> {
     let mut state = seed;
     Plane::from_fn(width, height, |_, _| {
@@ -78,8 +78,7 @@ pub fn report(folder: &Path) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Runs `command`, which has to end with `code`, nothing on stdout and one line on stderr that
-/// holds `expected`.
+/// Runs `command`, which must end with `code`, nothing on stdout, and one line on stderr that contains `expected`.
 #[track_caller]
 pub fn fails(mut command: Command, code: i32, expected: &str) {
     let output = command.output().expect("the program starts");

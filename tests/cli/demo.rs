@@ -12,7 +12,7 @@ use crate::common::{folder, hsad, hsad_without_driver, names, report, scene};
 
 #[test]
 fn works_anywhere_and_tells_its_accuracy() {
-    // In a folder that knows nothing of the project.
+    // The current folder is outside of the project.
     let temporary = folder();
     let told = contains("non-occluded").and(contains("Look at hsad-demo/demo.png"));
     hsad().arg("demo").current_dir(temporary.path()).assert().success().stdout(told);

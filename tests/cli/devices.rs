@@ -33,7 +33,7 @@ fn nothing_is_said_where_there_is_no_desktop() {
 
 #[test]
 fn a_closed_pipe_is_no_failure() {
-    // The reader is gone before anything is printed.
+    // The reader closes the pipe before anything is printed.
     let mut child = Command::new(assert_cmd::cargo::cargo_bin!("hsad"))
         .args(["features", concat!(env!("CARGO_MANIFEST_DIR"), "/data/planes/left.png"), "--device", "cpu", "-q"])
         .stdout(Stdio::piped())

@@ -18,10 +18,10 @@ use crate::common::{fails, folder, grey_png, hsad, names, noise, scene as shippe
 
 const SIZE: (u32, u32) = (64, 48);
 
-/// How far the right view of a scene is shifted, in pixels.
+/// Shift of a scene's right view, in pixels.
 const SHIFT: u32 = 4;
 
-/// `hsad eval dense` on the CPU, in few disparities.
+/// `hsad eval dense` on the CPU, over few disparities.
 fn eval(scenes: &[&Path]) -> Command {
     let mut command = hsad();
     command.args(["eval", "dense"]).args(scenes);
@@ -29,7 +29,7 @@ fn eval(scenes: &[&Path]) -> Command {
     command
 }
 
-/// Views of noise, [`SHIFT`] apart.
+/// Writes two views of noise, shifted by [`SHIFT`].
 fn views(left: &Path, right: &Path, seed: u32) {
     let picture = noise(SIZE.0 + SHIFT, SIZE.1, seed);
     let part = |start: u32| Plane::from_fn(SIZE.0, SIZE.1, |x, y| picture.get(x + start, y));
@@ -59,7 +59,7 @@ fn write_png(path: &Path, map: &DisparityMap) {
     fs::write(path, bytes).unwrap();
 }
 
-/// A scene as those in data/. The right view shows nothing of the first columns.
+/// A scene in the layout of data/. The right view does not show the first columns.
 fn scene(parent: &Path, name: &str) -> PathBuf {
     let path = parent.join(name);
     views(&path.join("left.png"), &path.join("right.png"), name.len() as u32);
@@ -114,7 +114,7 @@ fn scores_a_folder_of_scenes_in_every_form() {
     let found = map.data().iter().filter(|&&d| d != NONE).count();
     assert_eq!(report["results"][1]["all"]["estimated"], found);
     assert_eq!(load::load(&out.join("b/figure.png")).unwrap().size(), (4 * SIZE.0 + 3 * 8, SIZE.1));
-    // Nothing found and hidden from the right view: a third of white.
+    // Occluded pixels without an estimate are a third of white.
     let errors = load::load(&out.join("b/error.png")).unwrap();
     assert_eq!((map.get(0, 0), errors.rgb(0, 0)), (NONE, [85; 3]));
     assert_eq!(errors.rgb(SIZE.0 / 2, SIZE.1 / 2), [44, 123, 182]);
@@ -144,7 +144,7 @@ fn knows_the_layouts_of_middlebury_and_kitti() {
     eval(&[&path("training")]).arg("--csv").arg(&csv).assert().success();
     assert_eq!(column(&csv, "scene").len(), 6);
 
-    // KITTI has no truth for the right view.
+    // KITTI has no ground truth for the right view.
     let mut command = eval(&[&frame]);
     command.args(["--reference", "right"]);
     fails(command, 1, "no truth for the right view");
@@ -192,7 +192,7 @@ fn maps_of_other_programs_are_scored_beside_ours() {
     assert_eq!(all("a99_px"), ["0", "5", ""]);
     assert_eq!(names(&out.join("a/off")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
 
-    // Alone, nothing is matched.
+    // With --given-only, nothing is matched.
     let report = path("all.json");
     let mut command = eval(&[&scenes[0]]);
     command.arg(&others[0]).args(["--given-only", "--json"]).arg(&report).assert().success();
@@ -228,7 +228,7 @@ fn what_fails_is_told_and_loses_nothing_else() {
     assert_eq!(json(&report)["failed"].as_array().unwrap().len(), 5);
 }
 
-/// Also one without its left view, among others.
+/// A scene without its left view fails, too, and the others are scored.
 #[test]
 fn half_a_scene_is_named() {
     let temporary = folder();
@@ -303,16 +303,16 @@ fn finished_scenes_are_kept_until_something_changes() {
     assert_eq!(kept, None);
     assert_eq!(run(&[]), (Some("4 of 4".into()), first.clone()));
     assert_eq!(run(&["--fresh"]).0, None);
-    // An option that matters for what is matched only.
+    // An option that matters only for this program's own maps.
     assert_eq!(run(&["--uniqueness", "20"]).0, Some("2 of 4".into()));
     assert_eq!(run(&["--uniqueness", "20"]).0, Some("4 of 4".into()));
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
-    // A picture, and with it all methods of its scene.
+    // A changed picture invalidates all methods of its scene.
     views(&scenes[0].join("left.png"), &path("unused.png"), 77);
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
     write_pfm(&path("maps/bb.pfm"), &Plane::filled(SIZE.0, SIZE.1, 0));
     assert_eq!(run(&[]).0, Some("3 of 4".into()));
-    // What is kept is no longer whole, or was changed by hand.
+    // A saved result with a missing file, and one changed by hand.
     fs::remove_file(out.join("a/error.png")).unwrap();
     fs::write(out.join("bb/result.json"), "{}").unwrap();
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
@@ -324,7 +324,7 @@ fn what_cannot_be_kept_is_told() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);
     let scene = scene(&path(""), "a");
-    // Where the folder of the results has to be there is a file.
+    // A file stands in place of the scene's output folder.
     fs::create_dir(path("out")).unwrap();
     fs::write(path("out/a"), "mine").unwrap();
     let output = eval(&[&scene]).arg("-o").arg(path("out")).output().unwrap();
@@ -341,7 +341,7 @@ fn an_interruption_keeps_what_is_finished() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);
     let small = scene(&path(""), "small");
-    // The twins take a minute for this one.
+    // The CPU twins take a minute for this scene.
     let large = path("vast");
     fs::create_dir(&large).unwrap();
     for name in ["left.png", "right.png"] {
@@ -359,7 +359,7 @@ fn an_interruption_keeps_what_is_finished() {
         thread::sleep(Duration::from_millis(5));
     }
     thread::sleep(Duration::from_millis(200));
-    // What runs in the background of a shell ignores SIGINT, but not this.
+    // A background job of a shell ignores SIGINT, but not SIGTERM.
     assert!(process::Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
     assert_eq!(run.wait().unwrap().code(), Some(130));
     assert_eq!(names(&out), ["small"]);
@@ -372,6 +372,6 @@ fn quiet_prints_nothing() {
     let report = temporary.path().join("report.json");
     let mut command = eval(&[shipped("planes", "").as_path()]);
     command.args(["-q", "--json"]).arg(&report).assert().success().stdout("").stderr("");
-    // The range that was named misses the scene, which is told in the file all the same.
+    // The range of --disparities misses the scene; the warning is in the file even with --quiet.
     assert!(!json(&report)["results"][0]["warnings"].as_array().unwrap().is_empty());
 }

@@ -32,13 +32,13 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// The only pair's figures after `command`.
+/// Runs `command` and returns the figures of its only pair.
 fn figures(mut command: Command, json_file: &Path) -> Value {
     command.arg("--json").arg(json_file).arg("-q").assert().success().stdout("").stderr("");
     json(json_file)["pairs"][0].clone()
 }
 
-/// Right matches of the shipped scene, each `off` px to the right of its true place, as lines of CSV without a header.
+/// Matches of the shipped scene, each `off` px to the right of its true position, as lines of CSV without a header.
 fn matches(off: f32) -> Vec<String> {
     let truth = pfm::read(&scene("planes").join("disp_left.pfm")).unwrap();
     let shown = load::load(&scene("planes").join("nonocc.png")).unwrap().luma();
@@ -110,7 +110,7 @@ fn right_matches_of_another_program_score_1_and_wrong_ones_0() {
         }
     }
 
-    // The confident half is right, and its points are known in both views.
+    // The more confident half is right, with points in both views.
     let [right, wrong] = [matches(0.0), matches(9.0)];
     let lines = right.iter().map(|line| format!("{line},0.9")).chain(wrong.iter().map(|line| format!("{line},0.1")));
     write_lines(&file("m.csv"), "x1,y1,x2,y2,confidence", &lines.collect::<Vec<_>>());
@@ -235,7 +235,7 @@ fn bad_options_are_named() {
 #[test]
 fn what_cannot_be_kept_is_told() {
     let temporary = folder();
-    // Where the folder of the results has to be there is a file.
+    // A file stands in place of the pair's output folder.
     fs::create_dir(temporary.path().join("out")).unwrap();
     fs::write(temporary.path().join("out/weak"), "mine").unwrap();
     let mut command = evaluate(&[&scene("weak")]);
@@ -249,7 +249,7 @@ fn what_cannot_be_kept_is_told() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("out/weak/none: "));
 }
 
-/// Before any work is done, whose result would be lost.
+/// The check comes before any work, whose result would be lost.
 #[test]
 fn a_file_that_cannot_be_written_is_named_first() {
     for option in ["--csv", "--json"] {
@@ -308,7 +308,7 @@ fn scenes_whose_files_do_not_fit_are_named() {
     fails(evaluate(&[copy]), 1, "its size is 287x215 and that of the views 9x9");
 }
 
-/// The same pair as the benchmarks lay it out.
+/// One pair in the layouts of the benchmarks.
 #[test]
 fn scenes_have_any_layout_that_maps_are_scored_in() {
     let temporary = folder();
@@ -343,7 +343,7 @@ fn scenes_have_any_layout_that_maps_are_scored_in() {
         command.args(view);
         command
     };
-    fails(of_a_scene(&["--view", "2"]), 1, "here is a stereo scene");
+    fails(of_a_scene(&["--view", "2"]), 1, "this is a stereo scene");
 }
 
 #[test]
@@ -354,7 +354,7 @@ fn what_is_finished_is_kept_until_something_changes() {
     for file in ["left.png", "right.png", "disp_left.pfm"] {
         fs::copy(scene("weak").join(file), copy.join(file)).unwrap();
     }
-    // How many results were there from an earlier run, and all figures.
+    // The number of results reused from an earlier run, and all figures.
     let run = |options: &[&str]| {
         let mut command = evaluate(&[&copy, &scene("planes")]);
         command.args(["--condition", "none", "--condition", "gain=0.5+blur=1", "-o"]).arg(&output).args(options);
@@ -369,15 +369,15 @@ fn what_is_finished_is_kept_until_something_changes() {
     assert_eq!(run(&[]), (Some("4 of 4".into()), first.clone()));
     assert_eq!(run(&["--fresh"]), (None, first.clone()));
 
-    // As after an interruption.
+    // A missing result, as after an interruption.
     fs::remove_dir_all(output.join("planes/gain=0.5+blur=1")).unwrap();
     assert_eq!(run(&[]), (Some("3 of 4".into()), first.clone()));
-    // What is kept was changed by hand.
+    // A saved result changed by hand.
     fs::write(output.join("copy/none/result.json"), "{").unwrap();
     assert_eq!(run(&[]), (Some("3 of 4".into()), first.clone()));
     let stricter = run(&["--tolerance", "0.5"]);
     assert!(stricter.0.is_none() && stricter.1 != first);
-    // Another picture: what depends on it is made anew, and what does not is not.
+    // With another picture, only the results that depend on it are computed again.
     let mut right = load::load(&copy.join("right.png")).unwrap().luma();
     right.set(0, 0, right.get(0, 0) ^ 1);
     grey_png(&copy.join("right.png"), &right);

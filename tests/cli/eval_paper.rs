@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use crate::common::{fails, folder, grey_png, hsad, names, report, scene as shipped};
 
-/// Of the shipped scene a part, in which everything is quick.
+/// Writes a part of the shipped scene, small enough for quick tests.
 fn part(parent: &Path, name: &str) -> PathBuf {
     let path = parent.join(name);
     fs::create_dir_all(&path).unwrap();
@@ -66,7 +66,7 @@ fn curves_agree_with_the_table() {
     expected.sort();
     assert_eq!(names(&folder), expected);
 
-    // The last line of each curve is what the table says of all answers.
+    // The last line of each curve equals the table's figures of all answers.
     let columns = [
         ("recall-precision", "condition,method,k,recall,precision", &["recall", "precision"][..]),
         ("f-measure", "condition,method,k,recall,f_measure", &["recall", "f_measure"]),
@@ -95,7 +95,7 @@ fn curves_agree_with_the_table() {
         assert!(plot.starts_with("<svg") && plot.contains("gain=0.8") && plot.contains("#D55E00"));
     }
 
-    // All are asked about the same points, and each is good where nothing is hard.
+    // All methods match the same points, and each is good under an easy condition.
     for condition in ["none", "gain=0.8"] {
         let points = &result(&report, condition, "sparse")["points"];
         for method in ["sparse", "kamencay", "balanced"] {
@@ -130,7 +130,7 @@ fn what_is_finished_is_kept_until_something_changes() {
     assert_eq!(kept, None);
     assert_eq!(run(&[]), (Some("4".into()), first.clone()));
 
-    // As after an interruption.
+    // A missing result, as after an interruption.
     fs::remove_dir_all(output.join("part/none/balanced")).unwrap();
     let file = output.join("part/rotation=90/sparse/result.json");
     let broken = fs::read_to_string(&file).unwrap().replace("\"right\"", "\"left\"");
@@ -155,7 +155,7 @@ fn what_fails_loses_nothing_else() {
     let temporary = folder();
     let scene = part(temporary.path(), "part");
     let output = temporary.path().join("out");
-    // Where the folder of one result has to be there is a file.
+    // A file stands in place of the output folder of one result.
     fs::create_dir_all(output.join("part/none")).unwrap();
     fs::write(output.join("part/none/kamencay"), "mine").unwrap();
     let mut command = evaluate(&[Path::new("/nonexistent/scene"), &scene], &["none"]);
@@ -163,7 +163,7 @@ fn what_fails_loses_nothing_else() {
     let told = contains("sparse").and(contains("balanced")).and(contains("kamencay"));
     command.arg("-o").arg(&output).assert().code(1).stdout(told).stderr(complaint);
     let report = report(&output.join("part"));
-    // It is told all the same.
+    // The result that could not be saved is reported all the same.
     assert_eq!(report["results"].as_array().unwrap().len(), 3);
     assert!(report["failed"][0].as_str().unwrap().starts_with("part, none, kamencay: "));
 }

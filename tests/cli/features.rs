@@ -9,7 +9,7 @@ use crate::common::{folder, grey_png, hsad, hsad_without_driver, names, noise, s
 
 const HEADER: &str = "x,y,scale,orientation,response,dark";
 
-/// The CSV on stdout with these arguments, and what stands on stderr.
+/// Runs `hsad features` with these arguments; returns the CSV on stdout and the text on stderr.
 fn printed(args: &[&str]) -> (Vec<Vec<f64>>, String) {
     let output = hsad().arg("features").arg(scene("planes", "left.png")).args(args).output().unwrap();
     assert!(output.status.success());
@@ -72,7 +72,7 @@ fn without_a_driver_the_cpu_works_and_says_so() {
 fn large_pictures_are_reduced_unless_told_otherwise() {
     let folder = folder();
     let path = folder.path().join("large.png");
-    // Blobs of 16 px, which are there at either size.
+    // Blobs of 16 px, which are detected at full and at reduced size.
     let blobs = noise(125, 75, 5);
     grey_png(&path, &Plane::from_fn(2000, 1200, |x, y| blobs.get(x / 16, y / 16)));
     let run = |option: &[&str]| {
@@ -84,7 +84,7 @@ fn large_pictures_are_reduced_unless_told_otherwise() {
     };
     let (table, note) = run(&[]);
     assert!(note.contains("interest points at 1/2 of its size"), "{note}");
-    // Places are those of the whole picture all the same.
+    // Positions are in pixels of the full-size picture in both cases.
     let columns = table.lines().skip(1).map(|line| line.split(',').next().unwrap().parse::<f32>().unwrap());
     assert!(columns.fold(0.0, f32::max) > 1500.0);
     let (_, note) = run(&["--full-size", "--octaves", "1"]);

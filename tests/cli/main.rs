@@ -1,4 +1,4 @@
-//! The program as a process: what it writes, prints and returns.
+//! Tests of the program as a process: its files, output and exit codes.
 
 #![cfg(feature = "cli")]
 

@@ -44,7 +44,7 @@ fn writes_maps_that_agree_and_a_report() {
     assert_eq!([&aggregation["paths"], &aggregation["cost_window"], &aggregation["p1"]], [3, 1, 16]);
     assert_eq!(report["parameters"]["matching"]["ratio"], json!(0.85));
     assert_eq!(report["range"]["source"], "seeds");
-    // data/README.md: 9.1 to 57.5 px.
+    // The disparities of the scene are 9.1 to 57.5 px (data/README.md).
     let range = |end: &str| report["range"][end].as_i64().unwrap();
     assert!((-20..=9).contains(&range("min")) && (57..120).contains(&range("max")), "{}", report["range"]);
     assert_eq!(range("count"), range("max") - range("min") + 1);
@@ -172,7 +172,7 @@ fn options_of_the_other_method_are_refused() {
         let [left, right] = views("planes");
         let mut command = match_on_cpu(&left, &right, temporary.path());
         command.args(["--method", "kamencay"]).args(args);
-        fails(command, 2, &format!("{} is for --method hsad: leave one of them out", args[0]));
+        fails(command, 2, &format!("{} needs --method hsad: leave one of the two out", args[0]));
     }
     let [left, right] = views("planes");
     let mut command = match_on_cpu(&left, &right, temporary.path());
@@ -187,7 +187,7 @@ fn blocks_are_matched_by_the_costs_of_paths() {
     match_on_cpu(&left, &right, out).args(["--paths", "0", "--cost-window", "7"]).assert().success();
     let aggregation = &report(out)["parameters"]["aggregation"];
     assert_eq!([&aggregation["paths"], &aggregation["cost_window"]], [0, 7]);
-    // All that penalties are for is gone.
+    // Without paths there are no penalties.
     assert_eq!([&aggregation["p1"], &aggregation["p2"]], [&json!(null); 2]);
 }
 
@@ -211,7 +211,7 @@ fn the_paper_searches_to_one_side_from_the_right_view() {
     let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
     assert!(score.bad[0].of_estimated < 0.4, "{score:?}");
 
-    // Mixed up, all disparities are negative.
+    // With exchanged views, all disparities are negative.
     let out = temporary.path().join("mixed-up");
     let mut command = match_on_cpu(&right, &left, &out);
     command.args(["--preset", "paper"]).assert().stderr(contains("if left and right are mixed up, exchange them"));
@@ -275,7 +275,7 @@ fn pictures_without_depth_give_results_without_measured_disparities() {
     for seed in [1, 2] {
         grey_png(&path(&format!("noise{seed}.png")), &noise(90, 70, seed));
     }
-    // Black is ambiguous everywhere; noise now and then looks as if it were not.
+    // Black is ambiguous everywhere; noise is unambiguous in a few places by chance.
     for (left, right, most) in [("black.png", "black.png", 0.0), ("noise1.png", "noise2.png", 0.15)] {
         let out = path("out");
         let mut command = match_on_cpu(&path(left), &path(right), &out);
@@ -326,7 +326,7 @@ fn other_kinds_of_pictures_are_read() {
     let [deep_path, alpha_path] = ["deep.png", "alpha.png"].map(|name| temporary.path().join(name));
     image::DynamicImage::ImageLuma16(deep).save(&deep_path).unwrap();
     image::DynamicImage::ImageLumaA8(alpha).save(&alpha_path).unwrap();
-    // Both are read to the same grey values.
+    // Both files decode to the same grey values.
     match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().success().stderr(contains("the same picture"));
 }
 
@@ -337,7 +337,7 @@ fn nothing_is_left_after_an_interruption() {
 
     let folder = folder();
     let [left, right, out] = ["left.png", "right.png", "out/new"].map(|name| folder.path().join(name));
-    // The twins take a minute for this pair.
+    // The CPU twins take a minute for this pair.
     for path in [&left, &right] {
         grey_png(path, &noise(1500, 1300, 3));
     }

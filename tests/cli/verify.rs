@@ -16,7 +16,7 @@ fn one_case_as_a_table_and_as_json() {
     command.args(["--size", "17x13", "--seed", "4", "--json"]).arg(&file);
     let table = contains("census           17x13       4  none").and(contains("all 2 cases pass"));
     command.assert().success().stdout(table).stderr("");
-    // Nothing failed, so nothing is left.
+    // No case failed, so no arrays are written.
     assert_eq!(names(temporary.path()), ["report.json"]);
 
     let report: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
@@ -43,7 +43,7 @@ fn what_cannot_be_verified_is_told() {
     hsad().args(["verify", "--device", "cpu"]).assert().code(1).stderr(contains("adapters only"));
 }
 
-/// A device is what is verified, so the CPU is no way out.
+/// `hsad verify` needs a device, so the message does not offer the CPU.
 #[test]
 fn without_a_driver_the_cpu_is_offered_to_those_who_can_use_it() {
     let told = || contains("no GPU adapter was found").and(contains("apt-get install mesa-vulkan-drivers"));
@@ -54,7 +54,7 @@ fn without_a_driver_the_cpu_is_offered_to_those_who_can_use_it() {
     command.assert().code(1).stderr(told().and(cpu()));
 }
 
-/// Before a single case has run.
+/// The check comes before the first case.
 #[test]
 fn what_cannot_be_written_is_told_at_once() {
     let temporary = folder();

@@ -1,4 +1,4 @@
-//! An application with a device of its own, which takes every error that nobody handles for a failure.
+//! An application with its own device, whose error handler takes every uncaptured error for a failure.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -22,7 +22,7 @@ impl Application {
     }
 
     pub fn with(required_features: Features, required_limits: Limits) -> Self {
-        // One for all: what comes from another instance cannot be told from what comes from one's own.
+        // One instance for all tests: resources of another instance cannot be told from one's own.
         static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
         let instance =
             INSTANCE.get_or_init(|| wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle()));
@@ -48,7 +48,7 @@ impl Application {
         self.device().create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     }
 
-    /// A view of an empty texture, which may also be seen as `view_formats`.
+    /// A view of an empty texture that allows `view_formats`.
     pub fn texture(
         &self,
         format: TextureFormat,
@@ -69,14 +69,14 @@ impl Application {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Nothing was left for the application to handle.
+    /// Asserts that no uncaptured error reached the application.
     #[track_caller]
     pub fn assert_quiet(&self) {
         assert_eq!(*self.unhandled.lock().unwrap(), [""; 0]);
     }
 }
 
-/// Left and right view, the left one moved by 5 px and more further down.
+/// A left and a right view, shifted by 5 px at the top and by more further down.
 pub fn pair((width, height): (u32, u32), seed: u32) -> [Luma; 2] {
     let right = smooth_noise(width, height, seed);
     let left =
@@ -88,7 +88,7 @@ pub fn config() -> DenseConfig {
     DenseConfig { consistency: Some(256), ..DenseConfig::new(DisparityRange::new(0, 24).unwrap()) }
 }
 
-/// The handler itself must be able to fail.
+/// The handler must see an error that is provoked.
 #[test]
 #[should_panic(expected = "Buffer size")]
 fn an_error_that_nobody_handles_is_seen() {

@@ -1,4 +1,4 @@
-//! What cannot be is an error that says so, and nothing is left for the application's handler.
+//! Invalid input returns an `Error` that names it, and no uncaptured error reaches the application's handler.
 
 use hsad::{
     Error,
@@ -105,7 +105,7 @@ fn luma_that_no_kernel_can_read() {
     elsewhere.assert_quiet();
 }
 
-/// How large a picture may be follows from limits that are named as well.
+/// An error about the size of a picture names the limit that it exceeds.
 #[test]
 fn a_buffer_that_is_too_large_names_its_limits() {
     let mut limits = Limits::downlevel_defaults();
@@ -123,7 +123,7 @@ fn a_buffer_that_is_too_large_names_its_limits() {
     application.assert_quiet();
 }
 
-/// A device with a limit below what is needed gets told which, before anything is made of it.
+/// An error about a limit of the device names the limit, before any resource is created.
 #[test]
 fn a_limit_that_is_too_low_is_named() {
     type Lower = fn(&mut Limits);

@@ -1,4 +1,4 @@
-//! hsad in someone else's application: their device, their resources, their encoder, their error handler.
+//! hsad embedded in an application, with the application's device, resources, encoder and error handler.
 #![cfg(feature = "cli")]
 
 mod application;

@@ -1,4 +1,4 @@
-//! Textures and buffers in, textures and buffers out: the same bytes as the CPU twins'.
+//! Results from textures and buffers, in textures and buffers, equal those of the CPU twins to the byte.
 
 use hsad::{
     config::Preset,
@@ -22,7 +22,7 @@ fn texels(luma: &Luma, format: TextureFormat) -> Vec<u8> {
     luma.data().iter().flat_map(|&grey| std::iter::repeat_n(grey, count)).collect()
 }
 
-/// The configurations that go different ways to their answers: blocks, with refinement and not, and paths.
+/// Configurations that run different kernels: block matching with and without refinement, and paths.
 fn configs() -> Vec<DenseConfig> {
     let range = DisparityRange::new(0, 24).unwrap();
     let preset = |preset: Preset| preset.config().dense(range, Brightness::SAME);
@@ -43,7 +43,7 @@ fn textures_in_and_out_in_bands_and_not() {
         let expected = compute(&views[0], &views[1], &config).unwrap();
         for band_rows in [u32::MAX, 20] {
             let matcher = block_on(Matcher::with_band_rows(gpu, SIZE, &config, band_rows)).unwrap();
-            // Two formats that are not read alike.
+            // Two formats that are read differently.
             let [left, right] = [TextureFormat::Bgra8UnormSrgb, TextureFormat::R8Unorm];
             let textures = [(&views[0], left), (&views[1], right)]
                 .map(|(view, format)| bench.texture(format, SIZE, &texels(view, format)));
@@ -75,7 +75,7 @@ fn textures_in_and_out_in_bands_and_not() {
     application.assert_quiet();
 }
 
-/// Two frames in flight: views and maps of their own, one matcher, one encoder.
+/// Two frames in flight share one matcher and one encoder, with their own views and maps.
 #[test]
 fn frames_take_turns_in_one_encoder() {
     let application = Application::new();
@@ -86,7 +86,7 @@ fn frames_take_turns_in_one_encoder() {
         let left = bench.upload_luma(left).unwrap();
         let right = bench.texture(TextureFormat::Rgba8Unorm, SIZE, &texels(right, TextureFormat::Rgba8Unorm));
         let inputs = matcher.inputs(Source::Luma(&left), Source::Texture(&right)).unwrap();
-        // One word more than is needed, which stays.
+        // The buffer has one word more than needed, which must not change.
         let map = bench.output(SIZE.0 * SIZE.1 + 1).unwrap();
         let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
         let outputs = matcher.outputs(Destination::Buffer(&map), Some(&confidences)).unwrap();
@@ -108,7 +108,7 @@ fn frames_take_turns_in_one_encoder() {
     application.assert_quiet();
 }
 
-/// A renderer often declares as sRGB only what it shows, and a view as it shows it.
+/// A view's format may differ from its texture's, as in renderers that use sRGB views only for display.
 #[test]
 fn a_view_may_have_another_format_than_its_texture() {
     let application = Application::new();
@@ -148,7 +148,7 @@ fn recording_creates_nothing_and_submits_nothing() {
         let map = bench.output_texture(TextureFormat::R32Float, SIZE);
         let view = map.create_view(&wgpu::TextureViewDescriptor::default());
         let outputs = matcher.outputs(Destination::Texture(&view), None).unwrap();
-        // What there is, is counted.
+        // The counters see the created objects.
         assert_ne!(existing(&gpu.device), before);
 
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -159,7 +159,7 @@ fn recording_creates_nothing_and_submits_nothing() {
         }
         let commands = encoder.finish();
         assert_eq!(existing(&gpu.device), before);
-        // Nothing was done: every texel is as it was left.
+        // Nothing was written: every texel keeps its value.
         assert!(bench.download_texture::<u32>(&map).unwrap().iter().all(|&texel| texel == u32::MAX));
         application.gpu.queue.submit([commands]);
         let expected = compute(&views[0], &views[1], &config).unwrap();
@@ -168,7 +168,7 @@ fn recording_creates_nothing_and_submits_nothing() {
     application.assert_quiet();
 }
 
-/// How many there are of everything that can be created on a device, and the memory that it takes.
+/// Numbers of all kinds of objects on a device, and the memory they take, in bytes.
 fn existing(device: &wgpu::Device) -> [isize; 12] {
     let counters = device.get_internal_counters().hal;
     [
@@ -188,7 +188,7 @@ fn existing(device: &wgpu::Device) -> [isize; 12] {
     .map(|counter| counter.read())
 }
 
-/// What a matcher or a detector says of its memory is what the device has less of.
+/// The memory that a matcher or a detector reports equals the memory taken from the device.
 #[test]
 fn memory_is_what_the_device_gives() {
     let application = Application::new();
@@ -199,7 +199,7 @@ fn memory_is_what_the_device_gives() {
     };
     let check = |what: &str, before: f64, told: u64| {
         let (taken, told) = (taken() - before, told as f64);
-        // The device rounds up.
+        // The device rounds allocations up.
         assert!(told <= taken && taken < 1.02 * told, "{told} bytes told, {taken} taken: {what}");
     };
     let size = (640, 480);
@@ -216,7 +216,7 @@ fn memory_is_what_the_device_gives() {
     }
 }
 
-/// The table of the README, on a device with the limits that it names.
+/// Matchers take the memory that the README's table states, in MB.
 #[test]
 fn matchers_take_the_memory_that_is_told() {
     let readme = include_str!("../../README.md");
@@ -255,7 +255,7 @@ fn brightness_changes_without_another_matcher() {
     application.assert_quiet();
 }
 
-/// Results may go straight to a buffer that the host reads.
+/// Results can be written directly to a buffer that the host maps.
 #[test]
 fn a_map_goes_to_a_buffer_that_can_be_mapped() {
     let application = Application::new();

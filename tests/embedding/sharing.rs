@@ -1,4 +1,4 @@
-//! A device that others use as well: threads, and a cache of compiled kernels.
+//! Sharing of a device between threads, and of a pipeline cache.
 
 use std::thread;
 
@@ -32,7 +32,7 @@ fn everything_goes_to_other_threads() {
     assert_shared::<Gpu>();
 }
 
-/// Matchers of two threads, built, run and dropped at the same time on one device.
+/// Two threads build, run and drop matchers at the same time on one device.
 #[test]
 fn threads_share_a_device() {
     let application = Application::new();
@@ -54,7 +54,7 @@ fn threads_share_a_device() {
     application.assert_quiet();
 }
 
-/// A mistake of one thread is that thread's.
+/// An error of one thread is reported to that thread only.
 #[test]
 fn errors_stay_with_their_thread() {
     let application = Application::new();
@@ -72,14 +72,14 @@ fn errors_stay_with_their_thread() {
     application.assert_quiet();
 }
 
-/// Not every driver puts something into a cache that can be seen from here; but a cache of another device is refused by
-/// every kernel that is compiled with it.
+/// Not every driver fills a pipeline cache visibly, but a cache of another device is refused by every kernel compiled
+/// with it.
 #[test]
 fn the_pipeline_cache_of_the_application_is_used() {
     let applications = [0; 2].map(|_| Application::with(Features::PIPELINE_CACHE, Limits::downlevel_defaults()));
     let caches = applications.each_ref().map(|application| {
         let descriptor = PipelineCacheDescriptor { label: None, data: None, fallback: false };
-        // SAFETY: there is no data that would have to be from such a cache.
+        // SAFETY: no initial data is passed that would have to come from such a cache.
         unsafe { application.device().create_pipeline_cache(&descriptor) }
     });
     let [own, foreign] = caches.map(|cache| applications[0].gpu.clone().with_cache(cache));
@@ -99,6 +99,7 @@ fn the_pipeline_cache_of_the_application_is_used() {
         let error = error.expect("an error").to_string();
         assert!(error.contains("PipelineCache") && error.contains("device"), "{error}");
     }
+    // The failure leaves no state behind.
     matcher.inputs(picture, picture).unwrap();
     matcher.outputs(Destination::Texture(&map), None).unwrap();
     applications.iter().for_each(Application::assert_quiet);

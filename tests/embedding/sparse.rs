@@ -1,4 +1,4 @@
-//! The sparse half without waiting: features in buffers that an application sees.
+//! Feature detection without waiting: features in buffers that the application reads.
 
 use hsad::{
     dense::Matcher,
@@ -11,7 +11,8 @@ use hsad::{
 
 use crate::application::{Application, config};
 
-/// One conversion of a texture serves both halves; what is found is what anyone can read from the buffers.
+/// One conversion to luma serves dense matching and features; the buffers hold the same features as the library's
+/// read-back.
 #[test]
 fn features_of_a_texture_are_read_from_their_buffers() {
     let application = Application::new();

@@ -1,18 +1,18 @@
-// A point cloud on a canvas, by WebGL 2: a point for each pixel, where its disparity says that it lies.
+// A point cloud on a canvas, by WebGL 2: one point per pixel, at the depth of its disparity.
 
 const VERTEX = `#version 300 es
-uniform int width;        // of the picture, in pixels
-uniform float focal;      // of the camera, in pixels
-uniform vec2 principal;   // its principal point
-uniform float doffs;      // added to a disparity before depth is computed
-uniform float unit;       // the disparity at depth 1
+uniform int width;        // width of the picture, in pixels
+uniform float focal;      // focal length of the camera, in pixels
+uniform vec2 principal;   // principal point of the camera, in pixels
+uniform float doffs;      // difference of the principal points, added to a disparity, in pixels
+uniform float unit;       // disparity plus doffs at depth 1, in pixels
 uniform mat4 view;
-uniform vec2 lens;        // the viewer's focal length over half the canvas's sides
-uniform float footprint;  // the viewer's focal length in pixels of the canvas
-uniform bool painted;     // by depth, and not by the picture
-in float disparity;
-in vec3 picture;          // the point's colour there
-in vec3 colors;           // and by depth
+uniform vec2 lens;        // focal length of the viewer divided by half the canvas's sides
+uniform float footprint;  // focal length of the viewer, in pixels of the canvas
+uniform bool painted;     // colour by depth instead of by the picture
+in float disparity;       // in pixels, NaN for no point
+in vec3 picture;          // colour of the point in the picture
+in vec3 colors;           // colour of the point by depth
 out vec3 color;
 
 void main() {
@@ -23,12 +23,12 @@ void main() {
   vec2 across = (vec2(pixel) - principal) / focal * depth;
   vec4 seen = view * vec4(across.x, -across.y, -depth, 1.0);
   if (!(shifted > 0.0) || -seen.z < 0.01) {
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside: nothing to see
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the clip volume: not drawn
     return;
   }
   float near = 0.01, far = 100.0;
   gl_Position = vec4(lens * seen.xy, (far + near) / (near - far) * seen.z + 2.0 * far * near / (near - far), -seen.z);
-  // Larger than the pixel is at that depth, so that few gaps show where a surface is seen from its side.
+  // Points are 1.4 times as large as a pixel at their depth, so that surfaces seen obliquely show few gaps.
   gl_PointSize = clamp(1.4 * footprint * depth / focal / -seen.z, 1.0, 40.0);
 }`;
 
@@ -38,7 +38,7 @@ in vec3 color;
 out vec4 shown;
 void main() { shown = vec4(color, 1.0); }`;
 
-/** What the sway adds to the angle, at most, in radians. */
+/** Amplitude of the sway, in radians. */
 const SWAY = 0.22;
 
 export class Cloud {
@@ -46,7 +46,7 @@ export class Cloud {
   constructor(canvas) {
     this.canvas = canvas;
     const gl = (this.gl = canvas.getContext("webgl2", { alpha: true, antialias: false }));
-    if (!gl) throw new Error("this browser has no WebGL 2, which draws the point cloud");
+    if (!gl) throw new Error("this browser has no WebGL 2, which the point cloud needs");
     this.prepare();
     this.painted = false;
     this.home();
@@ -54,7 +54,7 @@ export class Cloud {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  /** Makes all that lives on the GPU; it is gone when the GPU is. */
+  /** Creates the GPU objects; they are lost with the WebGL context. */
   prepare() {
     const { gl } = this;
     this.program = build(gl);
@@ -63,7 +63,7 @@ export class Cloud {
       const { name } = gl.getActiveUniform(this.program, i);
       this.places[name] = gl.getUniformLocation(this.program, name);
     }
-    // Attributes and not textures, whose sides are limited.
+    // Values are attributes, because the sides of textures are limited.
     this.attributes = { disparity: [1, gl.FLOAT], picture: [4, gl.UNSIGNED_BYTE], colors: [4, gl.UNSIGNED_BYTE] };
     this.buffers = Object.fromEntries(Object.keys(this.attributes).map((name) => [name, gl.createBuffer()]));
   }
@@ -71,22 +71,22 @@ export class Cloud {
   /**
    * Shows a cloud.
    *
-   * @param {ImageData} picture what colours the points
-   * @param {ImageData} colors what colours them by depth
-   * @param {Float32Array} disparities in pixels, NaN where there is none
-   * @param {{focal: number, principal: [number, number], doffs: number}} camera
+   * @param {ImageData} picture colours of the points
+   * @param {ImageData} colors colours of the points by depth
+   * @param {Float32Array} disparities in pixels, NaN for no disparity
+   * @param {{focal: number, principal: [number, number], doffs: number}} camera all values in pixels
    */
   show(picture, colors, disparities, camera) {
     this.shown = { picture, colors, disparities, camera };
     this.load();
   }
 
-  /** Brings what is shown to the GPU. */
+  /** Uploads the cloud to the GPU. */
   load() {
     const { gl, program, places } = this;
     const { picture, colors, disparities, camera: { focal, principal, doffs } } = this.shown;
     const known = disparities.filter((disparity) => disparity + doffs > 0).sort();
-    // Turned about what most of the picture shows.
+    // The median depth is the pivot of rotations.
     const unit = known.length ? known[known.length >> 1] + doffs : 1;
     gl.useProgram(program);
     gl.uniform1i(places.width, picture.width);
@@ -100,7 +100,7 @@ export class Cloud {
     this.draw();
   }
 
-  /** Gives each point its value of an attribute. */
+  /** Uploads the values of an attribute, one per point. */
   fill(name, values) {
     const { gl } = this;
     const place = gl.getAttribLocation(this.program, name);
@@ -108,11 +108,11 @@ export class Cloud {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[name]);
     gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
     gl.enableVertexAttribArray(place);
-    // Bytes are 0 to 1.
+    // Normalised: bytes become 0 to 1.
     gl.vertexAttribPointer(place, components, type, true, 0, 0);
   }
 
-  /** Other disparities for the cloud that is shown. */
+  /** Replaces the disparities of the cloud. */
   change(disparities) {
     this.shown.disparities = disparities;
     this.fill("disparity", disparities);
@@ -129,7 +129,7 @@ export class Cloud {
     this.draw();
   }
 
-  /** Back to a little beside the camera's place, swaying until someone takes hold. */
+  /** Resets the view to near the camera's position, swaying until the user drags it. */
   home() {
     Object.assign(this, { yaw: 0, pitch: 0.1, distance: 1.2, shift: [0, 0] });
     this.swaying = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -137,14 +137,14 @@ export class Cloud {
     this.draw();
   }
 
-  /** Looks from a fixed place: angles in radians, the distance in units of the median depth. */
+  /** Sets a fixed view: angles in radians, distance in units of the median depth. */
   look(yaw, pitch, distance) {
     this.swaying = false;
     Object.assign(this, { yaw, pitch, distance });
     this.draw();
   }
 
-  /** Draws at the next frame. */
+  /** Requests a redraw at the next frame. */
   draw() {
     this.pending ??= requestAnimationFrame((now) => {
       this.pending = undefined;
@@ -170,7 +170,7 @@ export class Cloud {
       yaw += SWAY * Math.sin(phase);
       pitch += 0.25 * SWAY * Math.sin(0.7 * phase);
     }
-    // The picture fills the canvas when seen from the camera's place.
+    // Seen from the camera's position, the picture fills the canvas.
     const { picture, disparities, camera } = this.shown;
     const focal = camera.focal * Math.min(width / picture.width, height / picture.height);
     gl.uniform2f(places.lens, (2 * focal) / width, (2 * focal) / height);
@@ -183,13 +183,13 @@ export class Cloud {
 
   listen() {
     const { canvas } = this;
-    // Only what is prevented is followed by the other.
+    // The context is restored only if the default action of its loss is prevented.
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
       this.prepare();
       if (this.shown) this.load();
     });
-    /** Where each finger or the mouse is. */
+    /** Position of each finger, or of the mouse, by pointer id. */
     const held = new Map();
     const spread = () => {
       const [a, b] = [...held.values()];
@@ -201,7 +201,7 @@ export class Cloud {
     };
     canvas.addEventListener("pointerdown", (event) => {
       if (this.swaying && this.began !== undefined) {
-        // It goes on from where it is.
+        // The drag starts at the current angle of the sway.
         const phase = (performance.now() - this.began) / 1600;
         this.yaw += SWAY * Math.sin(phase);
         this.pitch += 0.25 * SWAY * Math.sin(0.7 * phase);
@@ -244,10 +244,10 @@ export class Cloud {
   }
 }
 
-/** World to eye: turned about the point at depth 1, and seen from `distance`. Column by column. */
+/** The view matrix, column by column: rotation about the point at depth 1, seen from `distance`. */
 function view(yaw, pitch, distance, [x, y]) {
   const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
-  // Rotation about x after rotation about y, then the way from the pivot at (0, 0, -1).
+  // Rotation about y, then about x, around the pivot at (0, 0, -1).
   const rows = [
     [cy, 0, sy],
     [sp * sy, cp, -sp * cy],

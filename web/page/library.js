@@ -1,19 +1,19 @@
-// The library, in a worker.
+// Calls of the library, which runs in a worker.
 
-/** The largest side of a canvas that all browsers have. */
+/** Largest side of a canvas that all browsers support, in pixels. */
 const MAX_SIDE = 16384;
 
 let worker;
-/** Who waits for an answer, by the number of what was asked. */
+/** The pending requests, by id. */
 const waiting = new Map();
-let asked = 0;
+let lastId = 0;
 
 /**
- * Red, green, blue and alpha of a picture file, turned as its EXIF orientation says, without any conversion of colours:
- * the bytes that the command line reads too.
+ * Decodes a picture file to red, green, blue and alpha, rotated by its EXIF orientation, without conversion of colours:
+ * the same bytes as on the command line.
  *
  * @param {Blob} file
- * @param {string} name what to call it in errors
+ * @param {string} name name of the file in errors
  * @returns {Promise<ImageData>}
  */
 export async function decode(file, name) {
@@ -25,7 +25,7 @@ export async function decode(file, name) {
   }
   const { width, height, data } = await ask("decode", { bytes, name }, [bytes.buffer]);
   if (Math.max(width, height) > MAX_SIDE) {
-    throw badPicture(`${name}: ${width}x${height} pixels, and a side of ${MAX_SIDE} is the longest that a browser draws: scale it down`);
+    throw badPicture(`${name}: ${width}x${height} pixels, but a browser draws sides of at most ${MAX_SIDE} pixels: scale it down`);
   }
   return new ImageData(data, width, height);
 }
@@ -38,22 +38,22 @@ function badPicture(message) {
  * Matches a pair.
  *
  * @param {{left: ImageData, right: ImageData, preset: string, force: boolean}} pair
- * @param {({device, step}: {device?: string, step?: string}) => void} news is told the GPU's name and each step
+ * @param {({device, step}: {device?: string, step?: string}) => void} news called with the GPU's name and with each step
  */
 export function match(pair, news) {
   return ask("match", pair, [], news);
 }
 
 function ask(act, request, transfer, news) {
-  worker ??= hire();
-  const id = ++asked;
+  worker ??= startWorker();
+  const id = ++lastId;
   return new Promise((resolve, reject) => {
     waiting.set(id, { resolve, reject, news });
     worker.postMessage({ id, act, request }, transfer);
   });
 }
 
-function hire() {
+function startWorker() {
   const worker = new Worker("worker.js", { type: "module" });
   worker.onmessage = ({ data: { id, news, answer, error } }) => {
     if (error?.fatal) return dismiss(error.message);
@@ -67,7 +67,7 @@ function hire() {
   return worker;
 }
 
-/** After a panic nothing of it can be used again: whoever waits is told, and the next request gets another worker. */
+/** Ends a worker after a panic, when it can no longer be used: pending requests fail, and the next one starts another. */
 function dismiss(why) {
   worker?.terminate();
   worker = undefined;

@@ -1,31 +1,32 @@
-// The page: pictures in, a worker that matches them, a map and a cloud out.
+// The page: takes two pictures, has a worker match them, and shows the disparity map and the point cloud.
 
 import { Cloud } from "./cloud.js";
 import * as library from "./library.js";
 
 const SIDES = ["left", "right"];
 const STEPS = [["luma", "luma"], ["features", "interest points"], ["seeding", "range"], ["dense", "disparities"]];
-/** The horizontal angle of view that is assumed of an unknown camera, in radians. */
+/** Horizontal angle of view assumed for an unknown camera, in radians. */
 const ANGLE = (55 * Math.PI) / 180;
 
 const at = (id) => document.getElementById(id);
 
-/** Each side's picture and what it is called. */
+/** The picture of each side. */
 const pair = { left: undefined, right: undefined };
-/** The camera of the pair, where it is known. */
+/** The camera of the pair; undefined if unknown. */
 let camera;
 let cloud;
-/** The last result, and its disparities in pixels. */
+/** The result on the page, with its disparities in pixels. */
 let shown;
-/** Whether a pair is being matched; what is asked for meanwhile is matched afterwards. */
+/** Whether a pair is being matched. */
 let busy = false;
+/** The request that came in meanwhile; only the latest one is kept. */
 let next;
-/** The pair being matched, as long as nothing else was told since. */
+/** The pair being matched; undefined once its result is obsolete. */
 let awaited;
 
-// What is told
+// Messages
 
-/** An element with text or elements in it. */
+/** Creates an element with text or elements in it. */
 function made(tag, className, ...content) {
   const element = document.createElement(tag);
   element.className = className;
@@ -45,7 +46,7 @@ function say(title, text = "", { bad = false, action } = {}) {
   document.body.dataset.state = bad ? "failed" : "idle";
 }
 
-/** The steps of the work, with the one that is going on. */
+/** Shows the steps of matching, with the current one marked. */
 function progress(now) {
   const current = STEPS.findIndex(([name]) => name === now);
   const items = STEPS.map(([, label], index) => made("li", index < current ? "done" : index === current ? "now" : "", label));
@@ -65,7 +66,7 @@ const HEADLINES = {
 };
 
 function fail({ name, message }) {
-  // What is going on must not replace this by a result.
+  // A match in progress must not replace this message by its result.
   awaited = next = undefined;
   const again = { label: "Try again", run: () => match() };
   const actions = {
@@ -76,17 +77,17 @@ function fail({ name, message }) {
   };
   const text =
     name === "NoAdapter"
-      ? "The browser has WebGPU, but offers no adapter: look at chrome://gpu, update the GPU's driver, or use another browser."
+      ? "The browser has WebGPU, but offers no adapter: see chrome://gpu, update the GPU's driver, or use another browser."
       : name === "Broken"
-        ? `Memory ran out, or the library has a fault, which the browser's console tells more of (${message}).`
+        ? `Memory ran out, or the library has a fault; see the browser's console for details (${message}).`
         : name === "BadPicture"
-          ? message // It begins with the file's name.
+          ? message // The message begins with the file's name.
           : message[0].toUpperCase() + message.slice(1);
   forget();
   say(HEADLINES[name] ?? "This could not be matched", text, { bad: true, action: actions[name] });
 }
 
-// Pictures on their way in
+// Input
 
 function put(side, picture) {
   pair[side] = picture;
@@ -97,12 +98,12 @@ function put(side, picture) {
   view.classList.add("loaded");
 }
 
-/** Takes one picture for a side, or two for both in the order of their names. */
+/** Loads one picture for a side, or two for both sides in the order of their names. */
 async function take(files, side) {
   files = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   const sides = files.length > 1 ? SIDES : [side ?? (pair.left && !pair.right ? "right" : "left")];
   try {
-    if (files.length > 2) throw new Error(`${files.length} files were dropped: it takes one picture for each side`);
+    if (files.length > 2) throw new Error(`${files.length} files were dropped: one picture is needed for each side`);
     const pictures = await Promise.all(files.map((file) => library.decode(file, file.name)));
     pictures.forEach((picture, index) => put(sides[index], picture));
     camera = undefined;
@@ -138,7 +139,7 @@ async function loadExample() {
 async function match({ force = false } = {}) {
   if (!pair.left || !pair.right) {
     const missing = pair.left ? "right" : pair.right ? "left" : "first";
-    say(`Now the ${missing} picture`, "Both views of one scene, rectified: what lies in a row of one lies in the same row of the other.");
+    say(`Now the ${missing} picture`, "Both views of one scene, rectified: corresponding points lie in the same row.");
     return;
   }
   next = { force };
@@ -207,18 +208,18 @@ function show(result) {
     principal: [(width - 1) / 2, (height - 1) / 2],
     doffs: 0,
   });
-  // For whoever drives the page from outside.
+  // For scripts that drive the page, such as the tests.
   window.result = result;
   document.body.dataset.state = "done";
 }
 
-/** The disparities that the cloud shows. */
+/** The disparities in the cloud: all of them, or the measured ones only. */
 function chosen() {
   if (!at("measured").checked) return shown.pixels;
   return shown.pixels.map((disparity, index) => (shown.confidences[index] ? disparity : NaN));
 }
 
-/** The colours from far to near, as the map has them. */
+/** Draws the colour scale from far to near. */
 function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
   at("scale").hidden = false;
   at("far").textContent = `far ${far.toFixed(1)} px`;
@@ -226,7 +227,7 @@ function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
   const canvas = at("scale").querySelector("canvas");
   const context = canvas.getContext("2d");
   const bar = context.createImageData(canvas.width, 1);
-  // The map's own pixels show which colour belongs to which disparity.
+  // The colour of each disparity is sampled from the map's own pixels.
   const samples = new Array(canvas.width);
   disparities.forEach((disparity, index) => {
     if (disparity === none) return;
@@ -249,7 +250,7 @@ function facts(result) {
   const [rows, ...agreeing] = result.rectification.split(/ (?=\()/);
   const list = [
     ["Time", seconds(result.milliseconds), steps, "large"],
-    ["Range", `${result.first} to ${result.last} px`, result.found ? `found from ${result.matches} matches` : "assumed: too few matches to find it"],
+    ["Range", `${result.first} to ${result.last} px`, result.found ? `found from ${result.matches} matches` : "assumed: too few matches"],
     ["Rows", rows.replace("rows correspond to within", "agree within"), agreeing.join(" ").replace(/[()]/g, "")],
     ["Coverage", percent(result.coverage), filled],
     ["Trust", `${result.trust.toFixed(2)} of 1`],
@@ -264,7 +265,7 @@ function facts(result) {
   );
 }
 
-/** Tells the disparity under the mouse. */
+/** Shows the disparity under the mouse. */
 function probe({ offsetX, offsetY, currentTarget: map }) {
   if (!shown) return;
   const x = Math.min(shown.width - 1, Math.floor((offsetX / map.clientWidth) * shown.width));
@@ -276,7 +277,7 @@ function probe({ offsetX, offsetY, currentTarget: map }) {
   at("probe").hidden = false;
 }
 
-// All together
+// Events
 
 function listen() {
   for (const side of SIDES) {
@@ -300,7 +301,7 @@ function listen() {
     over(-inside);
     const { files } = event.dataTransfer;
     if (files.length) take(files, event.target.closest?.(".view")?.id);
-    else fail(new Error("what was dropped is not a file: drop pictures from a folder"));
+    else fail(new Error("no file was dropped: drop pictures from a folder"));
   });
   at("example").onclick = loadExample;
   at("exchange").onclick = () => {
@@ -322,8 +323,8 @@ function listen() {
 function begin() {
   if (!navigator.gpu) {
     const text = isSecureContext
-      ? "Chrome and Edge have it since version 113, Safari since 26, Firefox since 141 on Windows and 145 on macOS. On Linux it may have to be turned on: chrome://flags/#enable-unsafe-webgpu."
-      : "Browsers offer WebGPU only to pages that come by https or from localhost, and this one does not.";
+      ? "WebGPU is in Chrome and Edge since version 113, in Safari since 26, in Firefox since 141 on Windows and 145 on macOS. On Linux it may have to be turned on: chrome://flags/#enable-unsafe-webgpu."
+      : "Browsers offer WebGPU only to pages from https or localhost, and this page comes from neither.";
     say("This browser has no WebGPU", text, { bad: true });
     document.querySelectorAll("button, input").forEach((control) => (control.disabled = true));
     return;
@@ -332,8 +333,8 @@ function begin() {
     cloud = new Cloud(at("cloud"));
     window.cloud = cloud;
     listen();
-    say("Two photographs, one depth map", "Drop a rectified stereo pair anywhere on this page: its files in the order of their names are the left and the right view.", {
-      action: { label: "Show me the example", run: loadExample },
+    say("Two photographs, one depth map", "Drop a rectified stereo pair anywhere on this page: of the two files, the first by name is the left view.", {
+      action: { label: "Show the example", run: loadExample },
     });
   } catch (error) {
     fail(error);

@@ -1,11 +1,11 @@
-// Reads pictures and matches pairs beside the page, which stays usable meanwhile.
+// The worker: decodes pictures and matches pairs, so that the page stays responsive.
 
 import init, { Session, View } from "./hsad_web.js";
 
 const ready = init();
 let session;
 
-/** What can be asked for: from a request to the answer, and what of it is handed over instead of copied. */
+/** The requests: each takes its arguments and returns the answer and the buffers to transfer instead of copy. */
 const acts = {
   decode({ bytes, name }) {
     const view = View.decode(bytes, name);
@@ -36,7 +36,7 @@ const acts = {
   },
 };
 
-/** What the browser tells of its GPU, which may be little. */
+/** The name of the GPU, as far as the browser reveals it. */
 async function adapterName() {
   const info = (await navigator.gpu.requestAdapter())?.info;
   const name = info?.description || [info?.vendor, info?.architecture].filter(Boolean).join(" ") || "WebGPU";
@@ -50,7 +50,7 @@ onmessage = async ({ data: { id, act, request } }) => {
     postMessage({ id, answer }, transfer);
   } catch (error) {
     if (error.name === "DeviceLost") session = undefined;
-    // A panic, after which nothing of the library can be used again.
+    // A panic leaves the library unusable.
     const fatal = error instanceof WebAssembly.RuntimeError;
     postMessage({ id, error: { name: error.name ?? "Error", message: error.message ?? String(error), fatal } });
   }

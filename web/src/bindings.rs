@@ -1,4 +1,4 @@
-//! What the page calls: two pictures and a preset in, a map and what is known of it out.
+//! The bindings that the page calls: two pictures and a preset in, a disparity map with its figures out.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use hsad::{
 use wasm_bindgen::{Clamped, prelude::*};
 use web_time::Instant;
 
-/// Panics are told on the console, not only that there was one.
+/// Installs the hook that writes the message of a panic to the browser's console.
 #[wasm_bindgen(start)]
 fn start() {
     console_error_panic_hook::set_once();
@@ -26,38 +26,38 @@ pub struct View(Picture);
 
 #[wasm_bindgen]
 impl View {
-    /// Takes red, green, blue and alpha of `width` x `height` pixels, row by row.
+    /// A picture from red, green, blue and alpha bytes of `width` x `height` pixels, row by row.
     #[wasm_bindgen(constructor)]
     pub fn new(width: u32, height: u32, rgba: &[u8]) -> Result<Self, JsValue> {
         let (pixels, _) = rgba.as_chunks();
         Picture::new(width, height, pixels.to_vec()).map(Self).map_err(thrown)
     }
 
-    /// The picture in a file's bytes, as the command line reads it; the browser's own decoder would give other colours
-    /// where there is transparency. `name` is named in errors.
+    /// Decodes the picture in a file's bytes as the command line does; the browser's own decoder changes the colours of
+    /// transparent pixels. `name` is named in errors.
     pub fn decode(bytes: &[u8], name: &str) -> Result<Self, JsValue> {
         load::decode(bytes, Path::new(name)).map(Self).map_err(thrown)
     }
 
-    /// Pixels in a row.
+    /// Width in pixels.
     #[wasm_bindgen(getter)]
     pub fn width(&self) -> u32 {
         self.0.width()
     }
 
-    /// Rows.
+    /// Height in pixels.
     #[wasm_bindgen(getter)]
     pub fn height(&self) -> u32 {
         self.0.height()
     }
 
-    /// Its bytes, as [`View::new`] takes them and a canvas does.
+    /// The RGBA bytes of the picture, as [`View::new`] and a canvas take them.
     pub fn rgba(&self) -> Clamped<Vec<u8>> {
         Clamped(self.0.rgba().to_vec())
     }
 }
 
-/// The browser's GPU, ready for work.
+/// The browser's GPU, opened.
 #[wasm_bindgen]
 pub struct Session {
     backend: Backend,
@@ -71,8 +71,8 @@ impl Session {
         Ok(Self { backend })
     }
 
-    /// Matches a pair. `preset` is `fast`, `balanced`, `quality` or `paper`; with `force` a pair that is not rectified is
-    /// matched as well; `begin` is called with the name of each step.
+    /// Matches a pair. `preset` is `fast`, `balanced`, `quality` or `paper`; `force` matches a pair even if it is not
+    /// rectified; `begin` is called with the name of each step.
     #[wasm_bindgen(js_name = matchPair)]
     pub async fn match_pair(
         &self,
@@ -85,7 +85,7 @@ impl Session {
         let config = Config { force, ..named(&preset).map_err(thrown)?.config() };
         let start = Instant::now();
         let outcome = pipeline::run_async(&self.backend, (&left.0, &right.0), &config, |step| {
-            // What the page makes of it is its own concern.
+            // An error of the page's callback does not stop the match.
             let _ = begin.call1(&JsValue::NULL, &step.name().into());
         })
         .await
@@ -104,13 +104,13 @@ fn named(preset: &str) -> hsad::Result<Preset> {
             return Err(Error::Parameter {
                 name: "the preset",
                 value: preset.into(),
-                expected: "there are fast, balanced, quality and paper".into(),
+                expected: "it must be fast, balanced, quality or paper".into(),
             });
         }
     })
 }
 
-/// A JavaScript `Error` whose name tells what kind of error it is.
+/// A JavaScript `Error` whose name is the kind of the error.
 fn thrown(error: Error) -> JsValue {
     let thrown = js_sys::Error::new(&error.to_string());
     thrown.set_name(match error {
@@ -125,7 +125,7 @@ fn thrown(error: Error) -> JsValue {
     thrown.into()
 }
 
-/// What came of a pair.
+/// The result of a pair.
 #[wasm_bindgen]
 pub struct Matched {
     outcome: Outcome,
@@ -134,103 +134,103 @@ pub struct Matched {
 
 #[wasm_bindgen]
 impl Matched {
-    /// A disparity for each pixel of the reference view, in 1/`scale` px, or `none`.
+    /// Disparity of each pixel of the reference view, in 1/`scale` px, or `none`.
     pub fn disparities(&self) -> Vec<i32> {
         self.outcome.dense.disparity.data().to_vec()
     }
 
-    /// How far each can be trusted, 1 to 255; 0 where there is none, or where it was filled in.
+    /// Confidence of each disparity, 1 to 255; 0 for no disparity or a filled one.
     pub fn confidences(&self) -> Vec<u8> {
         self.outcome.dense.confidence.data().to_vec()
     }
 
-    /// The map in colour, as RGBA.
+    /// The map in false colours, as RGBA.
     pub fn colors(&self) -> Vec<u8> {
-        let colors = color::disparity_colors(&self.outcome.dense.disparity, self.told_apart());
+        let colors = color::disparity_colors(&self.outcome.dense.disparity, self.color_limits());
         colors.data().iter().flat_map(|&[red, green, blue]| [red, green, blue, 255]).collect()
     }
 
-    /// The disparities in pixels between which colours change: the far end and the near one.
+    /// The disparities at the ends of the colour scale, in pixels: far, then near.
     #[wasm_bindgen(js_name = colorRange)]
     pub fn color_range(&self) -> Vec<f32> {
-        let (far, near) = self.told_apart();
+        let (far, near) = self.color_limits();
         [far, near].map(|disparity| disparity as f32 / SCALE as f32).to_vec()
     }
 
-    /// Steps of a disparity in a pixel.
+    /// Number of disparity steps per pixel.
     #[wasm_bindgen(getter)]
     pub fn scale(&self) -> i32 {
         SCALE
     }
 
-    /// What says 'no disparity'.
+    /// Sentinel of a missing disparity.
     #[wasm_bindgen(getter)]
     pub fn none(&self) -> i32 {
         NONE
     }
 
-    /// The smallest disparity that was searched, in pixels.
+    /// Smallest disparity of the searched range, in pixels.
     #[wasm_bindgen(getter)]
     pub fn first(&self) -> i32 {
         self.outcome.range.min
     }
 
-    /// The largest disparity that was searched, in pixels.
+    /// Largest disparity of the searched range, in pixels.
     #[wasm_bindgen(getter)]
     pub fn last(&self) -> i32 {
         self.outcome.range.last()
     }
 
-    /// Whether that range was found from the matches and not assumed.
+    /// Whether the range was found from the matches; otherwise it was assumed.
     #[wasm_bindgen(getter)]
     pub fn found(&self) -> bool {
         self.outcome.range_source == RangeSource::Seeds
     }
 
-    /// How many interest points were found in both views.
+    /// Number of interest points matched between the views.
     #[wasm_bindgen(getter)]
     pub fn matches(&self) -> usize {
         self.outcome.seeding.seeds.len()
     }
 
-    /// How well rows correspond, in words.
+    /// Diagnosis of the rectification, as text.
     #[wasm_bindgen(getter)]
     pub fn rectification(&self) -> String {
         self.outcome.seeding.rectification.to_string()
     }
 
-    /// How far the map can be trusted, 0 to 1.
+    /// Trust in the map, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn trust(&self) -> f32 {
         self.outcome.seeding.trust
     }
 
-    /// The share of pixels with a disparity, 0 to 1.
+    /// Share of pixels with a disparity, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn coverage(&self) -> f64 {
         coverage(&self.outcome.dense.disparity)
     }
 
-    /// The share of pixels whose disparity was measured and not filled in, 0 to 1.
+    /// Share of pixels with a measured, not filled, disparity, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn measured(&self) -> f64 {
         self.outcome.dense.measured()
     }
 
-    /// What it took, building the kernels included.
+    /// Wall-clock time of the match, including building the kernels, in milliseconds.
     #[wasm_bindgen(getter)]
     pub fn milliseconds(&self) -> f64 {
         self.milliseconds
     }
 
-    /// What each step took, in milliseconds, in their order.
+    /// Wall-clock time of each step, in order, in milliseconds.
     pub fn times(&self) -> Vec<f64> {
         self.outcome.times.iter().map(|(_, time)| 1e3 * time.as_secs_f64()).collect()
     }
 }
 
 impl Matched {
-    fn told_apart(&self) -> (i32, i32) {
+    fn color_limits(&self) -> (i32, i32) {
         color::disparity_range(&self.outcome.dense.disparity).unwrap_or((0, 0))
     }
 }

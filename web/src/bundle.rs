@@ -1,5 +1,5 @@
-//! The page as a folder that any web server can serve: the library in WebAssembly, the page's own files, and a pair of
-//! pictures to begin with.
+//! Bundles the page in a folder that any web server can serve: the library in WebAssembly, the page's own files, and
+//! the example pair.
 
 use std::{
     env,
@@ -13,15 +13,15 @@ use anyhow::{Context, Result, ensure};
 use wasm_bindgen_cli_support::Bindgen;
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// The library in WebAssembly, by the name of its package.
+/// File name of the library in WebAssembly, from the name of its package.
 const LIBRARY: &str = "hsad_web";
-/// The pair that the page offers, and what is known of its camera.
+/// Files of the example pair and its camera.
 const EXAMPLE: [&str; 3] = ["left.png", "right.png", "meta.json"];
 
-/// Compiles the library for browsers and puts everything together in `folder`.
+/// Compiles the library for browsers and writes the bundle to `folder`.
 ///
 /// # Errors
-/// Where the target cannot be added, compiling fails or a file cannot be written.
+/// If the target cannot be added, the compilation fails, or a file cannot be written.
 pub fn bundle(folder: &Path) -> Result<()> {
     let web = Path::new(env!("CARGO_MANIFEST_DIR"));
     let wasm = compiled(web)?;
@@ -41,13 +41,13 @@ pub fn bundle(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Where cargo leaves what it makes.
+/// Cargo's target folder.
 pub fn target_folder() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target"), PathBuf::from)
 }
 
-/// The library compiled for browsers.
+/// Compiles the library for browsers and returns the path of the WebAssembly file.
 fn compiled(web: &Path) -> Result<PathBuf> {
     if !has_target()? {
         run(Command::new("rustup").args(["target", "add", TARGET]))
@@ -63,7 +63,7 @@ fn compiled(web: &Path) -> Result<PathBuf> {
     Ok(target.join(TARGET).join("release").join(LIBRARY).with_extension("wasm"))
 }
 
-/// Whether the compiler that cargo will call has the target's standard library.
+/// Whether the compiler that cargo calls has the standard library of the target.
 fn has_target() -> Result<bool> {
     let rustc = env::var_os("RUSTC").unwrap_or("rustc".into());
     let output = Command::new(&rustc).args(["--print", "target-libdir", "--target", TARGET]).output();

@@ -1,4 +1,5 @@
-//! hsad in the browser: in WebAssembly the bindings that `page/` calls, natively what builds and serves that page.
+//! hsad in the browser. For WebAssembly this crate is the bindings that `page/` calls; natively it builds and serves
+//! that page.
 
 #[cfg(target_arch = "wasm32")]
 mod bindings;

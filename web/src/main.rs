@@ -7,18 +7,19 @@ fn main() -> anyhow::Result<()> {
     use anyhow::Context;
 
     let port = std::env::args().nth(1).map_or(Ok(8080), |text| {
-        text.parse::<u16>().with_context(|| format!("'{text}' is no port: name one from 0 to 65535"))
+        text.parse::<u16>().with_context(|| format!("'{text}' is not a port: use a number from 0 to 65535"))
     })?;
-    // Before anything is built: it may be taken.
-    let listener = TcpListener::bind(("127.0.0.1", port))
-        .with_context(|| format!("port {port} cannot be had: name another one, as in cargo run -p hsad-web -- 8081"))?;
+    // The port is bound before anything is built, since it may be taken.
+    let listener = TcpListener::bind(("127.0.0.1", port)).with_context(|| {
+        format!("port {port} is not available: use another one, as in cargo run -p hsad-web -- 8081")
+    })?;
     let folder = hsad_web::bundle::target_folder().join("web");
     hsad_web::bundle::bundle(&folder)?;
-    eprintln!("{} can be served by any web server as it is", folder.display());
+    eprintln!("{} can be served by any web server", folder.display());
     eprintln!("serving it at http://localhost:{}", listener.local_addr()?.port());
     hsad_web::serve::serve(&listener, &folder)
 }
 
-/// There is nothing to run in a browser but the library.
+/// The WebAssembly build uses only the library.
 #[cfg(target_arch = "wasm32")]
 fn main() {}

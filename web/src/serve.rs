@@ -1,4 +1,4 @@
-//! A web server for the files of one folder, and for this machine only.
+//! A web server for the files of one folder, reachable from this machine only.
 
 use std::{
     ffi::OsStr,
@@ -9,26 +9,26 @@ use std::{
     thread,
 };
 
-/// The longest request that is read, in bytes.
+/// Longest request that is read, in bytes.
 const MAX_REQUEST: u64 = 1 << 16;
 
-/// Answers requests for files of `folder` for as long as the process lives.
+/// Serves the files of `folder` until the process ends.
 ///
 /// # Errors
-/// Where no connection can be accepted any more.
+/// If a connection cannot be accepted.
 pub fn serve(listener: &TcpListener, folder: &Path) -> anyhow::Result<()> {
     loop {
         let (stream, _) = listener.accept()?;
         let folder = folder.to_path_buf();
-        // A browser that hangs up in the middle is no concern of the next one.
-        thread::spawn(move || answer(&stream, &folder));
+        // Each connection has its own thread, so that an aborted one does not affect the next.
+        thread::spawn(move || respond(&stream, &folder));
     }
 }
 
-fn answer(mut stream: &TcpStream, folder: &Path) -> io::Result<()> {
+fn respond(mut stream: &TcpStream, folder: &Path) -> io::Result<()> {
     let mut lines = BufReader::new(stream.take(MAX_REQUEST)).lines();
     let request = lines.next().transpose()?.unwrap_or_default();
-    // The headers say nothing that matters here, but unread bytes would reset the connection.
+    // The headers are not needed, but unread bytes would reset the connection.
     for line in lines.by_ref() {
         if line?.is_empty() {
             break;
@@ -41,7 +41,7 @@ fn answer(mut stream: &TcpStream, folder: &Path) -> io::Result<()> {
         Some((kind, Ok(body))) => ("200 OK", kind, body),
         _ => ("404 Not Found", "text/plain", b"there is no such file\n".to_vec()),
     };
-    // What is rebuilt must be seen at once.
+    // no-store: a rebuilt page must be seen at once.
     write!(
         stream,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
@@ -51,7 +51,7 @@ fn answer(mut stream: &TcpStream, folder: &Path) -> io::Result<()> {
     stream.write_all(&body)
 }
 
-/// The file that a request's target names, if it lies in `folder`.
+/// Path of the file of a request target; `None` if it lies outside of `folder`.
 fn file(folder: &Path, target: &str) -> Option<PathBuf> {
     let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
     let path = Path::new(if path.is_empty() { "index.html" } else { path });

@@ -1,4 +1,4 @@
-//! The files of a scene.
+//! Writing of a scene's files.
 
 use std::io::{Error, Result};
 use std::path::Path;
@@ -9,10 +9,10 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::rig::Side;
 use super::{Pair, Scene};
 
-/// Writes a rendered scene's pictures, truth and description into `folder`, which is made if need be.
+/// Writes a rendered scene's pictures, ground truth and description to `folder`, which is created if missing.
 ///
 /// # Errors
-/// If the folder cannot be made or a file cannot be written.
+/// If the folder cannot be created or a file cannot be written.
 pub fn write(scene: &Scene, pair: &Pair, folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder)?;
     let (width, height) = (pair.width, pair.height);

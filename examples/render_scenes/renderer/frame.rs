@@ -1,4 +1,4 @@
-//! Where a shape stands.
+//! Position and orientation of a shape.
 
 use glam::{DMat3, DVec3};
 
@@ -66,13 +66,13 @@ impl Frame {
         Self { origin: self.origin + self.to_world * DVec3::new(x, y, z), ..self }
     }
 
-    /// How much longer a length can become in the world.
+    /// Largest factor by which the frame enlarges a length.
     pub fn stretch(&self) -> f64 {
         let DMat3 { x_axis, y_axis, z_axis } = self.to_world;
         x_axis.length().max(y_axis.length()).max(z_axis.length())
     }
 
-    /// Where its origin lies in the world.
+    /// Position of the frame's origin in the world, in millimetres.
     pub fn position(&self) -> DVec3 {
         self.origin
     }

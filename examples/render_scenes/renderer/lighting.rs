@@ -1,4 +1,4 @@
-//! Light: one large lamp with soft shadows, and what the surroundings send back.
+//! Light: one large lamp with soft shadows, and ambient light from the surroundings.
 
 use glam::DVec3;
 
@@ -7,15 +7,15 @@ use super::math::{mix, on_sphere, smoothstep};
 use super::shapes::Hit;
 use super::{Object, Ray};
 
-/// Where a ray from a surface starts, so that it does not meet the same surface again.
+/// Distance above a surface at which a ray starts, in millimetres, so that it does not meet the same surface again.
 const CLEARANCE: f64 = 1e-4;
 
-/// The lamp and the surroundings. Light depends on the place alone and not on who looks, so a point has one colour in
+/// The lamp and the surroundings. Light depends on the position alone, not on the viewer, so a point has one colour in
 /// both views.
 pub struct Lighting {
-    /// The middle of the lamp.
+    /// Centre of the lamp, in millimetres.
     pub lamp: DVec3,
-    /// Half the side of the lamp, a square that faces the origin.
+    /// Half the side of the lamp, a square that faces the origin, in millimetres.
     pub size: f64,
     /// The lamp's colour and strength.
     pub key: DVec3,
@@ -23,19 +23,19 @@ pub struct Lighting {
     pub sky: DVec3,
     /// Light from below.
     pub bounce: DVec3,
-    /// From how far away things darken each other's surroundings.
+    /// Distance up to which objects darken each other (ambient occlusion), in millimetres.
     pub reach: f64,
 }
 
-/// What a ray meets first among `objects`, and where.
+/// The object that a ray meets first, and the hit.
 pub fn first<'a>(objects: &'a [Object], ray: &Ray) -> Option<(&'a Object, Hit)> {
     let meetings = objects.iter().filter_map(|object| Some((object, object.meet(ray)?)));
     meetings.min_by(|(_, a), (_, b)| a.t.total_cmp(&b.t))
 }
 
 impl Lighting {
-    /// The light that reaches a point, by sample `i` of `n * n`: one place on the lamp, one direction of the
-    /// surroundings. The samples of a pixel together cover all of them.
+    /// Light that reaches a point, by sample `i` of `n * n`: one position on the lamp, one direction of the
+    /// surroundings. The samples of a pixel together cover the lamp and all directions.
     pub fn at(&self, objects: &[Object], point: DVec3, normal: DVec3, i: u32, n: u32) -> DVec3 {
         let start = point + normal * CLEARANCE;
         let cell = |k: u32| (f64::from(2 * k + 1) / f64::from(n) - 1.0) * self.size;

@@ -1,4 +1,4 @@
-//! The few functions that the standard library leaves to the platform, as polynomials.
+//! Polynomials for the few functions that the standard library leaves to the platform.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,7 +19,7 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Like the sine of `x` full turns, but made of parabolas (within 0.002 of it, and smooth).
+/// A smooth approximation of the sine of `x` full turns by parabolas (error below 0.002).
 pub fn wave(x: f64) -> f64 {
     let f = x - x.floor();
     let arch = if f < 0.5 { 16.0 * f * (0.5 - f) } else { 16.0 * (f - 0.5) * (f - 1.0) };

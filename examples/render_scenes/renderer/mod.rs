@@ -1,8 +1,8 @@
 //! A small ray tracer for rectified stereo pairs whose disparities are known exactly.
 //!
-//! The same bytes on every machine: hashes are integer arithmetic, and floats are `f64` under `+ - * /` and `sqrt`
-//! only, which IEEE 754 rounds correctly everywhere and Rust neither fuses nor reorders. Sine, cosine and arc tangent
-//! are polynomials in [`math`]; nothing calls the platform's mathematical library.
+//! Results are the same bytes on every machine: hashes are integer arithmetic, and floats are `f64` under `+ - * /` and
+//! `sqrt` only, which IEEE 754 rounds correctly everywhere and Rust neither fuses nor reorders. Sine, cosine and arc
+//! tangent are polynomials in [`math`]; nothing calls the platform's mathematical library.
 //!
 //! World: millimetres, x right, y up, z towards the viewer.
 
@@ -29,12 +29,12 @@ use rig::Rig;
 use shapes::{Hit, Shape};
 use textures::Texture;
 
-/// One shape, where it stands, and what it looks like.
+/// A shape with its position and texture.
 pub struct Object {
     frame: Frame,
     shape: Box<dyn Shape>,
     texture: Texture,
-    /// The radius of a sphere about its place that holds all of it, a little too large.
+    /// Radius of a bounding sphere about its position, in millimetres, a little too large.
     reach: f64,
 }
 
@@ -44,7 +44,7 @@ impl Object {
         Self { frame, shape: Box::new(shape), texture, reach }
     }
 
-    /// Where a ray meets it first.
+    /// The first hit of a ray with the object.
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         let from = ray.origin - self.frame.position();
         let (outside, along) = (from.dot(from) - self.reach * self.reach, from.dot(ray.direction));
@@ -56,25 +56,25 @@ impl Object {
     }
 }
 
-/// What a camera makes of the light that reaches it, in grey levels after the display's curve.
+/// The response of a camera's sensor, in grey levels after the display's curve.
 #[derive(Clone, Copy)]
 pub struct Sensor {
     gain: f64,
     offset: f64,
     /// The exponent of the response is `1 + bend / 16`.
     bend: u32,
-    /// Standard deviation of the noise.
+    /// Standard deviation of the noise, in grey levels.
     noise: f64,
 }
 
 impl Sensor {
-    /// Passes everything on unchanged.
+    /// A sensor that changes nothing.
     const PERFECT: Self = Self { gain: 1.0, offset: 0.0, bend: 0, noise: 0.0 };
 }
 
-/// What there is to render.
+/// A scene to render.
 pub struct Scene {
-    /// The folder's name.
+    /// Name of the scene and of its folder.
     pub name: &'static str,
     title: &'static str,
     rig: Rig,
@@ -83,11 +83,11 @@ pub struct Scene {
     objects: Vec<Object>,
 }
 
-/// A camera's picture with its truth, in row-major order from the top left.
+/// A camera's picture with its ground truth, in row-major order from the top left.
 pub struct View {
-    /// Red, green, blue.
+    /// Red, green and blue, 8 bits each.
     pub rgb: Vec<u8>,
-    /// Disparity in pixels at each pixel's centre.
+    /// True disparity at each pixel's centre, in pixels.
     pub disparity: Vec<f32>,
     /// 255 where the other camera sees the same point, else 0.
     pub visible: Vec<u8>,
@@ -95,9 +95,9 @@ pub struct View {
 
 /// Both views of a scene.
 pub struct Pair {
-    /// Width of each view.
+    /// Width of both views, in pixels.
     pub width: u32,
-    /// Height of each view.
+    /// Height of both views, in pixels.
     pub height: u32,
     /// The left view.
     pub left: View,
@@ -122,8 +122,9 @@ impl Ray {
 #[derive(Clone, Copy)]
 struct Surface {
     point: DVec3,
-    /// Millimetres along the surface from the middle of the face, v upwards as a viewer outside reads it.
+    /// Position along the surface from the middle of the face, in millimetres, v upwards for a viewer outside.
     uv: [f64; 2],
-    /// Which face of a [`shapes::Cuboid`] (0 to 5: +x -x +y -y +z -z), which end of a [`shapes::Cylinder`] (1, 2).
+    /// Index of the face of a [`shapes::Cuboid`] (0 to 5: +x -x +y -y +z -z) or of the end of a [`shapes::Cylinder`]
+    /// (1, 2).
     face: usize,
 }

@@ -1,4 +1,4 @@
-//! Hashes of integers, and smooth noise made of them.
+//! Hashes of integers, and smooth noise from them.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ pub fn uniform(x: i64, y: i64, z: i64, seed: u32) -> f64 {
     f64::from(hash(x, y, z, seed)) / 4_294_967_296.0
 }
 
-/// Nearly normal with mean 0 and standard deviation 1: the sum of twelve uniform numbers.
+/// An approximately normal number with mean 0 and standard deviation 1: the sum of twelve uniform numbers.
 pub fn normal(x: i64, y: i64, z: i64, seed: u32) -> f64 {
     (0..12).map(|i| uniform(x, y, z, seed.wrapping_mul(12).wrapping_add(i))).sum::<f64>() - 6.0
 }

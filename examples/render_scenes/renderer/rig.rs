@@ -14,7 +14,7 @@ pub struct Rig {
     pub focal: f64,
     /// Distance between the cameras in millimetres.
     pub baseline: f64,
-    /// Right minus left principal point in pixels: disparity = focal * baseline / depth - doffs.
+    /// Difference of the principal points, cx1 - cx0, in pixels: disparity = focal * baseline / depth - doffs.
     pub doffs: f64,
     /// The left camera's position.
     pub eye: DVec3,
@@ -22,12 +22,12 @@ pub struct Rig {
     pub target: DVec3,
 }
 
-/// Which of the two cameras.
+/// One of the two cameras.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Side {
-    /// The left one, at the rig's eye.
+    /// The left camera, at the rig's eye.
     Left,
-    /// The right one, a baseline to the right.
+    /// The right camera, one baseline to the right.
     Right,
 }
 

@@ -1,4 +1,4 @@
-//! The scenes that are shipped.
+//! The shipped scenes.
 
 mod curved;
 mod planes;
@@ -6,7 +6,7 @@ mod weak;
 
 use super::Scene;
 
-/// All of them.
+/// All shipped scenes.
 pub fn scenes() -> Vec<Scene> {
     vec![planes::scene(), curved::scene(), weak::scene()]
 }

@@ -1,26 +1,26 @@
-//! Shapes in their own space, and where a ray meets them first.
+//! Shapes in their own space, and their intersection with rays.
 
 use glam::DVec3;
 
 use super::math::{angle, arc};
 use super::{Ray, Surface};
 
-/// Where a ray meets a surface.
+/// A hit of a ray with a surface.
 pub struct Hit {
     /// The ray's parameter.
     pub t: f64,
-    /// Outward, of any length.
+    /// Outward normal, of any length.
     pub normal: DVec3,
-    /// What lies there.
+    /// The point of the surface.
     pub surface: Surface,
 }
 
-/// Something that rays can meet.
+/// A shape that rays can meet.
 pub trait Shape: Send + Sync {
-    /// The first meeting with `t > 0`.
+    /// The first hit with `t > 0`.
     fn meet(&self, ray: &Ray) -> Option<Hit>;
 
-    /// The radius of a sphere about the origin that holds all of it.
+    /// Radius of a bounding sphere about the origin.
     fn reach(&self) -> f64;
 }
 
@@ -104,16 +104,16 @@ impl Shape for Sphere {
 
 /// A cylinder about the y axis.
 pub struct Cylinder {
-    /// Its radius.
+    /// Radius of the cylinder.
     pub radius: f64,
-    /// Half its height.
+    /// Half the height of the cylinder.
     pub half: f64,
-    /// Closed at both ends, or a tube that can be looked into.
+    /// Whether the cylinder is closed at both ends; otherwise it is an open tube.
     pub closed: bool,
 }
 
 impl Cylinder {
-    /// A closed one.
+    /// A closed cylinder.
     pub fn solid(radius: f64, half: f64) -> Self {
         Self { radius, half, closed: true }
     }
@@ -192,11 +192,11 @@ fn slope(field: impl Fn(DVec3) -> f64, p: DVec3) -> DVec3 {
 
 /// The surface on which `field` is 0, inside a sphere of radius `reach` about the origin; positive outside.
 pub struct Implicit<F> {
-    /// The radius of a sphere that holds all of it.
+    /// Radius of a bounding sphere.
     pub reach: f64,
-    /// Millimetres within which a ray cannot enter and leave it unnoticed.
+    /// Step of the search along a ray, in millimetres; thinner parts can be missed.
     pub step: f64,
-    /// Positive outside, negative inside.
+    /// The field, positive outside, negative inside.
     pub field: F,
 }
 
@@ -218,7 +218,7 @@ impl<F: Fn(DVec3) -> f64 + Send + Sync> Shape for Implicit<F> {
     }
 }
 
-/// A ground `y = height(x, z)` without end, between -`rise` and `rise`.
+/// An infinite ground `y = height(x, z)`, between -`rise` and `rise`.
 pub struct Ground<F> {
     /// The greatest height and depth.
     pub rise: f64,

@@ -1,4 +1,4 @@
-//! Pictures and their truth.
+//! Rendering of pictures and their ground truth.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,10 +8,10 @@ use super::noise::normal;
 use super::rig::Side;
 use super::{Pair, Scene, Sensor, View};
 
-/// Rays along each side of a pixel.
+/// Number of rays along each side of a pixel.
 const RAYS: u32 = 5;
-/// A point counts as seen if the other camera's ray ends this near to it, as a fraction of its depth. Far above the
-/// rounding of the intersections (1e-11), far below any step between surfaces (0.1 mm at a metre).
+/// A point counts as seen if the other camera's ray ends this near to it, as a fraction of its depth. The tolerance is
+/// far above the rounding of the intersections (1e-11) and far below any step between surfaces (0.1 mm at a metre).
 const TOLERANCE: f64 = 1e-6;
 
 /// Renders both views of `scene`.
@@ -37,7 +37,7 @@ fn view(scene: &Scene, side: Side) -> View {
     }
 }
 
-/// The disparity of what lies at a pixel's centre, and whether the other camera sees that very point in its frame.
+/// The disparity at a pixel's centre, and whether the other camera sees that point in its frame.
 fn truth(scene: &Scene, side: Side, x: f64, y: f64) -> (f64, bool) {
     let rig = &scene.rig;
     let Some((_, hit)) = first(&scene.objects, &rig.ray(side, x, y)) else {
@@ -62,10 +62,10 @@ fn exposed(scene: &Scene, side: Side, x: u32, y: u32) -> [u8; 3] {
             let ray = scene.rig.ray(side, f64::from(x) + offset(i % RAYS), f64::from(y) + offset(i / RAYS));
             first(&scene.objects, &ray).map_or(DVec3::ZERO, |(object, hit)| {
                 let outward = object.frame.normal_to_world(hit.normal);
-                // An open tube is seen from within as well.
+                // An open tube is visible from inside, too.
                 let facing = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
                 let colour = (object.texture)(&hit.surface).clamp(DVec3::ZERO, DVec3::ONE);
-                // Textures are written as they look on a screen; light adds up in squares of that.
+                // Textures are colours on a screen; light adds up linearly, approximated by their squares.
                 colour * colour * scene.lighting.at(&scene.objects, ray.at(hit.t), facing, i, RAYS)
             })
         })
@@ -79,9 +79,9 @@ fn exposed(scene: &Scene, side: Side, x: u32, y: u32) -> [u8; 3] {
 }
 
 impl Sensor {
-    /// Linear light to grey levels.
+    /// Converts linear light to grey levels.
     fn expose(self, light: f64) -> f64 {
-        // Bright light is compressed, as film does it, instead of clipped; 0.7 and less stays as it is.
+        // Bright light is compressed, as on film, instead of clipped; light up to 0.7 is unchanged.
         let soft = if light > 0.7 { 0.7 + 0.3 * (light - 0.7) / (light - 0.4) } else { light };
         let shown = soft.sqrt();
         let sixteenth = shown.sqrt().sqrt().sqrt().sqrt();

@@ -1,24 +1,24 @@
-//! What happens to the second view before it is matched, as people name it.
+//! Changes of the second view before matching: the values of `--condition`.
 
 use hsad::{
     Result,
     eval::conditions::{Condition, Kind},
 };
 
-/// What leaves the view as it is.
+/// The condition that leaves the view unchanged.
 const NONE: &str = "none";
 
-/// Changes in a row, and what they are called.
+/// A chain of conditions, applied in order, and its name.
 pub struct Change {
     pub name: String,
     pub conditions: Vec<Condition>,
 }
 
 impl Change {
-    /// `NAME`, `NAME=STRENGTH`, several of these joined by `+`, or `none`.
+    /// Parses `NAME`, `NAME=STRENGTH`, several of these joined by `+`, or `none`.
     ///
     /// # Errors
-    /// [`hsad::Error::Parameter`] for a name or a strength that there is not.
+    /// [`hsad::Error::Parameter`] for an unknown name or a strength outside its range.
     pub fn parse(text: &str) -> Result<Self> {
         let named = text.split('+').filter(|&part| part != NONE);
         let conditions: Vec<Condition> = named.map(str::parse).collect::<Result<_>>()?;
@@ -26,7 +26,7 @@ impl Change {
         Ok(Self { name: if names.is_empty() { NONE.into() } else { names.join("+") }, conditions })
     }
 
-    /// What is asked for, each once.
+    /// Parses several changes, without duplicates.
     ///
     /// # Errors
     /// As [`Self::parse`].
@@ -42,12 +42,12 @@ impl Change {
     }
 }
 
-/// A line on each kind of condition, for help.
+/// Help text: one line for each kind of condition.
 pub fn kinds() -> String {
     let lines = Kind::ALL.map(|kind| {
         let [least, greatest] = kind.range();
         let (name, usual, neutral) = (kind.name(), kind.usual(), kind.neutral());
-        format!("  {name:<11}{least} to {greatest}; {neutral} changes nothing, {usual} if none is named")
+        format!("  {name:<11}{least} to {greatest}; {neutral} changes nothing [default: {usual}]")
     });
     lines.join("\n")
 }

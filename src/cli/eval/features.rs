@@ -1,6 +1,6 @@
-//! `hsad eval features`: how good matches of interest points are.
+//! `hsad eval features`: scores matches of interest points against the ground truth.
 
-mod foreign;
+mod supplied_matches;
 mod table;
 mod views;
 
@@ -13,7 +13,7 @@ use clap::Args;
 use hsad::{
     Error, Result,
     backend::Backend,
-    eval::{Judged, OfPoints, Point, PointMatch, conditions::Changed, curves::accuracy_of_first},
+    eval::{Judged, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
     gpu::block_on,
     io::{atomic::write_whole, png},
     wide_baseline::{WideBaselineConfig, match_views},
@@ -23,47 +23,49 @@ use serde_json::json;
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        complain,
-        kept::{self, Place},
+        report_failures,
+        saved_results::{self, SavedResults},
         scenes,
     },
     options::{FeatureOptions, RunOptions, with_default},
     output::{Output, check_writable},
     report,
     terminal::{self, Progress},
+    wording::in_options,
 };
 use table::{Column, Row, Table, Unit};
 use views::{Pair, Views};
 
 const DETAILS: &str = "\
-A folder is what hsad eval dense takes for a scene or for scenes, or a homography set (img1.png, and img2.png with \
-H1to2p, img3.png with H1to3p, ...: nine numbers that take a pixel of the first to the other).
+A FOLDER is a scene or a folder of scenes as for hsad eval dense, or a homography set (img1.png, and img2.png with \
+H1to2p, img3.png with H1to3p, ...: the nine numbers of the homography from the first view to the other).
 
-What is measured, of each pair and in the mean, shares in per cent:
-  points   interest points in what both views show, of the view with fewer
-  matches  those whose truth is known; only they count
-  right    precision: matches within the tolerance of the true place
-  recall   right matches by what could have been found
-  F        harmonic mean of precision and recall
-  of N     precision among the N most confident, or all where there are fewer
-  cover    points of the first view that have a match, right or not
-  repeat   repeatability: pairs of points that correspond, by points
-  score    matching score: matches of points that correspond, by points
+Figures of each pair and their means, shares in per cent:
+  points   interest points in the area that both views show, of the view with fewer
+  matches  matches with known ground truth; only these count
+  right    precision: share of the matches within --tolerance of the true position
+  recall   right matches divided by the matches that could have been found
+  F        F-measure, the harmonic mean of precision and recall
+  of N     precision of the N most confident matches, or of all if there are fewer
+  cover    share of the points of the first view that have a match, right or wrong
+  repeat   repeatability: corresponding points divided by points
+  score    matching score: matches of corresponding points divided by points
 
-Places are compared in pixels of the second view; where it does not show a point, no match of it is right. Two points \
-correspond if the overlap error of their regions is at most 40 %, both enlarged until that of the first view has a \
-radius of 30 px, each with one other at most (Mikolajczyk et al., IJCV 65, 2005). What could have been found are these, \
-and right matches of others.
+Positions are compared in pixels of the second view; a match of an occluded point is wrong. Two points correspond if the \
+overlap error of their regions is at most 40 %, after both regions are enlarged by one factor until that of the first \
+view has a radius of 30 px; each point corresponds to one other at most (Mikolajczyk et al., IJCV 65, 2005). The matches \
+that could have been found are these correspondences and the right matches of other points.
 
-Conditions change the second view, and the truth with it: NAME or NAME=STRENGTH, several in a row joined by '+', or none:";
+Conditions change the second view and its ground truth: NAME or NAME=STRENGTH, several applied in order joined by '+', \
+or none:";
 
 const EXAMPLES: &str = "\
 Matches of another program (--matches): CSV with a header, columns x1, y1, x2, y2 in pixels of the first and the second \
-view, and, if there is one, confidence, the greater the surer; without it the surest come first. Its points \
-(--points): x, y and scale, as `hsad features` writes them; without them only precision is known. --write-views gives \
-it the changed views.
+view, and optionally confidence, larger for more confident matches; without it the lines must be in order of confidence, \
+the most confident first. Its points (--points): columns x, y and scale, as `hsad features` writes them; without them \
+only the precision is known. --write-views writes the changed views for the other program.
 
-With -o, DIR/PAIR/CONDITION/result.json is not computed again while pictures, options, device and program are the same.
+With -o, DIR/PAIR/CONDITION/result.json is reused while pictures, options, device and program are unchanged.
 
 Examples:
   hsad eval features data -o out
@@ -75,60 +77,64 @@ fn details() -> String {
     format!("{DETAILS}\n{}\n\n{EXAMPLES}", kinds())
 }
 
-/// The default here is not that of the other subcommands.
+/// Help of `--threshold`, whose default differs from that of the other subcommands.
 fn threshold_help() -> String {
     let default = WideBaselineConfig::default().features.threshold;
-    with_default("Least determinant of the Hessian, with grey values of 0 to 1", default)
+    with_default(
+        "Smallest determinant of the Hessian of a point, for grey values of 0 to 1; above 0, at most 1",
+        default,
+    )
 }
 
-/// Measure how good matches of interest points are
+/// Score matches of interest points against the ground truth
 #[derive(Args)]
 #[command(after_help = details(), mut_arg("threshold", |option| option.help(threshold_help())))]
 pub struct Features {
     /// Folders of stereo scenes or homography sets
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
-    /// Change the second view first, such as rotation=30; each of several is a table of its own
+    /// Change the second view before matching, for example rotation=30; repeatable, one table per condition
     #[arg(long = "condition", value_name = "NAME[=STRENGTH]", default_value = "none")]
     conditions: Vec<String>,
-    /// What is random in a condition is another for another seed
+    /// Seed of the random numbers in conditions
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// How far from the true place a right match can be
+    /// Largest distance of a right match from the true position, in pixels, at least 0
     #[arg(long, value_name = "PX", default_value_t = 1.5, allow_negative_numbers = true)]
     tolerance: f64,
-    /// Numbers of most confident matches whose precision is told
+    /// Report the precision of the N most confident matches, each N at least 1
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "10,50,100,500")]
     first: Vec<usize>,
-    /// Of a homography set only this view, 2 or more
+    /// Use only this view of a homography set, 2 to 99 [default: all]
     #[arg(long, value_name = "K")]
     view: Option<u32>,
-    /// Score these matches, which another program found, of the only pair and condition
+    /// Score the matches of another program instead, of a single pair and condition
     #[arg(long, value_name = "FILE")]
     matches: Option<PathBuf>,
-    /// The points that it found in the first and in the second view
+    /// Interest points of the other program in the first and in the second view
     #[arg(long, num_args = 2, value_names = ["FIRST", "SECOND"], requires = "matches")]
     points: Option<Vec<PathBuf>>,
-    /// Write the changed second views to this folder, for other programs, and evaluate nothing
+    /// Only write the changed second views to this folder, for other programs
     #[arg(long, value_name = "DIR", conflicts_with_all = ["matches", "csv", "json"])]
     write_views: Option<PathBuf>,
-    /// Write the figures to this file, a line for each pair and condition
+    /// Write the figures to this file as CSV, one line per pair and condition; shares are 0 to 1
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write the figures and how they were found to this file
+    /// Write the figures, their means and the parameters to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Folder for the results, created if need be
+    /// Output folder for the results, created if missing
     #[arg(short, long, value_name = "DIR", conflicts_with_all = ["matches", "write_views"])]
     output: Option<PathBuf>,
-    /// Compute again what an earlier run left in the folder
+    /// Ignore the results of an earlier run in the output folder
     #[arg(long, requires = "output")]
     fresh: bool,
-    /// Match the views as they are: do not turn, scale or smooth them, nor ask neighbours
+    /// Match the views as they are: without rotating, scaling or smoothing them, and without the support of
+    /// neighbouring matches
     #[arg(long)]
     plain: bool,
-    #[arg(long, value_name = "R", help = with_default("Largest ratio of the distances of the best and the second \
-        descriptor, up to 1", WideBaselineConfig::default().matching.ratio))]
+    #[arg(long, value_name = "R", help = with_default("Ratio test: largest ratio of the distances of the best and the \
+        second best descriptor, above 0, at most 1", WideBaselineConfig::default().matching.ratio))]
     ratio: Option<f32>,
     #[command(flatten)]
     run: RunOptions,
@@ -136,14 +142,14 @@ pub struct Features {
     features: FeatureOptions,
 }
 
-/// Who finds the matches.
+/// Source of the matches.
 enum Finder {
     Hsad(Backend, WideBaselineConfig),
-    Other { matches: PathBuf, points: Option<Vec<PathBuf>> },
+    Supplied { matches: PathBuf, points: Option<Vec<PathBuf>> },
 }
 
 impl Features {
-    /// Measures, and tells in the end what could not be measured.
+    /// Scores all pairs under all conditions; failures do not stop the others and are returned at the end.
     pub fn run(mut self) -> anyhow::Result<()> {
         self.first.sort_unstable();
         self.first.dedup();
@@ -157,7 +163,7 @@ impl Features {
         let mut failures: Vec<String> = unread.iter().map(Error::to_string).collect();
         if let Some(folder) = &self.write_views {
             self.write(folder, &pairs, &changes, &mut failures)?;
-            return complain(&failures);
+            return report_failures(&failures);
         }
         let root = self.output.as_deref().map(Output::open).transpose()?;
         for file in [&self.csv, &self.json].into_iter().flatten() {
@@ -170,33 +176,34 @@ impl Features {
                     name: "matches",
                     value: matches.display().to_string(),
                     expected:
-                        "they belong to one pair under one condition: name one folder, one --condition, and of a \
-                               homography set the --view"
+                        "they belong to one pair under one condition: name one folder, one --condition, and for a \
+                               homography set one --view"
                             .into(),
                 }
                 .into());
             }
-            Some(matches) => Finder::Other { matches, points: self.points.take() },
+            Some(matches) => Finder::Supplied { matches, points: self.points.take() },
         };
 
         let mut table = Table { columns: self.columns(), rows: Vec::new() };
         let width = pairs.iter().map(|pair| pair.name.chars().count()).fold("mean".len(), usize::max);
-        let place = self.place(&finder);
-        let of_pair =
-            |pair: &Pair| pair.files()?.into_iter().try_fold(place.clone().below(&pair.name), Place::with_file);
-        let places: Vec<Result<Place>> = pairs.iter().map(of_pair).collect();
+        let saved = self.saved_results(&finder);
+        let of_pair = |pair: &Pair| {
+            pair.files()?.into_iter().try_fold(saved.clone().below(&pair.name), SavedResults::depending_on_file)
+        };
+        let saved_by_pair: Vec<Result<SavedResults>> = pairs.iter().map(of_pair).collect();
         let progress = Progress::new(self.run.quiet);
         let total = pairs.len() * changes.len();
-        let (mut done, mut kept) = (0, 0);
+        let (mut done, mut reused) = (0, 0);
         for change in &changes {
             let before = table.rows.len();
-            for (pair, place) in pairs.iter().zip(&places) {
+            for (pair, saved) in pairs.iter().zip(&saved_by_pair) {
                 done += 1;
                 progress.piece(&format!("{}, {}", pair.name, change.name), done, total);
-                let failure = match self.row(pair, change, &finder, place, &mut kept) {
-                    Ok((row, unkept)) => {
+                let failure = match self.row(pair, change, &finder, saved, &mut reused) {
+                    Ok((row, unsaved)) => {
                         table.rows.push(row);
-                        unkept
+                        unsaved
                     }
                     Err(failure) => Some(failure),
                 };
@@ -209,11 +216,11 @@ impl Features {
         }
         drop((progress, root));
         if let (Some(folder), true, false) = (&self.output, !table.rows.is_empty(), self.run.quiet) {
-            let told = kept::told(kept, table.rows.len());
-            terminal::print(&format!("\nresults are in {}{told}\n", folder.display()))?;
+            let reuse = saved_results::reuse_note(reused, table.rows.len());
+            terminal::print(&format!("\nresults are in {}{reuse}\n", folder.display()))?;
         }
         self.write_figures(&table, &finder, &failures)?;
-        complain(&failures)
+        report_failures(&failures)
     }
 
     fn check(&self) -> Result<()> {
@@ -235,8 +242,8 @@ impl Features {
         changes: &[Change],
         failures: &mut Vec<String>,
     ) -> anyhow::Result<()> {
-        // Of a folder that is made for nothing, nothing is left.
-        let _made = Output::open(folder)?;
+        // A folder that stays empty is removed again when this is dropped.
+        let _folder = Output::open(folder)?;
         for pair in pairs {
             let views = match pair.views() {
                 Ok(views) => views,
@@ -255,40 +262,42 @@ impl Features {
         Ok(())
     }
 
-    /// Where the results of all pairs are kept.
-    fn place(&self, finder: &Finder) -> Place {
-        let place = Place::new(self.output.as_deref(), self.fresh);
-        let place = place.with(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
+    /// Where the results of all pairs are saved.
+    fn saved_results(&self, finder: &Finder) -> SavedResults {
+        let saved = SavedResults::new(self.output.as_deref(), self.fresh);
+        let saved = saved.depending_on(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
         match finder {
             Finder::Hsad(backend, config) => {
-                place.with(&format!("{config:?}")).with(&report::device(backend).to_string())
+                saved.depending_on(&format!("{config:?}")).depending_on(&report::device(backend).to_string())
             }
-            Finder::Other { .. } => place,
+            Finder::Supplied { .. } => saved,
         }
     }
 
-    /// The figures of a pair under a condition, and why they could not be kept; or what is wrong with the pair, or with
-    /// it under this condition.
+    /// The figures of a pair under a condition, with the reason if they could not be saved.
+    ///
+    /// # Errors
+    /// A message that names the pair and, if it is to blame, the condition.
     fn row(
         &self,
         pair: &Pair,
         change: &Change,
         finder: &Finder,
-        place: &Result<Place>,
-        kept: &mut usize,
+        saved: &Result<SavedResults>,
+        reused: &mut usize,
     ) -> std::result::Result<(Row, Option<String>), String> {
-        let of_pair = |error: &Error| format!("{}: {error}", pair.name);
-        let place = place.as_ref().map_err(of_pair)?.clone().below(&change.name).with(&change.name);
-        if let Some(row) = place.find() {
-            *kept += 1;
+        let of_pair = |error: &Error| format!("{}: {}", pair.name, in_options(error));
+        let saved = saved.as_ref().map_err(of_pair)?.clone().below(&change.name).depending_on(&change.name);
+        if let Some(row) = saved.load() {
+            *reused += 1;
             return Ok((row, None));
         }
         let views = pair.views().map_err(|error| of_pair(&error))?;
-        let told = |error: Error| format!("{}, {}: {error}", pair.name, change.name);
-        let figures = self.figures(views, change, finder).map_err(told)?;
+        let described = |error: Error| format!("{}, {}: {}", pair.name, change.name, in_options(&error));
+        let figures = self.figures(views, change, finder).map_err(described)?;
         let row = Row { scene: pair.name.clone(), condition: change.name.clone(), figures };
-        let unkept = place.keep(&row, |_| Ok(())).err().map(told);
-        Ok((row, unkept))
+        let unsaved = saved.save(&row, |_| Ok(())).err().map(described);
+        Ok((row, unsaved))
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -320,24 +329,24 @@ impl Features {
                 let points = found.features.each_ref().map(|view| view.iter().map(Point::from).collect::<Vec<_>>());
                 (found.matches.iter().map(PointMatch::from).collect(), Some(points))
             }
-            Finder::Other { matches, points } => {
+            Finder::Supplied { matches, points } => {
                 let sizes = truth.sizes();
-                let mut matches: Vec<PointMatch> = foreign::matches(matches, sizes)?;
+                let mut matches: Vec<PointMatch> = supplied_matches::matches(matches, sizes)?;
                 let points = match points.as_deref() {
                     Some([first, second]) => {
-                        Some([foreign::points(first, sizes[0])?, foreign::points(second, sizes[1])?])
+                        Some([supplied_matches::points(first, sizes[0])?, supplied_matches::points(second, sizes[1])?])
                     }
                     _ => None,
                 };
                 if let Some([first, second]) = &points {
-                    foreign::join(&mut matches, [first, second]);
+                    supplied_matches::join(&mut matches, [first, second]);
                 }
                 (matches, points)
             }
         };
         let judged = Judged::new(&matches, &truth, self.tolerance)?;
-        let of_points = points.map(|[first, second]| OfPoints::new(&matches, &judged, [&first, &second], &truth));
-        let by_points = |figure: &dyn Fn(&OfPoints) -> f64| of_points.as_ref().map_or(f64::NAN, figure);
+        let point_scores = points.map(|[first, second]| PointScores::new(&matches, &judged, [&first, &second], &truth));
+        let by_points = |figure: &dyn Fn(&PointScores) -> f64| point_scores.as_ref().map_or(f64::NAN, figure);
         let mut figures = vec![
             by_points(&|found| found.repeatability.fewer() as f64),
             judged.right.len() as f64,
@@ -354,7 +363,7 @@ impl Features {
         Ok(figures)
     }
 
-    /// The files that were asked for.
+    /// Writes the files of `--csv` and `--json`.
     fn write_figures(&self, table: &Table, finder: &Finder, failed: &[String]) -> Result<()> {
         if let Some(path) = &self.csv {
             write_whole(path, |out| out.write_all(table.csv().as_bytes()))?;
@@ -364,7 +373,7 @@ impl Features {
                 "version": env!("CARGO_PKG_VERSION"),
                 "matches_of": match finder {
                     Finder::Hsad(..) => "hsad".into(),
-                    Finder::Other { matches, .. } => matches.display().to_string(),
+                    Finder::Supplied { matches, .. } => matches.display().to_string(),
                 },
                 "tolerance_px": self.tolerance,
                 "seed": self.seed,

@@ -1,8 +1,8 @@
 mod change;
 mod dense;
 mod features;
-mod kept;
 mod paper;
+mod saved_results;
 mod scenes;
 
 use std::fmt::Display;
@@ -12,33 +12,33 @@ use clap::{Args, Subcommand};
 
 use crate::cli::terminal;
 
-/// Tell how good results are, on data with known truth
+/// Measure the quality of results on data with ground truth
 #[derive(Args)]
 pub struct Eval {
     #[command(subcommand)]
-    what: What,
+    evaluation: Evaluation,
 }
 
 #[derive(Subcommand)]
-enum What {
+enum Evaluation {
     Dense(Box<dense::Dense>),
     Features(Box<features::Features>),
     Paper(paper::Paper),
 }
 
 impl Eval {
-    /// Does what was asked.
+    /// Runs the evaluation.
     pub fn run(self) -> anyhow::Result<()> {
-        match self.what {
-            What::Dense(command) => command.run(),
-            What::Features(command) => command.run(),
-            What::Paper(command) => command.run(),
+        match self.evaluation {
+            Evaluation::Dense(command) => command.run(),
+            Evaluation::Features(command) => command.run(),
+            Evaluation::Paper(command) => command.run(),
         }
     }
 }
 
-/// A line about each failure, the last of which is the program's own.
-fn complain(failures: &[impl Display]) -> anyhow::Result<()> {
+/// Prints one line for each failure but the last, and returns the last one as the error of the program.
+fn report_failures(failures: &[impl Display]) -> anyhow::Result<()> {
     let Some((last, others)) = failures.split_last() else { return Ok(()) };
     others.iter().for_each(|failure| terminal::error(&anyhow!("{failure}")));
     Err(anyhow!("{last}"))

@@ -1,10 +1,10 @@
-//! The scenes that an evaluation is about.
+//! The scenes of an evaluation.
 
 use std::path::{Path, PathBuf};
 
 use hsad::{Error, Result, eval::scene::SceneFiles};
 
-/// All scenes, and what is wrong with the paths that hold none.
+/// All scenes in `paths`, and an error for each path without one.
 ///
 /// # Errors
 /// As [`collect`].
@@ -12,10 +12,10 @@ pub fn find(paths: &[PathBuf]) -> Result<(Vec<SceneFiles>, Vec<Error>)> {
     collect(paths, SceneFiles::find, |scene| &scene.name)
 }
 
-/// What `find` finds in all paths, and what is wrong with those where it finds nothing.
+/// The items that `find` finds in all paths, and an error for each path where it fails.
 ///
 /// # Errors
-/// [`Error::Parameter`] if two have one name, which results are told apart by.
+/// [`Error::Parameter`] if two items have the same name, which identifies results.
 pub fn collect<T>(
     paths: &[PathBuf],
     find: impl Fn(&Path) -> Result<Vec<T>>,
@@ -33,7 +33,7 @@ pub fn collect<T>(
             return Err(Error::Parameter {
                 name: "SCENE",
                 value: format!("the name of two scenes, '{}'", name(one)),
-                expected: "each needs a name of its own: evaluate them one after the other".into(),
+                expected: "each scene needs a name of its own: evaluate them one after the other".into(),
             });
         }
     }

@@ -1,9 +1,9 @@
-//! Changes of brightness, a pixel at a time: nothing moves.
+//! Changes of brightness, pixel by pixel, without moving anything.
 
 use super::random::Random;
 use crate::{filter::grey, io::Picture};
 
-/// The picture with `f` of each colour value at column `x`, rounded (halves up) and cut to 0 to 255.
+/// Applies `f(column, value)` to each colour value; the result is rounded (halves up) and clamped to 0 to 255.
 fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
     Picture::from_fn(picture.width(), picture.height(), |x, y| {
         let [red, green, blue, alpha] = picture.get(x, y);
@@ -12,24 +12,25 @@ fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
     })
 }
 
-/// Every value times `factor`.
+/// Multiplies every colour value by `factor`.
 pub(super) fn gain(picture: &Picture, factor: f64) -> Picture {
     each(picture, |_, value| factor * f64::from(value))
 }
 
-/// `255 (v / 255)^exponent`.
+/// Replaces every colour value `v` by `255 (v / 255)^exponent`.
 pub(super) fn gamma(picture: &Picture, exponent: f64) -> Picture {
     let curve: Vec<f64> = (0..=255).map(|value| 255.0 * libm::pow(f64::from(value) / 255.0, exponent)).collect();
     each(picture, |_, value| curve[usize::from(value)])
 }
 
-/// Times `1 - strength` in the first column to `1 + strength` in the last one, evenly.
+/// Multiplies colour values by a factor that grows linearly from `1 - strength` in the first column to `1 + strength`
+/// in the last one.
 pub(super) fn ramp(picture: &Picture, strength: f64) -> Picture {
     let last = f64::from(picture.width() - 1).max(1.0);
     each(picture, |x, value| (1.0 + strength * (2.0 * f64::from(x) / last - 1.0)) * f64::from(value))
 }
 
-/// Plus normal noise of `deviation` grey levels in each colour of each pixel, independently.
+/// Adds normal noise with a standard deviation of `deviation` grey levels, independent in each colour of each pixel.
 pub(super) fn noise(picture: &Picture, deviation: f64, mut random: Random) -> Picture {
     picture.map(|&[red, green, blue, alpha]| {
         let [red, green, blue] = [red, green, blue].map(|value| grey(f64::from(value) + deviation * random.normal()));

@@ -1,24 +1,25 @@
-//! Things in front of the picture: nothing moves, and a part is hidden.
+//! Occlusions: part of the picture is hidden, nothing moves.
 
 use super::random::Random;
 use crate::{image::Plane, io::Picture};
 
-/// Sides of a patch, by the shorter side of the picture: from a 24th to an 8th.
+/// Side of a patch as a fraction of the picture's shorter side: a 24th to an 8th.
 const PATCH: [u32; 2] = [24, 8];
-/// Pixels on the side of a patch's cells, each of one colour.
+/// Side of the single-coloured cells of a patch, in pixels.
 const CELL: u32 = 4;
 
-/// Rectangles of random colours at random places until they hide the `share` of the picture, and what they leave: 255.
+/// Draws rectangles of random colours at random positions until they hide `share` (0 to 1) of the picture. Returns the
+/// picture and a mask, 255 where the original is visible.
 ///
-/// Their cells of 4x4 px make interest points of their own, which correspond to nothing.
+/// The cells of 4x4 px have interest points of their own, which correspond to nothing.
 pub(super) fn clutter(picture: &Picture, share: f64, mut random: Random) -> (Picture, Plane<u8>) {
     let (width, height) = picture.size();
     let mut changed = picture.clone();
     let mut visible = Plane::filled(width, height, 255);
     let [least, most] = PATCH.map(|part| (width.min(height) / part).max(1));
-    let wanted = (share * f64::from(width) * f64::from(height)).round() as usize;
+    let target = (share * f64::from(width) * f64::from(height)).round() as usize;
     let mut hidden = 0;
-    while hidden < wanted {
+    while hidden < target {
         let [patch_width, patch_height] = [(); 2].map(|()| least + random.below(most - least + 1));
         let left = random.below(width - patch_width + 1);
         let top = random.below(height - patch_height + 1);
@@ -36,7 +37,8 @@ pub(super) fn clutter(picture: &Picture, share: f64, mut random: Random) -> (Pic
     (changed, visible)
 }
 
-/// A frame of one colour: on each side it hides half the `share` of the width or height.
+/// Draws a frame of one colour that hides half of `share` of the width or height on each side. Returns the picture and
+/// a mask, 255 where the original is visible.
 pub(super) fn frame(picture: &Picture, share: f64, fill: [u8; 4]) -> (Picture, Plane<u8>) {
     let (width, height) = picture.size();
     let strip = |side: u32| (share / 2.0 * f64::from(side)).round() as u32;
@@ -55,7 +57,7 @@ mod tests {
         let picture = Picture::from_fn(200, 100, |x, y| [x as u8, y as u8, 0, 255]);
         let (changed, visible) = clutter(&picture, 0.3, Random::new(5, 0));
         let hidden = visible.data().iter().filter(|&&v| v == 0).count();
-        // No more than the last patch too many: 12x12.
+        // At most one patch too many is hidden: 12x12 px.
         assert!((6000..6144).contains(&hidden), "{hidden}");
         for ((before, after), &visible) in picture.data().iter().zip(changed.data()).zip(visible.data()) {
             assert!(visible == 0 || before == after);
@@ -70,7 +72,7 @@ mod tests {
         let (changed, visible) = frame(&picture, 0.4, [9; 4]);
         let shown: Vec<(u32, u32)> =
             (0..6).flat_map(|y| (0..10).map(move |x| (x, y))).filter(|&(x, y)| visible.get(x, y) == 255).collect();
-        // 2 of 10 columns and 1.2 of 6 rows on each side.
+        // The frame is 2 of 10 columns wide and 1.2 of 6 rows high on each side.
         assert_eq!((shown.len(), shown[0], shown[23]), (24, (2, 1), (7, 4)));
         assert_eq!((changed.get(2, 1), changed.get(1, 1)), ([1, 2, 3, 255], [9; 4]));
     }

@@ -1,7 +1,7 @@
-//! What can happen to a picture between two views, each with a strength and an exact truth about where things went.
+//! Conditions: synthetic changes of the second view, each with a strength and exact ground truth for the positions.
 //!
-//! A changed picture is the same bytes for the same seed on every machine: all is integers, or `f64` arithmetic and the
-//! functions of `libm`, which are arithmetic themselves (see [`crate::filter`]).
+//! A changed picture is the same bytes for the same seed on every machine: only integers, `f64` arithmetic and
+//! functions of `libm` are used, which are arithmetic themselves (see [`crate::filter`]).
 
 mod brightness;
 mod cover;
@@ -19,31 +19,34 @@ use crate::{
 };
 use random::Random;
 
-/// The kinds of change. Each has a strength; at its neutral strength nothing changes.
+/// Kind of change. Each has a strength; at its neutral strength nothing changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Colour values times the strength.
+    /// Colour values are multiplied by the strength.
     Gain,
-    /// Colour values, 0 to 1, to the power of the strength.
+    /// Colour values, scaled to 0 to 1, are raised to the power of the strength.
     Gamma,
-    /// Colour values times a factor that grows evenly from `1 - strength` in the first column to `1 + strength` in the
-    /// last.
+    /// Colour values are multiplied by a factor that grows linearly from `1 - strength` in the first column to
+    /// `1 + strength` in the last one.
     Ramp,
-    /// Normal noise, independent in each colour of each pixel; the strength is its standard deviation in grey levels.
+    /// Normal noise is added, independent in each colour of each pixel; the strength is its standard deviation in grey
+    /// levels.
     Noise,
-    /// A Gaussian; the strength is its standard deviation in pixels.
+    /// Gaussian blur; the strength is its standard deviation in pixels.
     Blur,
-    /// A turn about the centre, in degrees clockwise on the screen. The canvas stays: corners are cut off.
+    /// Rotation about the centre; the strength is the angle in degrees, clockwise on the screen. The picture keeps its
+    /// size: corners are cut off.
     Rotation,
-    /// Larger by this factor about the centre. The canvas stays: the border is cut off, or bare.
+    /// Enlargement about the centre by the strength. The picture keeps its size: the border is cut off, or filled.
     Scale,
-    /// Patches of random colours in front; the strength is the share of the picture that they hide.
+    /// Patches of random colours occlude the picture; the strength is the hidden share, 0 to 1.
     Clutter,
-    /// A frame of one colour in front; on each side it hides half the strength's share of the width or height.
+    /// A frame of one colour occludes the picture; on each side it hides half the strength as a share of width or
+    /// height.
     Occlusion,
 }
 
-/// What is to be known about a kind.
+/// Name and strengths of a kind.
 struct Facts {
     name: &'static str,
     neutral: f64,
@@ -52,7 +55,7 @@ struct Facts {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 9] = [
         Self::Gain,
         Self::Gamma,
@@ -80,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// Its name in one word.
+    /// Name of the kind in one word.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
@@ -90,12 +93,12 @@ impl Kind {
         self.facts().neutral
     }
 
-    /// The least and the greatest strength.
+    /// Smallest and largest strength.
     pub fn range(self) -> [f64; 2] {
         self.facts().range
     }
 
-    /// The strength where none is named.
+    /// Default strength.
     pub fn usual(self) -> f64 {
         self.facts().usual
     }
@@ -109,6 +112,8 @@ pub struct Condition {
 }
 
 impl Condition {
+    /// A condition of `kind` at `strength`.
+    ///
     /// # Errors
     /// [`Error::Parameter`] if the strength lies outside the kind's range.
     pub fn new(kind: Kind, strength: f64) -> Result<Self> {
@@ -126,12 +131,12 @@ impl Condition {
         Ok(Self { kind, strength })
     }
 
-    /// Whether it brings points to other places. Where it does not, the rows of a rectified pair still correspond.
+    /// Whether the condition moves points. If not, the rows of a rectified pair still correspond.
     pub fn moves(self) -> bool {
         matches!(self.kind, Kind::Rotation | Kind::Scale) && self.strength != self.kind.neutral()
     }
 
-    /// What it does to a picture. The same seed gives the same bytes.
+    /// Applies the condition to a picture. The same seed gives the same bytes.
     pub fn apply(self, picture: &Picture, seed: u64) -> Changed {
         let Self { kind, strength } = self;
         let random = || Random::new(seed, kind as u64);
@@ -160,7 +165,7 @@ impl Condition {
     }
 }
 
-/// `NAME=STRENGTH`, or `NAME` for the usual strength.
+/// Parses `NAME=STRENGTH`, or `NAME` for the default strength.
 impl FromStr for Condition {
     type Err = Error;
 
@@ -190,20 +195,19 @@ impl fmt::Display for Condition {
 /// The value of [`Changed::visible`] where the changed picture shows the original.
 pub const VISIBLE: u8 = 255;
 
-/// A picture after a change, and the truth about it.
+/// A changed picture and the ground truth of the change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Changed {
-    /// The changed picture; it has the size of the original.
+    /// The changed picture, of the same size as the original.
     pub picture: Picture,
-    /// Where the original's points are in the changed picture. It is invertible.
+    /// Invertible map from pixels of the original to pixels of the changed picture.
     pub map: DAffine2,
-    /// By pixel of the changed picture: [`VISIBLE`], or 0 where something else hides the original or it has no such
-    /// place.
+    /// Mask of the changed picture: [`VISIBLE`], or 0 where the original is occluded or the pixel lies outside of it.
     pub visible: Plane<u8>,
 }
 
 impl Changed {
-    /// Several changes, one after the other; with none the picture as it is.
+    /// Applies several conditions in order; without conditions the picture is unchanged.
     pub fn by(conditions: &[Condition], picture: &Picture, seed: u64) -> Self {
         let (width, height) = picture.size();
         let unchanged =
@@ -222,14 +226,14 @@ impl Changed {
     }
 }
 
-/// The value of the pixel that a place lies in, if the plane has it.
+/// Value of the pixel that a position lies in; `None` outside the plane.
 pub(super) fn value_at<T: Copy>(plane: &Plane<T>, place: DVec2) -> Option<T> {
     let (x, y) = ((place.x + 0.5).floor(), (place.y + 0.5).floor());
     let inside = x >= 0.0 && y >= 0.0 && x < f64::from(plane.width()) && y < f64::from(plane.height());
     inside.then(|| plane.get(x as u32, y as u32))
 }
 
-/// The mean colour: what fills places that have no picture, without drawing attention.
+/// Mean colour of a picture, the fill of pixels outside of it: a neutral fill adds little contrast.
 fn mean(picture: &Picture) -> [u8; 4] {
     let count = picture.data().len() as u64;
     let mean = |channel: usize| {
@@ -284,7 +288,7 @@ mod tests {
         }
     }
 
-    /// A bright spot lands where the map says, to a twentieth of a pixel: the centre of its brightness is compared.
+    /// The brightness centroid of a spot lands where the map says, to a twentieth of a pixel.
     #[test]
     fn a_marked_place_lands_where_the_map_says() {
         let spot = |x: u32, y: u32| (x.abs_diff(70).pow(2) + y.abs_diff(41).pow(2)) as f64;
@@ -333,7 +337,7 @@ mod tests {
         let conditions: Vec<Condition> =
             ["occlusion=0.5", "rotation=90", "scale=0.5"].map(|c| c.parse().unwrap()).into();
         let changed = Changed::by(&conditions, &picture, 1);
-        // 29.5 is the centre: (39.5, 29.5) turns to (29.5, 39.5) and moves to (29.5, 34.5).
+        // The centre is (29.5, 29.5): (39.5, 29.5) rotates to (29.5, 39.5) and scales to (29.5, 34.5).
         let place = changed.map.transform_point2(DVec2::new(39.5, 29.5));
         assert!((place - DVec2::new(29.5, 34.5)).length() < 1e-12, "{place}");
         let shown = changed.visible.data().iter().filter(|&&v| v == VISIBLE).count();
@@ -341,7 +345,7 @@ mod tests {
         assert_eq!(value_at(&changed.visible, place), Some(VISIBLE));
     }
 
-    /// FNV-1a of all bytes of all conditions: what is promised of every machine.
+    /// FNV-1a hash of all bytes of all conditions, which must be equal on every machine.
     #[test]
     fn changed_pictures_are_the_same_bytes_everywhere() {
         let picture = texture(64, 48);

@@ -1,11 +1,11 @@
-//! Numbers that look random and are the same on every machine.
+//! Pseudorandom numbers, the same on every machine.
 
 /// SplitMix64 (Steele, Lea and Flood, 'Fast splittable pseudorandom number generators', OOPSLA 2014).
 #[derive(Clone, Debug)]
 pub(super) struct Random(u64);
 
 impl Random {
-    /// The sequence of a `seed`, another one for each `stream`.
+    /// The sequence of `seed`, independent for each `stream`.
     pub(super) fn new(seed: u64, stream: u64) -> Self {
         let mut random = Self(seed);
         let start = random.next() ^ stream;
@@ -21,13 +21,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A whole number below `end`, which is at least 1. Its bias is below `end / 2^32`.
+    /// A random integer from 0 to `end - 1`; `end` is at least 1. The bias is below `end / 2^32`.
     pub(super) fn below(&mut self, end: u32) -> u32 {
         (((self.next() >> 32) * u64::from(end)) >> 32) as u32
     }
 
-    /// Close to a standard normal distribution, -6 to 6: the sum of twelve uniform numbers less its mean
-    /// (Irwin and Hall), which takes no function that machines round differently.
+    /// An approximately standard normal number, -6 to 6: the sum of twelve uniform numbers minus its mean (Irwin and
+    /// Hall), which needs no function that machines round differently.
     pub(super) fn normal(&mut self) -> f64 {
         let sum: u64 = (0..12).map(|_| self.next() >> 32).sum();
         sum as f64 / f64::from(1u32 << 31) / 2.0 - 6.0

@@ -1,4 +1,4 @@
-//! Pale things in front of a seamless backdrop: little texture, smooth shading, and a second camera with another
+//! Pale objects in front of a seamless backdrop: little texture, smooth shading, and a right camera with another
 //! exposure, response and noise.
 
 use glam::{DVec3, dvec3};

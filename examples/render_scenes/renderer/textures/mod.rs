@@ -1,4 +1,4 @@
-//! What surfaces look like, as colours on a screen (0 to 1), in millimetres.
+//! Textures of surfaces: colours on a screen (0 to 1) by position in millimetres.
 
 mod made;
 mod natural;
@@ -35,7 +35,7 @@ pub fn painted(colour: DVec3, seed: u32) -> Texture {
     Box::new(move |s| colour * wear(s.point, seed))
 }
 
-/// One colour with next to nothing on it: `contrast` is the share of the grain.
+/// One colour with hardly any texture: `contrast` is the share of the grain.
 pub fn smooth(colour: DVec3, contrast: f64, seed: u32) -> Texture {
     Box::new(move |s| {
         colour * (1.0 + contrast * (fractal(s.point / 60.0, 3, seed) + 0.6 * gradient(s.point / 6.0, seed)))

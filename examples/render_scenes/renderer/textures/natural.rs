@@ -96,7 +96,7 @@ pub fn marble(colour: DVec3, vein: DVec3, size: f64, seed: u32) -> Texture {
 /// A leaf along its y axis: a midrib, veins and blotches.
 pub fn leaf(colour: DVec3, seed: u32) -> Texture {
     Box::new(move |s| {
-        // In the unit sphere that the leaf was stretched from.
+        // Position in the unit sphere that the leaf was stretched from.
         let (x, y) = (s.point.x, s.point.y);
         let slanted = (y + 0.7 * x.abs()) * 5.0;
         let vein = (slanted - slanted.round()).abs() < 0.07 || x.abs() < 0.045;

@@ -1,8 +1,8 @@
-//! `hsad eval dense`: disparity maps against the truth of whole scenes.
+//! `hsad eval dense`: scores disparity maps against the ground truth of scenes.
 
-mod given;
 mod record;
 mod run;
+mod supplied_maps;
 mod table;
 
 use std::{
@@ -15,31 +15,33 @@ use clap::Args;
 use hsad::{Error, io::atomic::write_whole};
 use serde_json::{Value, json};
 
-use self::{given::Given, record::Record, run::Run};
+use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
-    eval::{complain, kept, scenes},
+    eval::{report_failures, saved_results, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, check_writable, write_json},
     report, terminal,
+    wording::in_options,
 };
 
-/// This program among the methods.
+/// Name of this program among the methods.
 const OURS: &str = "hsad";
 
-/// Compare disparity maps with the truth of whole scenes, by the measures of Middlebury and KITTI
+/// Score disparity maps against the ground truth of scenes, by the measures of Middlebury and KITTI
 ///
-/// A SCENE is a folder with left.png, right.png, disp_left.pfm and, if need be, nonocc.png (255: both views see it);
-/// a folder of Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2,
-/// image_3, disp_occ_0, disp_noc_0) or a single picture in image_2; or a folder of such folders. Each pair is matched as
-/// hsad match does, the disparity range found and not named, and scored over non-occluded pixels, over all, and over
-/// those alone that have an estimate. A pixel without an estimate counts as wrong in the first two.
+/// A SCENE is a folder with left.png, right.png, disp_left.pfm and optionally nonocc.png (255: non-occluded); a folder
+/// of Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2, image_3,
+/// disp_occ_0, disp_noc_0) or a single picture in image_2; or a folder of such folders. Each pair is matched as by hsad
+/// match, with the disparity range found for each pair unless --disparities is given, and scored over the non-occluded
+/// pixels, over all pixels, and over the estimated pixels. A pixel without an estimate counts as wrong in the first
+/// two.
 #[derive(Args)]
 #[command(
     after_help = "With -o, DIR/SCENE/ gets disparity.pfm, error.png, figure.png (picture, truth, map and errors) and
-result.json; DIR/SCENE/NAME/ the same for the map of another program. In error.png an error of at most 0.5 px is blue,
-1 px light blue, 2 px yellow, 4 px orange and above that red; no estimate is white; occluded pixels have a third of
-their brightness, and where the truth is unknown it is black. Results whose files, options, device and program are
-still the same are not computed again.
+result.json; DIR/SCENE/NAME/ gets the same files for the map of another program. In error.png an error of at most
+0.5 px is blue, 1 px light blue, 2 px yellow, 4 px orange and above that red; a missing estimate is white; occluded
+pixels have a third of their brightness, and pixels without ground truth are black. Results whose files, options,
+device and program are unchanged are not computed again.
 
 Examples:
   hsad eval dense data
@@ -47,29 +49,29 @@ Examples:
   hsad eval dense Art --disparity sgbm=sgbm.pfm
   hsad eval dense kitti/training --disparity theirs=maps/{scene}.png --given-only --json errors.json
 
-Exit codes: 0 done, 1 a scene failed (the others are scored all the same), 2 usage"
+Exit codes: 0 success, 1 a scene failed (the others are scored all the same), 2 usage"
 )]
 pub struct Dense {
-    /// Folders of scenes with known truth
+    /// Folders of scenes with ground truth
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
-    /// Also score FILE, a map of the same view by another program: PFM (+inf for none) or PNG (16 bit, 256 times the
-    /// disparity, 0 for none). {scene} in FILE stands for each scene's name
-    #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = Given::parse)]
-    given: Vec<Given>,
-    /// Match nothing, only score the maps that --disparity names
-    #[arg(long, requires = "given")]
+    /// Also score FILE, a map of the same view by another program: PFM (in pixels, +inf for no disparity) or PNG
+    /// (16 bit, 256 times the disparity, 0 for no disparity). {scene} in FILE stands for the scene's name; repeatable
+    #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = SuppliedMaps::parse)]
+    supplied: Vec<SuppliedMaps>,
+    /// Score only the maps of --disparity, without matching
+    #[arg(long, requires = "supplied")]
     given_only: bool,
-    /// Folder for maps, pictures and results, created if need be
+    /// Output folder for maps, pictures and results, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Compute again what an earlier run left in the folder
+    /// Ignore the results of an earlier run in the output folder
     #[arg(long, requires = "output")]
     fresh: bool,
-    /// Write all figures to FILE, a line a scene, method and region; shares are 0 to 1
+    /// Write all figures to FILE as CSV, one line per scene, method and region; shares are 0 to 1
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write all figures, their means, the parameters and what failed to FILE
+    /// Write all figures, their means, the parameters and the failures to FILE as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -82,7 +84,7 @@ pub struct Dense {
 
 /// A scene, or a method on a scene, that could not be scored.
 struct Failure {
-    /// The scene, and the method unless it is ours; `None` where no scene was found.
+    /// Name of the scene, and of the method unless it is this program; `None` if no scene was found.
     what: Option<String>,
     error: Error,
 }
@@ -92,26 +94,26 @@ impl Display for Failure {
         if let Some(what) = &self.what {
             write!(f, "{what}: ")?;
         }
-        write!(f, "{}", self.error)
+        f.write_str(&in_options(&self.error))
     }
 }
 
-/// All that came out.
+/// Records and failures of all scenes.
 #[derive(Default)]
 struct Results {
     records: Vec<Record>,
-    /// How many of the records an earlier run made.
-    kept: usize,
+    /// Number of records reused from an earlier run.
+    reused: usize,
     failures: Vec<Failure>,
 }
 
 impl Dense {
-    /// Scores everything that can be scored, and fails at the end if anything could not.
+    /// Scores all scenes by all methods; a failure does not stop the others and is returned at the end.
     pub fn run(self) -> anyhow::Result<()> {
         let config = self.matching.config(&self.features)?;
         let (scenes, unread) = scenes::find(&self.scenes)?;
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
-        given::check(&self.given, scenes.len())?;
+        supplied_maps::check(&self.supplied, scenes.len())?;
         let root = self.output.as_deref().map(Output::open).transpose()?;
         for file in [&self.csv, &self.json].into_iter().flatten() {
             check_writable(file)?;
@@ -123,7 +125,7 @@ impl Dense {
         drop(root);
 
         let methods: Vec<&str> =
-            backend.iter().map(|_| OURS).chain(self.given.iter().map(|given| &*given.name)).collect();
+            backend.iter().map(|_| OURS).chain(self.supplied.iter().map(|maps| &*maps.name)).collect();
         if let Some(file) = &self.csv {
             write_whole(file, |out| out.write_all(record::csv(&results.records).as_bytes()))?;
         }
@@ -134,12 +136,12 @@ impl Dense {
             write_whole(file, |out| write_json(out, &report))?;
         }
         if !self.run.quiet {
-            self.tell(&results, &methods)?;
+            self.print_results(&results, &methods)?;
         }
-        complain(&results.failures)
+        report_failures(&results.failures)
     }
 
-    fn tell(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
+    fn print_results(&self, results: &Results, methods: &[&str]) -> std::io::Result<()> {
         for record in &results.records {
             record.warnings.iter().for_each(|text| terminal::warning(format!("{}: {text}", record.scene)));
         }
@@ -149,7 +151,7 @@ impl Dense {
         let mut text = format!("{}\n{}", table::tables(&results.records, methods), table::LEGEND);
         if let Some(folder) = &self.output {
             text += &format!("\nmaps and pictures of errors are in {}", folder.display());
-            text += &kept::told(results.kept, results.records.len());
+            text += &saved_results::reuse_note(results.reused, results.records.len());
             text.push('\n');
         }
         terminal::print(&text)
@@ -157,13 +159,13 @@ impl Dense {
 }
 
 impl Results {
-    /// Everything that came out, for programs.
+    /// Records, means and failures as JSON.
     fn report(&self, methods: &[&str]) -> Value {
         let failed =
-            self.failures.iter().map(|Failure { what, error }| json!({ "what": what, "error": error.to_string() }));
+            self.failures.iter().map(|Failure { what, error }| json!({ "what": what, "error": in_options(error) }));
         json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "results": self.records.iter().map(kept::Record::to_json).collect::<Vec<_>>(),
+            "results": self.records.iter().map(saved_results::Saveable::to_json).collect::<Vec<_>>(),
             "means": record::means(&self.records, methods),
             "failed": failed.collect::<Vec<_>>(),
         })

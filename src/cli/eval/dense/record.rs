@@ -1,25 +1,26 @@
-//! What is known of one map, and its forms for programs: JSON and CSV.
+//! Scores of one map, with their JSON and CSV forms.
 
 use hsad::eval::{Score, scene::Scores};
 use serde_json::{Value, json};
 
-use crate::cli::{eval::kept, score};
+use crate::cli::{eval::saved_results, score};
 
-/// How good one method's map of one scene is.
+/// Scores of one method's map of one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     pub scene: String,
     pub method: String,
     pub scores: Scores,
-    /// The disparities that were searched, as in report.json; null for a map that was given.
+    /// The disparity range that was searched, as in report.json; null for a supplied map.
     pub range: Value,
-    /// From the pictures to the map, kernels built included; `None` for a map that was given.
+    /// Wall-clock time from the pictures to the map in seconds, including building the kernels; `None` for a supplied
+    /// map.
     pub seconds: Option<f64>,
-    /// What someone should know before they use the map.
+    /// Warnings about the map, one line each.
     pub warnings: Vec<String>,
 }
 
-impl kept::Record for Record {
+impl saved_results::Saveable for Record {
     fn to_json(&self) -> Value {
         let Self { scene, method, scores, range, seconds, warnings } = self;
         json!({
@@ -51,7 +52,7 @@ impl kept::Record for Record {
 }
 
 impl Record {
-    /// Its score over the pixels of `region`, if it is known which these are.
+    /// Score over the pixels of `region`; `None` if the scene has no mask of the region.
     pub fn score(&self, region: Region) -> Option<&Score> {
         match region {
             Region::All => Some(&self.scores.all),
@@ -60,19 +61,19 @@ impl Record {
     }
 }
 
-/// The pixels that are scored.
+/// A set of scored pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// All whose truth is known.
+    /// All pixels with ground truth.
     All,
-    /// Those that both views see.
+    /// The pixels with ground truth that both views see.
     NonOccluded,
 }
 
 impl Region {
     pub const BOTH: [Self; 2] = [Self::NonOccluded, Self::All];
 
-    /// Its name in files.
+    /// Name of the region in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::All => "all",
@@ -81,13 +82,13 @@ impl Region {
     }
 }
 
-/// A figure of a score.
+/// A figure of a score: name, heading and value.
 pub struct Figure {
-    /// In files, where shares are 0 to 1; `_est`: of the estimated pixels only.
+    /// Name in files, where shares are 0 to 1; the suffix `_est` marks a share of the estimated pixels.
     pub name: &'static str,
-    /// In tables, where shares are per cent.
+    /// Column heading in tables, where shares are in per cent.
     pub heading: &'static str,
-    /// What makes it what a table shows.
+    /// Factor from the value in files to the value in tables.
     pub factor: f64,
     pub of: fn(&Score) -> f64,
 }
@@ -100,7 +101,7 @@ const fn pixels(name: &'static str, heading: &'static str, of: fn(&Score) -> f64
     Figure { name, heading, factor: 1.0, of }
 }
 
-/// Wrong pixels, of all that are scored; the thresholds are [`hsad::eval::scene::THRESHOLDS`].
+/// Shares of wrong pixels among all scored pixels; the thresholds are [`hsad::eval::scene::THRESHOLDS`].
 pub const WRONG: [Figure; 5] = [
     share("bad_0.5", "bad-0.5", |score| score.bad[0].of_known),
     share("bad_1", "bad-1", |score| score.bad[1].of_known),
@@ -109,7 +110,7 @@ pub const WRONG: [Figure; 5] = [
     share("d1", "D1", |score| score.d1.of_known),
 ];
 
-/// Wrong pixels, of those that have an estimate.
+/// Shares of wrong pixels among the estimated pixels.
 pub const WRONG_ESTIMATES: [Figure; 5] = [
     share("bad_0.5_est", "bad-0.5", |score| score.bad[0].of_estimated),
     share("bad_1_est", "bad-1", |score| score.bad[1].of_estimated),
@@ -118,7 +119,7 @@ pub const WRONG_ESTIMATES: [Figure; 5] = [
     share("d1_est", "D1", |score| score.d1.of_estimated),
 ];
 
-/// Errors of the pixels that have an estimate, and how many these are.
+/// Errors of the estimated pixels, and their share.
 pub const ERRORS: [Figure; 6] = [
     pixels("average_px", "avg", |score| score.average),
     pixels("rms_px", "rms", |score| score.rms),
@@ -128,18 +129,18 @@ pub const ERRORS: [Figure; 6] = [
     share("density", "density", Score::coverage),
 ];
 
-/// All figures, in the order of the files.
+/// All figures, in the order of the CSV columns.
 fn figures() -> impl Iterator<Item = &'static Figure> {
     WRONG.iter().chain(&WRONG_ESTIMATES).chain(&ERRORS)
 }
 
-/// The mean of a figure; `None` of no scores, and NaN if one of them does not have it.
+/// Mean of a figure; `None` without scores, NaN if the figure of a score is NaN.
 pub fn mean<'s>(figure: &Figure, scores: impl Iterator<Item = &'s Score>) -> Option<f64> {
     let (sum, count) = scores.fold((0.0, 0), |(sum, count), score| (sum + (figure.of)(score), count + 1));
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// A line a record and region: names, pixels, all figures, and seconds. What there is none of is left empty.
+/// CSV, one line per record and region: names, pixels, all figures, and seconds. An undefined figure is an empty field.
 pub fn csv(records: &[Record]) -> String {
     let number = |value: f64| if value.is_nan() { String::new() } else { value.to_string() };
     let mut text = String::from("scene,method,region,pixels,estimated");
@@ -157,12 +158,12 @@ pub fn csv(records: &[Record]) -> String {
     text
 }
 
-/// A field of CSV (RFC 4180).
+/// Quotes a CSV field if necessary (RFC 4180).
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.into() }
 }
 
-/// The means of each method and region, under the names of the CSV.
+/// Means of each method and region as JSON, under the names of the CSV columns.
 pub fn means(records: &[Record], methods: &[&str]) -> Value {
     let mut means = Vec::new();
     for method in methods {
@@ -191,9 +192,9 @@ pub mod tests {
     };
 
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
-    /// A record of errors, pixel by pixel; NaN is no estimate.
+    /// A record from the error of each pixel; NaN stands for no estimate.
     pub fn record(scene: &str, method: &str, errors: &[f32], non_occluded: Option<&[f32]>) -> Record {
         let score = |errors: &[f32]| {
             let map = Plane::new(errors.len() as u32, 1, errors.to_vec()).unwrap();

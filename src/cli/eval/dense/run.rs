@@ -1,4 +1,4 @@
-//! One scene after the other, by all methods.
+//! Runs all methods on one scene after the other.
 
 use std::time::Instant;
 
@@ -14,38 +14,38 @@ use hsad::{
 };
 use serde_json::Value;
 
-use super::{Dense, Failure, OURS, Results, given::Given, record::Record};
-use crate::cli::{eval::kept::Place, job, output::Output, products, report, terminal::Progress};
+use super::{Dense, Failure, OURS, Results, record::Record, supplied_maps::SuppliedMaps};
+use crate::cli::{eval::saved_results::SavedResults, job, output::Output, products, report, terminal::Progress};
 
-/// What makes maps, and where they are kept.
+/// The methods, and where their results are saved.
 pub struct Run<'a> {
     config: &'a Config,
     methods: Vec<Method<'a>>,
-    /// Where the results of all scenes are kept.
-    place: Place,
+    /// Where the results of all scenes are saved.
+    saved: SavedResults,
     progress: Progress,
 }
 
-/// What makes a map.
+/// Source of a disparity map.
 #[derive(Clone, Copy)]
 enum Method<'a> {
     Ours(&'a Backend),
-    Given(&'a Given),
+    Supplied(&'a SuppliedMaps),
 }
 
 impl<'a> Run<'a> {
-    /// Without a backend nothing is matched.
+    /// The methods of `options`; without a backend only the supplied maps.
     pub fn new(options: &'a Dense, config: &'a Config, backend: Option<&'a Backend>) -> Self {
-        let given = options.given.iter().map(Method::Given);
+        let supplied = options.supplied.iter().map(Method::Supplied);
         Self {
             config,
-            methods: backend.map(Method::Ours).into_iter().chain(given).collect(),
-            place: Place::new(options.output.as_deref(), options.fresh),
+            methods: backend.map(Method::Ours).into_iter().chain(supplied).collect(),
+            saved: SavedResults::new(options.output.as_deref(), options.fresh),
             progress: Progress::new(options.run.quiet),
         }
     }
 
-    /// Adds what all methods make of `scenes` to `results`.
+    /// Scores all methods on all `scenes` and adds the records to `results`.
     pub fn all(&self, scenes: &[SceneFiles], results: &mut Results) {
         for (number, files) in (1..).zip(scenes) {
             self.progress.piece(&files.name, number, scenes.len());
@@ -55,17 +55,21 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Fails where the scene cannot be read; a method that fails is noted and does not lose the others.
+    /// Scores all methods on one scene. A method that fails is noted and does not stop the others.
+    ///
+    /// # Errors
+    /// If the scene cannot be read.
     fn scene(&self, files: &SceneFiles, results: &mut Results) -> Result<()> {
         let paths = files.files(self.config.reference)?;
-        let of_scene = paths.into_iter().try_fold(self.place.clone().below(&files.name), Place::with_file)?;
-        // Read when it is first needed, which may be never.
+        let of_scene =
+            paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
+        // The scene is read when a method first needs it, which with saved results may be never.
         let mut scene = None;
         for &method in &self.methods {
-            let made = match self.place(of_scene.clone(), &files.name, method) {
-                Ok(place) => match place.find() {
+            let made = match self.saved_results(of_scene.clone(), &files.name, method) {
+                Ok(saved) => match saved.load() {
                     Some(record) => {
-                        results.kept += 1;
+                        results.reused += 1;
                         Ok(record)
                     }
                     None => {
@@ -73,7 +77,7 @@ impl<'a> Run<'a> {
                             Some(scene) => scene,
                             unread => unread.insert(self.read(files)?),
                         };
-                        self.make(&files.name, scene, method, &place, &mut results.failures)
+                        self.make(&files.name, scene, method, &saved, &mut results.failures)
                     }
                 },
                 Err(error) => Err(error),
@@ -88,13 +92,13 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Where a method's result is kept, by that of the scene called `name`.
-    fn place(&self, of_scene: Place, name: &str, method: Method) -> Result<Place> {
+    /// Where a method's result for the scene called `name` is saved, from the scene's own dependencies.
+    fn saved_results(&self, of_scene: SavedResults, name: &str, method: Method) -> Result<SavedResults> {
         match method {
-            Method::Ours(backend) => {
-                Ok(of_scene.with(&format!("{:?}", self.config)).with(&report::device(backend).to_string()))
-            }
-            Method::Given(given) => of_scene.below(&given.name).with_file(&given.path(name)),
+            Method::Ours(backend) => Ok(of_scene
+                .depending_on(&format!("{:?}", self.config))
+                .depending_on(&report::device(backend).to_string())),
+            Method::Supplied(maps) => of_scene.below(&maps.name).depending_on_file(&maps.path(name)),
         }
     }
 
@@ -103,24 +107,24 @@ impl<'a> Run<'a> {
         files.read(self.config.reference)
     }
 
-    /// Where a result cannot be kept, that is a failure beside it.
+    /// Scores one method on one scene and saves the result. A failure to save is noted beside the result.
     fn make(
         &self,
         name: &str,
         scene: &Scene,
         method: Method,
-        place: &Place,
+        saved: &SavedResults,
         failures: &mut Vec<Failure>,
     ) -> Result<Record> {
         let (map, record) = match method {
             Method::Ours(backend) => self.ours(backend, name, scene)?,
-            Method::Given(given) => self.given(given, name, scene)?,
+            Method::Supplied(maps) => self.supplied(maps, name, scene)?,
         };
-        let kept = place.keep(&record, |output| {
+        let written = saved.save(&record, |output| {
             self.progress.begin("writing");
             add_files(output, scene, &map)
         });
-        failures.extend(kept.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
+        failures.extend(written.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
         Ok(record)
     }
 
@@ -141,11 +145,11 @@ impl<'a> Run<'a> {
         Ok((map, record))
     }
 
-    fn given(&self, given: &Given, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
-        let map = disparities::read(&given.path(name))?;
+    fn supplied(&self, maps: &SuppliedMaps, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
+        let map = disparities::read(&maps.path(name))?;
         let record = Record {
             scene: name.into(),
-            method: given.name.clone(),
+            method: maps.name.clone(),
             scores: scene.score(&map)?,
             range: Value::Null,
             seconds: None,
@@ -155,15 +159,15 @@ impl<'a> Run<'a> {
     }
 }
 
-/// What a method does with the scene called `name`, for failures.
+/// Name of the scene, and of the method unless it is this program, for failures.
 fn name_of(name: &str, method: Method) -> String {
     match method {
         Method::Ours(_) => name.into(),
-        Method::Given(given) => format!("{name}, {}", given.name),
+        Method::Supplied(maps) => format!("{name}, {}", maps.name),
     }
 }
 
-/// The map, its errors, and a figure: picture, truth, map and errors.
+/// Adds the map, its errors, and a figure: picture, ground truth, map and errors.
 fn add_files(output: &mut Output, scene: &Scene, map: &Plane<f32>) -> Result<()> {
     let errors = color::error_colors(map, &scene.truth, scene.non_occluded.as_ref());
     let in_fixed_point = map.map(|&pixels| fixed_point(pixels));

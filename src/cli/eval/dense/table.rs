@@ -1,18 +1,19 @@
-//! The tables that people read.
+//! The printed tables.
 
 use super::record::{ERRORS, Figure, Record, Region, WRONG, WRONG_ESTIMATES, mean, of_method};
 
-/// What the columns mean.
+/// Legend of the columns.
 pub const LEGEND: &str = "\
-bad-T, D1, density: per cent; avg, rms, A50, A90, A99: error of the estimated pixels in pixels. bad-T: wrong by over
-T pixels; D1: by over 3 pixels and 5 %; without an estimate: wrong. A90: 90 % of the errors are not larger.
+bad-T, D1, density: in per cent; avg, rms, A50, A90, A99: error of the estimated pixels, in pixels. bad-T: error above
+T px; D1: error above 3 px and above 5 % of the disparity; a pixel without an estimate counts as wrong. A90: 90 % of
+the errors are not larger.
 ";
 
-/// The least room for names, so that tables stand below one another.
+/// Smallest width of the name column, so that the columns of all tables align.
 const NAMES: usize = 22;
 
-/// A table for each region, and one that counts estimated pixels only, unless that is all of them; each with a row a
-/// record and the means of each method. Where a region is not known, a scene has no row.
+/// One table per region, and one over the estimated pixels only, unless all pixels are estimated; each with one row per
+/// record and the means of each method. A scene without a mask of the region has no row.
 pub fn tables(records: &[Record], methods: &[&str]) -> String {
     let everything: Vec<&Figure> = WRONG.iter().chain(&ERRORS).collect();
     let estimates: Vec<&Figure> = WRONG_ESTIMATES.iter().collect();
@@ -28,7 +29,7 @@ pub fn tables(records: &[Record], methods: &[&str]) -> String {
     .collect();
     if is_dense {
         tables.push(
-            "Every pixel has an estimate, so that the figures of estimated ones alone are those of all.\n".into(),
+            "Every pixel has an estimate: the figures of the estimated pixels alone are those of all pixels.\n".into(),
         );
     }
     tables.join("\n")
@@ -55,7 +56,7 @@ fn table(title: &str, region: Region, figures: &[&Figure], records: &[Record], m
     let names = rows.iter().map(|(name, ..)| name.chars().count()).fold(NAMES, usize::max);
     let longest_method = rows.iter().map(|(_, method, _)| method.chars().count()).max()?;
     let text = rows.iter().map(|(name, method, cells)| {
-        // With one method there is nothing to tell apart.
+        // With a single method the column is left out.
         let method = if methods.len() > 1 { format!("  {method:longest_method$}") } else { String::new() };
         let cells: String = cells.iter().map(|cell| format!("{cell:>8}")).collect();
         format!("{name:names$}{method}{cells}\n")
@@ -66,7 +67,7 @@ fn table(title: &str, region: Region, figures: &[&Figure], records: &[Record], m
 fn cell(figure: &Figure, value: f64) -> String {
     match figure.factor * value {
         value if value.is_nan() => "-".into(),
-        // What fits in its column.
+        // Values up to here fit the column in fixed notation.
         value if value < 9999.995 => format!("{value:.2}"),
         value => format!("{value:.1e}"),
     }
@@ -107,7 +108,7 @@ Estimated of all             bad-0.5   bad-1   bad-2   bad-4      D1
         assert!(!alone.contains("hsad") && !alone.contains("mean"), "{alone}");
         assert!(
             alone.ends_with(
-                "\nEvery pixel has an estimate, so that the figures of estimated ones alone are those of all.\n"
+                "\nEvery pixel has an estimate: the figures of the estimated pixels alone are those of all pixels.\n"
             ),
             "{alone}"
         );

@@ -1,32 +1,32 @@
-//! The figures of all pairs: a table for people, CSV and JSON for programs.
+//! The figures of all pairs: printed table, CSV and JSON.
 
 use serde_json::{Map, Value, json};
 
-use crate::cli::eval::kept;
+use crate::cli::eval::saved_results;
 
-/// What a column's figures are.
+/// Unit of a column's figures.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     Count,
-    /// 0 to 1; people read per cent.
+    /// A share of 0 to 1, printed in per cent.
     Share,
 }
 
-/// A column: its name for programs, its name for people, and what its figures are.
+/// A column: name in CSV and JSON, heading in the printed table, and unit.
 pub struct Column {
     pub name: String,
     pub title: String,
     pub unit: Unit,
 }
 
-/// The figures of a pair under a condition; NaN where there are none.
+/// The figures of a pair under a condition; NaN for an undefined figure.
 pub struct Row {
     pub scene: String,
     pub condition: String,
     pub figures: Vec<f64>,
 }
 
-impl kept::Record for Row {
+impl saved_results::Saveable for Row {
     fn to_json(&self) -> Value {
         json!({ "scene": self.scene, "condition": self.condition, "figures": self.figures })
     }
@@ -42,15 +42,15 @@ impl kept::Record for Row {
     }
 }
 
-/// Rows in the order of their conditions.
+/// All rows, grouped by condition.
 pub struct Table {
     pub columns: Vec<Column>,
     pub rows: Vec<Row>,
 }
 
 impl Table {
-    /// The mean of each condition, in the order of the conditions. A figure that only some rows have counts as 0 in the
-    /// others: who finds nothing is not right about it.
+    /// The mean of each condition, in the order of the conditions. A figure that is defined for some rows only counts
+    /// as 0 in the others: without matches nothing is right.
     pub fn means(&self) -> Vec<Row> {
         let mut conditions: Vec<&str> = self.rows.iter().map(|row| &*row.condition).collect();
         conditions.dedup();
@@ -71,7 +71,7 @@ impl Table {
         Row { scene: "mean".into(), condition: condition.into(), figures }
     }
 
-    /// A condition's rows for a terminal, their mean below; shares in per cent, and scenes in `width` columns at least.
+    /// The printed rows of a condition with their mean below; shares in per cent, scene names padded to `width`.
     pub fn text(&self, condition: &str, width: usize) -> String {
         let cells = |name: &str, cells: Vec<String>| {
             let mut line = format!("{name:width$}");
@@ -93,7 +93,7 @@ impl Table {
         text
     }
 
-    /// One line for each pair and condition, without means; shares from 0 to 1, empty where there is no figure.
+    /// CSV, one line per pair and condition, without means; shares are 0 to 1, an undefined figure is an empty field.
     pub fn csv(&self) -> String {
         let mut text = String::from("scene,condition");
         self.columns.iter().for_each(|column| text += &format!(",{}", column.name));
@@ -108,7 +108,7 @@ impl Table {
         text
     }
 
-    /// Rows and means; null where there is no figure.
+    /// Rows and means as JSON; an undefined figure is null.
     pub fn json(&self) -> Value {
         let object = |row: &Row| {
             let mut object = Map::new();
@@ -125,7 +125,7 @@ impl Table {
     }
 }
 
-/// A name as a field of CSV.
+/// Quotes a name as a CSV field if necessary (RFC 4180).
 fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.into() }
 }
@@ -133,7 +133,7 @@ fn quoted(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
     fn table() -> Table {
         let column = |name: &str, unit| Column { name: name.into(), title: name.into(), unit };

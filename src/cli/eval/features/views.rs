@@ -1,4 +1,4 @@
-//! Pairs of views with known truth, from folders.
+//! Pairs of views with ground truth, from folders.
 
 use std::{
     cell::OnceCell,
@@ -12,7 +12,7 @@ use hsad::{
     io::{Picture, homography, load},
 };
 
-/// A pair of views, read when it is first needed, which may be never.
+/// A pair of views, read when it is first needed; with saved results that may be never.
 pub struct Pair {
     pub name: String,
     files: Files,
@@ -21,7 +21,7 @@ pub struct Pair {
 
 enum Files {
     Stereo(SceneFiles),
-    /// Of a homography set.
+    /// A pair of a homography set.
     Plane {
         first: PathBuf,
         second: PathBuf,
@@ -29,22 +29,22 @@ enum Files {
     },
 }
 
-/// Two views and where the second has the points of the first.
+/// Two views and the ground truth that maps points of the first to the second.
 pub struct Views {
     pub first: Picture,
     pub second: Picture,
     pub truth: Truth,
 }
 
-/// What else than scenes a folder may hold.
+/// Description of a homography set, for errors.
 const SETS: &str = "a homography set holds img1.png and for others of its views, such as 3, img3.png and H1to3p";
 
 impl Pair {
-    /// The pairs at `path`: stereo scenes are one each, a homography set has one for each view after the first, or only
-    /// the one that is asked for.
+    /// The pairs at `path`: one per stereo scene; for a homography set one per view after the first, or only the
+    /// requested `view`.
     ///
     /// # Errors
-    /// As [`SceneFiles::find`]; [`Error::Format`] if there is no such view.
+    /// As [`SceneFiles::find`]; [`Error::Format`] if the requested view does not exist.
     pub fn find(path: &Path, view: Option<u32>) -> Result<Vec<Self>> {
         if path.join("img1.png").is_file() {
             return Self::of_set(path, view);
@@ -55,7 +55,7 @@ impl Pair {
             other => other,
         })?;
         if let Some(view) = view {
-            return Err(wrong(format!("view {view} was asked for, but here is a stereo scene, with one pair")));
+            return Err(wrong(format!("view {view} was requested, but this is a stereo scene, with one pair")));
         }
         Ok(scenes.into_iter().map(|files| Self::new(files.name.clone(), Files::Stereo(files))).collect())
     }
@@ -71,7 +71,7 @@ impl Pair {
         let pairs: Vec<_> = (2..100).filter(|&k| view.is_none_or(|view| view == k)).filter_map(pair).collect();
         if pairs.is_empty() {
             let reason = match view {
-                Some(view) => format!("view {view} was asked for, but there is no H1to{view}p"),
+                Some(view) => format!("view {view} was requested, but there is no H1to{view}p"),
                 None => format!("there is no homography: {SETS}"),
             };
             return Err(Error::Format { path: folder.into(), reason });
@@ -83,7 +83,7 @@ impl Pair {
         Self { name, files, views: OnceCell::new() }
     }
 
-    /// The files that it is made of.
+    /// Paths of the pair's files: both views and the ground truth.
     ///
     /// # Errors
     /// As [`SceneFiles::files`].
@@ -94,10 +94,10 @@ impl Pair {
         }
     }
 
-    /// Both views and the truth about them.
+    /// Both views and their ground truth.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] of a stereo pair.
+    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] for the views of a stereo pair.
     pub fn views(&self) -> Result<&Views> {
         if let Some(views) = self.views.get() {
             return Ok(views);
@@ -119,7 +119,7 @@ impl Pair {
     }
 }
 
-/// What a folder is called.
+/// Last component of a folder's canonical path.
 fn folder_name(folder: &Path) -> String {
     let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     name.unwrap_or_else(|| folder.display().to_string())

@@ -1,4 +1,4 @@
-//! The curves: the paper's figures 7 to 9, and one that it does not show.
+//! The curves: the paper's figures 7 to 9, and precision over coverage.
 
 use hsad::eval::curves::{accuracy_of_first, f_measure_over_recall, recall_precision};
 
@@ -7,17 +7,17 @@ use super::record::{Record, steps};
 /// A kind of curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Figure 7.
+    /// Precision over recall (figure 7).
     RecallPrecision,
-    /// Figure 8.
+    /// F-measure over recall (figure 8).
     FMeasure,
-    /// Figure 9.
+    /// Accuracy of the k most confident matches over k (figure 9).
     Accuracy,
-    /// What the paper leaves out: over how much of the picture.
+    /// Precision over the share of the picture that is matched; not in the paper.
     Coverage,
 }
 
-/// A point of a curve: what the `k` most confident answers are. Shares are 0 to 1.
+/// A point of a curve, for the `k` most confident matches. Shares are 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub k: usize,
@@ -28,7 +28,7 @@ pub struct Sample {
 impl Figure {
     pub const ALL: [Self; 4] = [Self::RecallPrecision, Self::FMeasure, Self::Accuracy, Self::Coverage];
 
-    /// The files that it appears in.
+    /// Names of the CSV and the SVG file.
     pub fn files(self) -> [&'static str; 2] {
         match self {
             Self::RecallPrecision => ["recall-precision.csv", "recall-precision.svg"],
@@ -38,7 +38,7 @@ impl Figure {
         }
     }
 
-    /// What its axes are, in files.
+    /// Names of the axes in the CSV file.
     fn axes(self) -> [&'static str; 2] {
         match self {
             Self::RecallPrecision => ["recall", "precision"],
@@ -48,7 +48,7 @@ impl Figure {
         }
     }
 
-    /// The curve of one method under one condition, the most confident answer first.
+    /// The curve of one method under one condition, the most confident match first.
     pub fn curve(self, record: &Record) -> Vec<Sample> {
         let counted = |points: Vec<(f64, f64)>| (1..).zip(points).map(|(k, (x, y))| Sample { k, x, y }).collect();
         let Record { right, shown, pixels, everywhere, .. } = record;
@@ -65,8 +65,8 @@ impl Figure {
         }
     }
 
-    /// The mean of curves: of the `k` most confident answers under each condition, or of all where there are fewer. A
-    /// condition without answers counts as 0.
+    /// The mean of curves at each `k`: of the `k` most confident matches under each condition, or of all if there are
+    /// fewer. A condition without matches counts as 0.
     pub fn mean(self, curves: &[Vec<Sample>]) -> Vec<Sample> {
         let last = curves.iter().filter_map(|curve| curve.last()).map(|sample| sample.k).max().unwrap_or(0);
         let count = curves.len() as f64;
@@ -82,7 +82,7 @@ impl Figure {
     }
 }
 
-/// All curves of a kind as CSV, a line a sample: `condition,method,k` and what the axes are.
+/// All curves of a kind as CSV, one line per sample: `condition,method,k` and the two axes.
 pub fn csv<'c>(figure: Figure, curves: impl Iterator<Item = (&'c str, &'c str, &'c [Sample])>) -> String {
     let [x, y] = figure.axes();
     let is_k = figure == Figure::Accuracy;

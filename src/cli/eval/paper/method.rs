@@ -1,4 +1,4 @@
-//! The methods, and what each answers where it is asked.
+//! The methods, and the matches of each for given interest points.
 
 use glam::DVec2;
 use hsad::{
@@ -15,32 +15,32 @@ use hsad::{
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
-/// Who answers.
+/// A matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Matches of interest points, as `hsad eval features` has them.
+    /// Matches of interest points, as in `hsad eval features`.
     Sparse,
-    /// The rival: the hybrid method, with its default parameters.
+    /// The method that the paper compares itself with: the hybrid method, with its default parameters.
     Kamencay,
-    /// The dense half of this program, with its default preset.
+    /// Dense matching of this program, with its default preset.
     Balanced,
 }
 
-/// What a method says.
-pub struct Answers {
-    /// The points that it was asked about, in pixels of the first view.
+/// The matches of one method.
+pub struct MethodMatches {
+    /// The interest points to match, in pixels of the first view.
     pub points: Vec<DVec2>,
-    /// Its answers to these.
+    /// The matches of these points.
     pub at_points: Vec<PointMatch>,
-    /// Its answers about any place of the first view.
+    /// The matches of all positions of the first view; for a dense method one per measured pixel.
     pub everywhere: Vec<PointMatch>,
 }
 
 impl Method {
-    /// The one whose points the others are asked about comes first.
+    /// All methods; the first one finds the points that the others match.
     pub const ALL: [Self; 3] = [Self::Sparse, Self::Kamencay, Self::Balanced];
 
-    /// Its name in one word.
+    /// Name of the method in one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sparse => "sparse",
@@ -54,12 +54,12 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Whether it looks for the points of a row in the same row of the other view only.
+    /// Whether the method searches along rows only and so needs rows that correspond.
     pub fn needs_rows(self) -> bool {
         self != Self::Sparse
     }
 
-    /// All parameters, as a text that is another one where they are others.
+    /// All parameters as a text that changes with each of them.
     pub fn described(self) -> String {
         match self.dense() {
             None => format!("{:?}", WideBaselineConfig::default()),
@@ -67,9 +67,9 @@ impl Method {
         }
     }
 
-    /// How it matches whole pictures, if it does.
+    /// Configuration of a dense method; `None` for matches of interest points.
     fn dense(self) -> Option<Config> {
-        // Rows are known to correspond: no doubt about it shall cost a method its answers.
+        // Rows are known to correspond: a mistaken verdict on the rectification must not stop the method.
         let balanced = Config { force: true, ..Preset::Balanced.config() };
         match self {
             Self::Sparse => None,
@@ -80,32 +80,38 @@ impl Method {
         }
     }
 
-    /// Matches two views. `points` are what a dense method is asked about.
+    /// Matches two views. A dense method matches the given `points` and every pixel; matching of interest points
+    /// ignores `points` and finds its own.
     ///
     /// # Errors
     /// As [`match_views`] and [`pipeline::run`].
-    pub fn answer(self, backend: &Backend, (first, second): (&Picture, &Picture), points: &[DVec2]) -> Result<Answers> {
+    pub fn run(
+        self,
+        backend: &Backend,
+        (first, second): (&Picture, &Picture),
+        points: &[DVec2],
+    ) -> Result<MethodMatches> {
         let Some(config) = self.dense() else {
             let found = block_on(match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default()))?;
             let points = found.features[0].iter().map(|point| DVec2::new(point.x.into(), point.y.into())).collect();
             let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
-            return Ok(Answers { points, at_points: matches.clone(), everywhere: matches });
+            return Ok(MethodMatches { points, at_points: matches.clone(), everywhere: matches });
         };
         let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
         let (width, height) = first.size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| DVec2::new(x.into(), y.into())));
-        Ok(Answers {
+        Ok(MethodMatches {
             points: points.to_vec(),
-            at_points: points.iter().filter_map(|&at| answer_at(&dense, at)).collect(),
-            everywhere: pixels.filter_map(|at| answer_at(&dense, at)).collect(),
+            at_points: points.iter().filter_map(|&at| match_at(&dense, at)).collect(),
+            everywhere: pixels.filter_map(|at| match_at(&dense, at)).collect(),
         })
     }
 }
 
-/// What a map says about a place of the left view: the disparity of the pixel that it lies in. Where that was not
-/// measured, or only filled in, it says nothing.
-fn answer_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
-    // Interest points can lie up to half a pixel outside the last ones' centres.
+/// The match of a position of the left view, by the disparity of the pixel that it lies in; `None` if that disparity
+/// was not measured or only filled in.
+fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
+    // Interest points can lie up to half a pixel beyond the centres of the border pixels.
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
     let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
     let confidence = dense.confidence.get(x, y);
@@ -125,7 +131,7 @@ mod tests {
         let disparity = Plane::from_fn(4, 1, |x, _| [256, 384, NONE, 512][x as usize]);
         let confidence = Plane::from_fn(4, 1, |x, _| [0, 7, 0, 9][x as usize]);
         let dense = Dense { disparity, confidence };
-        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| answer_at(&dense, DVec2::new(x, 0.3)));
+        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| match_at(&dense, DVec2::new(x, 0.3)));
         let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));
         let second = Some((3.4 - 2.0, 0.3, 9.0));
         assert_eq!(found, [None, Some((-0.75, 0.3, 7.0)), Some((-0.25, 0.3, 7.0)), None, second]);

@@ -1,4 +1,4 @@
-//! `hsad eval paper`: the curves of the paper, and what they leave out.
+//! `hsad eval paper`: the curves of the paper's figures 7 to 9, and coverage.
 
 mod curve;
 mod method;
@@ -25,80 +25,82 @@ use serde_json::json;
 use self::{
     curve::Figure,
     results::{Cell, Group, groups},
-    run::{Found, Run},
+    run::{Run, SceneResults},
 };
 use crate::cli::{
     eval::{
         change::{Change, kinds},
-        complain, kept, scenes,
+        report_failures, saved_results, scenes,
     },
     options::RunOptions,
     output::Output,
     report, terminal,
+    wording::in_options,
 };
 
-/// Where the scenes lie that come with the program's source.
+/// Folder of the scenes that come with the source.
 const SHIPPED: &str = "data";
 
 const DETAILS: &str = "\
-Three methods are asked where the second view shows the same interest points of the first:
-  sparse    matches of interest points, as hsad eval features has them
-  kamencay  the method that the paper compares itself with, as hsad match --method kamencay
-  balanced  as hsad match does it by default
+Three methods match the same interest points of the first view to the second view:
+  sparse    matches of interest points, as in hsad eval features
+  kamencay  the method that the paper compares itself with, as in hsad match --method kamencay
+  balanced  dense matching, as in hsad match by default
 
-The points are those that sparse finds in the first view, also those that it finds no match for. A dense method answers \
-with the disparity of the pixel that a point lies in, and its confidence; where that is 0, so that the disparity was not \
-measured or only filled in, there is no answer. An answer is right within the tolerance of the true place in the second \
-view, and wrong where that does not show the point; where the truth is not known it does not count. Of answers with one \
-confidence right and wrong ones take turns evenly, as in random order. Precision over coverage is also told of \
-all pixels of the picture; a match of points is one pixel.
+The points are those that sparse detects in the first view, matched or not. A dense method answers with the disparity and \
+the confidence of the pixel that a point lies in; with a confidence of 0, where the disparity was not measured or only \
+filled in, there is no answer. An answer is right within --tolerance of the true position in the second view, and wrong if \
+the point is occluded there; answers without ground truth do not count. Right and wrong answers of equal confidence are \
+interleaved evenly, as in random order. Precision over coverage is also given for all pixels of the picture; a match of \
+an interest point counts as one pixel.
 
-Dense methods look for a point in its own row. Under rotation and scale rows do not correspond, and nobody tells a method \
-how the view was changed: there they are not applicable. Means are over the conditions under which all methods have a \
-result, and over all of those that have more. Curves of means follow the number of answers; where a condition has no \
-more of them, its last value stands.
+Dense methods search along rows. Under rotation and scale rows do not correspond, and no method is told how the view was \
+changed: dense methods are not applicable there. Means are over the conditions under which all methods have a result; a \
+method with more results also has a mean over all of its conditions. Curves of means are over the number of answers; a \
+condition with fewer answers keeps its last value.
 
-Conditions change the second view, and the truth with it: NAME or NAME=STRENGTH, several in a row joined by '+', or none. \
-Without --condition each of them at its usual strength, and none:";
+Conditions change the second view and its ground truth: NAME or NAME=STRENGTH, several applied in order joined by '+', \
+or none. Without --condition: none, and each condition at its default strength:";
 
 const EXAMPLES: &str = "\
 With -o, DIR/SCENE/ gets report.json and, as .csv and .svg, recall-precision (the paper's figure 7), f-measure (8), \
-accuracy (9) and coverage; DIR/SCENE/CONDITION/METHOD/result.json is not computed again while pictures, options, \
-device and program are the same.
+accuracy (9) and coverage; DIR/SCENE/CONDITION/METHOD/result.json is reused while pictures, options, device and \
+program are unchanged.
 
 Examples:
   hsad eval paper -o out
   hsad eval paper Art -o out
   hsad eval paper Art --condition none --condition noise=20 --condition gain=0.5+blur=1
 
-Exit codes: 0 done, 1 something failed (the rest is told all the same), 2 usage";
+Exit codes: 0 success, 1 a scene or a method failed (the others are evaluated all the same), 2 usage";
 
 fn details() -> String {
     format!("{DETAILS}\n{}\n\n{EXAMPLES}", kinds())
 }
 
-/// Repeat the paper's figures 7 to 9 for its method and the one that it compares itself with
+/// Reproduce the paper's figures 7 to 9 for its method and the one that it compares itself with
 ///
-/// A SCENE is what hsad eval dense takes for one: two rectified views and the true disparities.
+/// A SCENE is a folder as for hsad eval dense: two rectified views and the true disparities.
 #[derive(Args)]
 #[command(after_help = details())]
 pub struct Paper {
-    /// Folders of scenes with known truth [default: data, the scenes that come with the source]
+    /// Folders of scenes with ground truth [default: data, the scenes that come with the source]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// Change the second view first, such as noise=20
+    /// Change the second view before matching, for example noise=20; repeatable [default: none, and each condition
+    /// at its default strength]
     #[arg(long = "condition", value_name = "NAME[=STRENGTH]")]
     conditions: Vec<String>,
-    /// What is random in a condition is another for another seed
+    /// Seed of the random numbers in conditions
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// How far from the true place a right answer can be
+    /// Largest distance of a right answer from the true position, in pixels, at least 0
     #[arg(long, value_name = "PX", default_value_t = 1.5, allow_negative_numbers = true)]
     tolerance: f64,
-    /// Folder for curves, plots and results, created if need be
+    /// Output folder for curves, plots and results, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Compute again what an earlier run left in the folder
+    /// Ignore the results of an earlier run in the output folder
     #[arg(long, requires = "output")]
     fresh: bool,
     #[command(flatten)]
@@ -106,7 +108,7 @@ pub struct Paper {
 }
 
 impl Paper {
-    /// Measures everything that can be measured, and fails at the end if anything could not.
+    /// Evaluates all scenes; a failure does not stop the others and is returned at the end.
     pub fn run(self) -> anyhow::Result<()> {
         if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
             return Err(refused("tolerance", self.tolerance, "it must be a number of pixels from 0 up").into());
@@ -120,28 +122,28 @@ impl Paper {
         let root = self.output.as_deref().map(Output::open).transpose()?;
         let backend = self.run.open()?;
         let run = Run::new(&self, &changes, &backend);
-        let mut told = false;
+        let mut printed = false;
         for files in &scenes {
             match run.scene(files) {
                 Ok(found) => {
                     let groups = groups(&found.cells);
                     if let Err(error) = self.write(&files.name, &groups, &found, &backend) {
-                        failures.push(error.to_string());
+                        failures.push(in_options(&error));
                     }
                     if !self.run.quiet && !groups.is_empty() {
-                        run.progress.suspend(|| self.tell(&files.name, &groups, &found))?;
-                        told = true;
+                        run.progress.suspend(|| self.print_results(&files.name, &groups, &found))?;
+                        printed = true;
                     }
                     failures.extend(found.failures);
                 }
-                Err(error) => failures.push(format!("{}: {error}", files.name)),
+                Err(error) => failures.push(format!("{}: {}", files.name, in_options(&error))),
             }
         }
         drop((run, root));
-        if told {
+        if printed {
             terminal::print(table::LEGEND)?;
         }
-        complain(&failures)
+        report_failures(&failures)
     }
 
     fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Error>)> {
@@ -149,13 +151,13 @@ impl Paper {
             return scenes::find(&self.scenes);
         }
         if !Path::new(SHIPPED).is_dir() {
-            return Err(refused("SCENE", "none", "there is no folder data here: name a scene"));
+            return Err(refused("SCENE", "none", "there is no folder 'data' here: name a scene"));
         }
         scenes::find(&[SHIPPED.into()])
     }
 
-    /// The scene's curves, plots and report, where a folder was named.
-    fn write(&self, scene: &str, groups: &[Group], found: &Found, backend: &Backend) -> hsad::Result<()> {
+    /// Writes the scene's curves, plots and report, if there is an output folder.
+    fn write(&self, scene: &str, groups: &[Group], found: &SceneResults, backend: &Backend) -> hsad::Result<()> {
         let Some(root) = &self.output else { return Ok(()) };
         let mut output = Output::open(&root.join(scene))?;
         for figure in Figure::ALL {
@@ -184,19 +186,19 @@ impl Paper {
         output.finish()
     }
 
-    fn tell(&self, scene: &str, groups: &[Group], found: &Found) -> io::Result<()> {
+    fn print_results(&self, scene: &str, groups: &[Group], found: &SceneResults) -> io::Result<()> {
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
             text += &format!("\ncurves and plots are in {}", folder.join(scene).display());
-            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Done(_))).count();
-            text += &kept::told(found.kept, done);
+            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Measured(_))).count();
+            text += &saved_results::reuse_note(found.reused, done);
             text.push('\n');
         }
         terminal::print(&(text + "\n"))
     }
 }
 
-/// The conditions where none is named: none, and each at its usual strength.
+/// The default conditions: none, and each kind at its default strength.
 fn usual() -> Vec<String> {
     std::iter::once("none").chain(Kind::ALL.map(Kind::name)).map(String::from).collect()
 }

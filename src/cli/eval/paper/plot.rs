@@ -1,4 +1,4 @@
-//! The curves as pictures: a panel for each condition and mean, in each a line for each method.
+//! The curves as SVG plots: one panel per condition and mean, one line per method.
 
 use std::error::Error;
 
@@ -10,23 +10,23 @@ use super::{
     results::Group,
 };
 
-/// Panels in a row.
+/// Number of panels in a row.
 const COLUMNS: usize = 4;
-/// Width and height of a panel in pixels.
+/// Width and height of a panel, in pixels.
 const PANEL: (u32, u32) = (240, 190);
-/// Room above them, for the title and the names of the methods.
+/// Height of the header with the title and the legend, in pixels.
 const HEADER: u32 = 46;
-/// What the plotting crate takes for the height of text that is 1 px high.
+/// Font size that plotters needs for text of 1 px.
 const EM: f64 = 1.24;
-/// Samples that lie nearer to the last one drawn than this part of an axis are left out.
+/// Samples nearer to the last drawn one than this share of both axes are left out.
 const NEAR: f64 = 1.0 / 80.0;
 
-/// An axis from left to right.
+/// The horizontal axis.
 struct Axis {
-    /// Where the sample lies on it.
+    /// Position of a sample on the axis.
     place: fn(&Sample) -> f64,
     ends: [f64; 2],
-    /// Powers of ten, of which only whole ones are named.
+    /// Whether the axis shows powers of ten, of which only whole ones have a label.
     logarithmic: bool,
 }
 
@@ -79,7 +79,7 @@ fn color(method: Method) -> RGBColor {
 /// The curves of a scene as SVG; the means come first.
 ///
 /// # Errors
-/// What the plotting crate reports, which has no file to fail at.
+/// The errors of plotters; there is no file that could fail.
 pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<dyn Error + Send + Sync>> {
     let drawn: Vec<&Group> = groups.iter().filter(|group| !group.records.is_empty()).collect();
     let curves: Vec<Vec<Sample>> = drawn.iter().map(|group| group.curve(figure)).collect();
@@ -129,7 +129,7 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
                 .x_label_formatter(&|at| axis.label(*at))
                 .y_label_formatter(&|at| format!("{at:.0}"))
                 .draw()?;
-            // The first method, whose curve is the shortest, on top.
+            // The first method has the shortest curve and is drawn on top.
             for (group, curve) in drawn.iter().zip(&curves).filter(|(group, _)| group.name == *name).rev() {
                 chart.draw_series(LineSeries::new(thinned(curve, &axis), color(group.method).stroke_width(2)))?;
             }
@@ -139,7 +139,7 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
     Ok(text)
 }
 
-/// The places of a curve that make a difference.
+/// The samples of a curve that are visibly apart.
 fn thinned(curve: &[Sample], axis: &Axis) -> Vec<(f64, f64)> {
     let [from, to] = axis.ends;
     let mut places: Vec<(f64, f64)> = Vec::new();

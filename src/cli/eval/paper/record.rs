@@ -1,4 +1,4 @@
-//! What is known of one method under one condition.
+//! Matches of one method under one condition, judged against the ground truth.
 
 use glam::DVec2;
 use hsad::{
@@ -8,39 +8,38 @@ use hsad::{
 };
 use serde_json::{Value, json};
 
-use super::method::{Answers, Method};
-use crate::cli::eval::kept;
+use super::method::{Method, MethodMatches};
+use crate::cli::eval::saved_results;
 
-/// A method's answers under a condition, held against the truth.
+/// A method's matches under a condition, judged against the ground truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     pub condition: String,
     pub method: Method,
-    /// Of the method that finds the points itself: all of them, in pixels of the first view.
+    /// All interest points, in pixels of the first view; empty for a dense method, which finds none itself.
     pub points: Vec<DVec2>,
-    /// The points that it was asked about whose truth is known.
+    /// Number of points with known ground truth.
     pub known: usize,
-    /// Those of them that the second view shows: what can be found.
+    /// Number of these points that the second view shows, which are all that can be found.
     pub shown: usize,
-    /// Its answers about points whose truth is known, right or wrong, the most confident first.
+    /// For each match of a point with known ground truth, the most confident first: whether it is right.
     pub right: Vec<bool>,
-    /// Pixels of the first view whose truth is known.
+    /// Number of pixels of the first view with known ground truth.
     pub pixels: usize,
-    /// Of its answers about any place of the picture, the most confident first: how many are right of so many, at
-    /// [`steps`].
+    /// For the matches of all positions, the most confident first: `(k, right matches among the first k)` at [`steps`].
     pub everywhere: Vec<(usize, usize)>,
-    /// From the pictures to the answers, kernels built included.
+    /// Wall-clock time from the pictures to the matches in seconds, including building the kernels.
     pub seconds: f64,
 }
 
 impl Record {
-    /// Judges answers about the first view of a scene whose true `disparities` are finite where they are known.
+    /// Judges matches of the first view of a scene; the true `disparities` are not finite where unknown.
     ///
     /// # Errors
-    /// [`hsad::Error::Parameter`] for a tolerance that is none.
+    /// [`hsad::Error::Parameter`] for a tolerance that is negative or NaN.
     pub fn new(
         (condition, method): (&str, Method),
-        answers: Answers,
+        answers: MethodMatches,
         (truth, disparities): (&Truth, &Plane<f32>),
         tolerance: f64,
         seconds: f64,
@@ -62,7 +61,7 @@ impl Record {
     }
 }
 
-impl kept::Record for Record {
+impl saved_results::Saveable for Record {
     fn to_json(&self) -> Value {
         let Self { condition, method, points, known, shown, right, pixels, everywhere, seconds } = self;
         json!({
@@ -101,8 +100,8 @@ impl kept::Record for Record {
     }
 }
 
-/// The numbers of answers at which long curves are sampled: all up to 32, then each at least a sixteenth more than the one
-/// before, and the `last`.
+/// The numbers of matches at which long curves are sampled: all up to 32, then in steps of a sixteenth of the number,
+/// and the `last`.
 pub fn steps(last: usize) -> Vec<usize> {
     let next = |&k: &usize| Some(k + (k / 16).max(1));
     let mut steps: Vec<usize> = std::iter::successors(Some(1), next).take_while(|&k| k < last).collect();
@@ -110,7 +109,7 @@ pub fn steps(last: usize) -> Vec<usize> {
     steps
 }
 
-/// How many are right of the first so many, at [`steps`].
+/// Pairs of `k` and the number of right matches among the first `k`, at [`steps`].
 fn counted(right: &[bool]) -> Vec<(usize, usize)> {
     let (mut done, mut count) = (0, 0);
     steps(right.len())
@@ -126,9 +125,9 @@ fn counted(right: &[bool]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use crate::cli::eval::kept::Record as _;
+    use crate::cli::eval::saved_results::Saveable as _;
 
-    /// With answers that are right where `right` has a 1, of which the picture has the same.
+    /// A record whose matches are right where `right` has a 1, with the same matches over the picture.
     pub fn record(condition: &str, method: Method, shown: usize, right: &str) -> Record {
         let right: Vec<bool> = right.chars().map(|digit| digit == '1').collect();
         Record {
@@ -146,7 +145,7 @@ pub mod tests {
 
     #[test]
     fn answers_are_held_against_the_truth() {
-        // Columns 0 and 1 leave the picture, and of column 7 nothing is known.
+        // Columns 0 and 1 leave the picture, and column 7 has no ground truth.
         let disparities = Plane::from_fn(8, 2, |x, _| if x == 7 { f32::INFINITY } else { 2.0 });
         let truth = Truth::stereo(disparities.clone(), None).unwrap();
         let points: Vec<_> = [1.0, 3.0, 4.0, 6.0, 7.0].map(|x| DVec2::new(x, 1.0)).into();
@@ -157,9 +156,9 @@ pub mod tests {
             points: None,
         };
         let at_points = vec![answer(0, 0.0, 3.0), answer(1, 1.0, 1.0), answer(2, 1.5, 2.0), answer(4, 0.0, 9.0)];
-        let answers = Answers { points: points.clone(), everywhere: at_points[1..2].to_vec(), at_points };
+        let answers = MethodMatches { points: points.clone(), everywhere: at_points[1..2].to_vec(), at_points };
         let record = Record::new(("none", Method::Balanced), answers, (&truth, &disparities), 1.0, 2.0).unwrap();
-        // The hidden one is the surest, and wrong.
+        // The match of the occluded point is the most confident one, and wrong.
         assert_eq!((record.known, record.shown, record.right), (4, 3, vec![false, false, true]));
         assert_eq!((record.pixels, record.everywhere, record.points), (14, vec![(1, 1)], vec![]));
     }

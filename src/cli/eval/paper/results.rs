@@ -1,4 +1,4 @@
-//! All that came out for one scene, by condition and in the mean.
+//! The results of one scene, by condition and as means.
 
 use super::{
     curve::{Figure, Sample},
@@ -6,10 +6,10 @@ use super::{
     record::Record,
 };
 
-/// One method under one condition.
+/// The result of one method under one condition.
 pub enum Cell {
-    Done(Record),
-    /// It needs rows that correspond, and the condition leaves none.
+    Measured(Record),
+    /// The method needs corresponding rows, and the condition moves points out of their rows.
     NotApplicable {
         condition: String,
         method: Method,
@@ -19,27 +19,27 @@ pub enum Cell {
 impl Cell {
     fn condition(&self) -> &str {
         match self {
-            Self::Done(record) => &record.condition,
+            Self::Measured(record) => &record.condition,
             Self::NotApplicable { condition, .. } => condition,
         }
     }
 
     fn method(&self) -> Method {
         match self {
-            Self::Done(record) => record.method,
+            Self::Measured(record) => record.method,
             Self::NotApplicable { method, .. } => *method,
         }
     }
 
     fn record(&self) -> Option<&Record> {
         match self {
-            Self::Done(record) => Some(record),
+            Self::Measured(record) => Some(record),
             Self::NotApplicable { .. } => None,
         }
     }
 }
 
-/// A method's records under a condition, or under several for their mean; none where it is not applicable.
+/// A method's records under one condition, or under several conditions for their mean; none if it is not applicable.
 pub struct Group<'r> {
     pub name: String,
     pub method: Method,
@@ -47,7 +47,7 @@ pub struct Group<'r> {
 }
 
 impl Group<'_> {
-    /// Its curve, or the mean of its curves.
+    /// The curve of a single record, or the mean of the curves.
     pub fn curve(&self, figure: Figure) -> Vec<Sample> {
         match self.records[..] {
             [record] => figure.curve(record),
@@ -56,8 +56,8 @@ impl Group<'_> {
     }
 }
 
-/// Each condition by each method, then the means: first over the conditions under which all methods have a result, so that
-/// they can be compared; then over all conditions of those that have more.
+/// One group per condition and method, then the means: first over the conditions under which all methods have a result,
+/// so that methods can be compared; then, for methods with more results, over all of their conditions.
 pub fn groups(cells: &[Cell]) -> Vec<Group<'_>> {
     let mut groups: Vec<Group> = cells
         .iter()
@@ -89,9 +89,9 @@ pub fn groups(cells: &[Cell]) -> Vec<Group<'_>> {
 pub mod tests {
     use super::{super::record::tests::record, *};
 
-    /// Two conditions by all methods, and one that only the sparse one can be used under.
+    /// Results of all methods under two conditions, and of the sparse method alone under a third.
     pub fn cells() -> Vec<Cell> {
-        let done = |condition, method, right| Cell::Done(record(condition, method, 8, right));
+        let done = |condition, method, right| Cell::Measured(record(condition, method, 8, right));
         let not = |method| Cell::NotApplicable { condition: "rotation=90".into(), method };
         vec![
             done("none", Method::Sparse, "1111"),

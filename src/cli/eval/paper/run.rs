@@ -1,4 +1,4 @@
-//! One condition after the other, by all methods.
+//! Runs all methods under one condition after the other.
 
 use std::time::Instant;
 
@@ -17,31 +17,33 @@ use hsad::{
 
 use super::{Paper, method::Method, record::Record, results::Cell};
 use crate::cli::{
-    eval::{change::Change, kept::Place},
+    eval::{change::Change, saved_results::SavedResults},
     report,
     terminal::Progress,
+    wording::in_options,
 };
 
-/// What computes, under which conditions, and where its results are kept.
+/// The device, the conditions, and where results are saved.
 pub struct Run<'a> {
     options: &'a Paper,
     changes: &'a [Change],
     backend: &'a Backend,
-    /// Where the results of all scenes are kept.
-    place: Place,
+    /// Where the results of all scenes are saved.
+    saved: SavedResults,
     pub progress: Progress,
 }
 
-/// A scene's results so far.
+/// The results of a scene so far.
 #[derive(Default)]
-pub struct Found {
+pub struct SceneResults {
     pub cells: Vec<Cell>,
     /// How many of them an earlier run made.
-    pub kept: usize,
+    pub reused: usize,
     pub failures: Vec<String>,
 }
 
-/// A scene, and its second view after a change; each is made when it is first needed, which may be never.
+/// A scene, and its second view after a change; each is made when it is first needed, which with saved results may be
+/// never.
 struct Views<'s> {
     files: &'s SceneFiles,
     scene: Option<(Scene, Truth)>,
@@ -49,7 +51,7 @@ struct Views<'s> {
 }
 
 impl Views<'_> {
-    /// Both views, the truth about them, and the scene.
+    /// The scene, its changed second view, and the ground truth for that view.
     fn get(&mut self, change: &Change, seed: u64) -> Result<(&Scene, &Picture, &Truth)> {
         let (scene, truth) = match &mut self.scene {
             Some(read) => read,
@@ -70,21 +72,22 @@ impl Views<'_> {
 
 impl<'a> Run<'a> {
     pub fn new(options: &'a Paper, changes: &'a [Change], backend: &'a Backend) -> Self {
-        let place = Place::new(options.output.as_deref(), options.fresh)
-            .with(&report::device(backend).to_string())
-            .with(&format!("{} {}", options.tolerance, options.seed))
-            .with(&Method::Sparse.described());
-        Self { options, changes, backend, place, progress: Progress::new(options.run.quiet) }
+        let saved = SavedResults::new(options.output.as_deref(), options.fresh)
+            .depending_on(&report::device(backend).to_string())
+            .depending_on(&format!("{} {}", options.tolerance, options.seed))
+            .depending_on(&Method::Sparse.described());
+        Self { options, changes, backend, saved, progress: Progress::new(options.run.quiet) }
     }
 
-    /// What all methods make of a scene under all conditions; what fails loses no other condition.
+    /// Runs all methods on a scene under all conditions. A failure does not stop the other conditions.
     ///
     /// # Errors
-    /// Where a file that results depend on cannot be read.
-    pub fn scene(&self, files: &SceneFiles) -> Result<Found> {
+    /// If a file that the results depend on cannot be read.
+    pub fn scene(&self, files: &SceneFiles) -> Result<SceneResults> {
         let paths = files.files(View::Left)?;
-        let of_scene = paths.into_iter().try_fold(self.place.clone().below(&files.name), Place::with_file)?;
-        let mut found = Found::default();
+        let of_scene =
+            paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
+        let mut found = SceneResults::default();
         let mut views = Views { files, scene: None, changed: None };
         for (number, change) in (1..).zip(self.changes) {
             let name = format!("{}, {}", files.name, change.name);
@@ -97,19 +100,19 @@ impl<'a> Run<'a> {
                     continue;
                 }
                 self.progress.begin(method.name());
-                let place = of_scene.clone().below(&change.name).below(method.name());
-                let place = place.with(&change.name).with(&method.described());
-                match self.record(&mut views, change, method, &points, &place, &mut found) {
+                let saved = of_scene.clone().below(&change.name).below(method.name());
+                let saved = saved.depending_on(&change.name).depending_on(&method.described());
+                match self.record(&mut views, change, method, &points, &saved, &mut found) {
                     Ok(record) => {
                         if !method.needs_rows() {
                             points.clone_from(&record.points);
                         }
-                        found.cells.push(Cell::Done(record));
+                        found.cells.push(Cell::Measured(record));
                     }
                     Err(error) => {
-                        found.failures.push(format!("{name}, {}: {error}", method.name()));
+                        found.failures.push(format!("{name}, {}: {}", method.name(), in_options(&error)));
                         if !method.needs_rows() {
-                            // There is nothing that the others could be asked about.
+                            // Without its points the other methods have nothing to match.
                             break;
                         }
                     }
@@ -125,22 +128,22 @@ impl<'a> Run<'a> {
         change: &Change,
         method: Method,
         points: &[DVec2],
-        place: &Place,
-        found: &mut Found,
+        saved: &SavedResults,
+        found: &mut SceneResults,
     ) -> Result<Record> {
-        if let Some(record) = place.find() {
-            found.kept += 1;
+        if let Some(record) = saved.load() {
+            found.reused += 1;
             return Ok(record);
         }
         let (scene, second, truth) = views.get(change, self.options.seed)?;
         let start = Instant::now();
-        let answers = method.answer(self.backend, (&scene.left, second), points)?;
+        let answers = method.run(self.backend, (&scene.left, second), points)?;
         let seconds = start.elapsed().as_secs_f64();
         let judged = (truth, &scene.truth);
         let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;
-        // What cannot be kept is shown all the same.
-        let told = |error| format!("{}, {}, {}: {error}", views.files.name, change.name, method.name());
-        found.failures.extend(place.keep(&record, |_| Ok(())).err().map(told));
+        // A result that cannot be saved is shown all the same.
+        let described = |error| format!("{}, {}, {}: {error}", views.files.name, change.name, method.name());
+        found.failures.extend(saved.save(&record, |_| Ok(())).err().map(described));
         Ok(record)
     }
 }

@@ -1,26 +1,27 @@
-//! The figures of all methods and conditions: a table for people, JSON for programs.
+//! The figures of all methods and conditions: printed table and JSON.
 
 use hsad::eval::curves::{accuracy_of_first, f_measure};
 use serde_json::{Value, json};
 
 use super::{record::Record, results::Group};
 
-/// What the columns are.
+/// Legend of the columns.
 pub const LEGEND: &str = "\
-points: interest points of the first view that the second shows; all methods are asked about the same ones. answers: to
-these and to hidden ones. Per cent: of N: right among the N surest, or all where there are fewer; right: of all answers;
-cover: answers by points; recall: right answers by points that are shown; F: harmonic mean of the two; picture: pixels of the
-first view with an answer, and how many of these are right. seconds: from the pictures to the answers.
+points: interest points of the first view that the second shows, the same for all methods. answers: matches of these and of
+occluded points. In per cent: of N: precision of the N most confident answers, or of all if there are fewer; right:
+precision of all answers; cover: answers divided by points; recall: right answers divided by the points that are shown; F:
+harmonic mean of precision and recall; picture: share of the first view's pixels with an answer, and their precision.
+seconds: time from the pictures to the answers.
 ";
 
-/// What stands in place of figures.
+/// Text in place of the figures of a method that is not applicable.
 const NOT_APPLICABLE: &str = "not applicable: it needs rows that correspond";
 
-/// How people read a figure.
+/// Unit of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Count,
-    /// 0 to 1; people read per cent.
+    /// A share of 0 to 1, printed in per cent.
     Share,
     Seconds,
 }
@@ -64,8 +65,8 @@ fn recall(record: &Record) -> f64 {
 }
 
 impl Column {
-    /// Of a group the mean; NaN where there is nothing. Where only some have a figure, it counts as 0 in the others: who
-    /// answers nothing is not right about it.
+    /// Mean of a group; NaN without figures. A figure that is defined for some records only counts as 0 in the others:
+    /// without answers nothing is right.
     fn mean(&self, group: &Group) -> f64 {
         let figures: Vec<f64> = group.records.iter().map(|record| (self.of)(record)).collect();
         let known: Vec<f64> = figures.iter().copied().filter(|figure| !figure.is_nan()).collect();
@@ -82,7 +83,7 @@ impl Column {
     }
 }
 
-/// The scene's table for a terminal, a blank line before each condition.
+/// The printed table of a scene, with a blank line before each condition.
 pub fn text(scene: &str, groups: &[Group]) -> String {
     let width = groups.iter().map(|group| group.name.len()).max().unwrap_or(0).max(scene.chars().count());
     let line = |name: &str, method: &str, cells: &[String]| {
@@ -107,7 +108,7 @@ pub fn text(scene: &str, groups: &[Group]) -> String {
     text
 }
 
-/// The same for programs; null where there is no figure.
+/// The figures as JSON; an undefined figure is null.
 pub fn json(groups: &[Group]) -> Value {
     let object = |group: &Group| {
         let mut object = json!({ "condition": group.name, "method": group.method.name() });
@@ -137,11 +138,11 @@ mod tests {
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
         let row = |start: &str| lines.iter().find(|line| line.join(" ").starts_with(start)).unwrap().join(" ");
         assert_eq!(row("Art"), "Art points answers of 10 of 100 of 500 right cover recall F picture right seconds");
-        // Of 8 points that are shown and 16 that are known 4 are answered, all rightly: 2 * 1 * 0.5 / 1.5.
+        // 8 points are shown, 16 have ground truth, and 4 are answered, all right: F = 2 * 1 * 0.5 / 1.5.
         assert_eq!(row("none"), "none sparse 8 4 100.0 100.0 100.0 100.0 25.0 50.0 66.7 0.4 100.0 0.5");
         assert_eq!(row("kamencay 8 0"), "kamencay 8 0 - - - - 0.0 0.0 - 0.0 - 0.5");
         assert_eq!(row("mean of 2"), "mean of 2 sparse 8 3 75.0 75.0 75.0 75.0 18.8 31.2 43.3 0.3 75.0 0.5");
-        // The hybrid method's 4 of 6, and nothing.
+        // Mean of the hybrid method's 4 of 6, and of no answers.
         assert_eq!(row("kamencay 8 3"), "kamencay 8 3 33.3 33.3 33.3 33.3 18.8 25.0 28.6 0.3 33.3 0.5");
         assert_eq!(row("kamencay not"), format!("kamencay {NOT_APPLICABLE}"));
         let json = json(&groups(&cells));

@@ -1,4 +1,4 @@
-//! Maps that other programs made: `--disparity NAME=FILE`.
+//! Disparity maps of other programs: `--disparity NAME=FILE`.
 
 use std::path::{Path, PathBuf};
 
@@ -6,64 +6,66 @@ use hsad::{Error, Result};
 
 use super::OURS;
 
-/// Stands for a scene's name in FILE.
+/// Placeholder of the scene's name in FILE.
 const SCENE: &str = "{scene}";
 
-/// What stands in a scene's folder, beside the folders of other programs.
+/// File names in a scene's output folder, which the folder of another program must not take.
 const RESULTS: [&str; 4] = ["disparity.pfm", "error.png", "figure.png", "result.json"];
 
-/// Another program's maps.
+/// The maps of another program, one per scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
-    /// What the program is called.
+pub struct SuppliedMaps {
+    /// Name of the program.
     pub name: String,
     file: String,
 }
 
-impl Given {
-    /// Takes NAME=FILE apart.
+impl SuppliedMaps {
+    /// Parses `NAME=FILE`.
     ///
     /// # Errors
-    /// A line that says what is missing.
+    /// A message that says what is missing.
     pub fn parse(text: &str) -> std::result::Result<Self, String> {
-        let (name, file) = text.split_once('=').ok_or("it is NAME=FILE, for example sgbm=sgbm.pfm")?;
-        // The name is also a folder's.
+        let (name, file) = text.split_once('=').ok_or("expected NAME=FILE, for example sgbm=sgbm.pfm")?;
+        // The name becomes a folder name.
         let is_usable = !name.starts_with('.') && !name.contains(['/', '\\']) && !name.contains(char::is_control);
         if name.is_empty() || !is_usable {
-            return Err(format!("'{name}' is no name: it must not be empty, begin with '.' or have a '/' in it"));
+            return Err(format!("'{name}' is not a valid name: it must not be empty, begin with '.' or contain '/'"));
         }
         if name == OURS || RESULTS.contains(&name) {
-            return Err(format!("'{name}' is what this program or one of its results is called: choose another name"));
+            return Err(format!(
+                "'{name}' is the name of this program or of one of its result files: choose another name"
+            ));
         }
         if file.is_empty() {
-            return Err("there is no file after the '='".into());
+            return Err("the file name after '=' is missing".into());
         }
         Ok(Self { name: name.into(), file: file.into() })
     }
 
-    /// Its map of `scene`.
+    /// Path of the map of `scene`.
     pub fn path(&self, scene: &str) -> PathBuf {
         Path::new(&self.file.replace(SCENE, scene)).into()
     }
 }
 
-/// Refuses names that stand twice, and one file for several scenes.
+/// Refuses duplicate names, and one file for several scenes.
 ///
 /// # Errors
 /// [`Error::Parameter`].
-pub fn check(given: &[Given], scenes: usize) -> Result<()> {
-    let refused = |given: &Given, expected: String| {
-        Err(Error::Parameter { name: "disparity", value: format!("{}={}", given.name, given.file), expected })
+pub fn check(maps: &[SuppliedMaps], scenes: usize) -> Result<()> {
+    let refused = |maps: &SuppliedMaps, expected: String| {
+        Err(Error::Parameter { name: "disparity", value: format!("{}={}", maps.name, maps.file), expected })
     };
-    for (index, this) in given.iter().enumerate() {
-        if given[..index].iter().any(|other| other.name == this.name) {
+    for (index, this) in maps.iter().enumerate() {
+        if maps[..index].iter().any(|other| other.name == this.name) {
             return refused(this, format!("there is another '{}': give each program a name of its own", this.name));
         }
         if scenes > 1 && !this.file.contains(SCENE) {
             let example = format!("{}=maps/{SCENE}.pfm", this.name);
             return refused(
                 this,
-                format!("there are {scenes} scenes: name the file of each by {SCENE}, as in {example}"),
+                format!("there are {scenes} scenes: tell their files apart by {SCENE}, as in {example}"),
             );
         }
     }
@@ -78,15 +80,15 @@ mod tests {
 
     #[test]
     fn names_and_files() {
-        let given = Given::parse("sgbm=maps/{scene}/a=b.png").unwrap();
+        let given = SuppliedMaps::parse("sgbm=maps/{scene}/a=b.png").unwrap();
         assert_eq!((&*given.name, given.path("Art")), ("sgbm", PathBuf::from("maps/Art/a=b.png")));
         for text in ["64", "=a", "a=", "a/b=c", "..=c", "hsad=c", "result.json=c", "a\nb=c"] {
-            assert!(Given::parse(text).is_err(), "{text}");
+            assert!(SuppliedMaps::parse(text).is_err(), "{text}");
         }
-        let alone = Given::parse("sgbm=map.pfm").unwrap();
+        let alone = SuppliedMaps::parse("sgbm=map.pfm").unwrap();
         check(slice::from_ref(&alone), 1).unwrap();
         check(slice::from_ref(&given), 9).unwrap();
-        let message = |given: &[Given], scenes| check(given, scenes).unwrap_err().to_string();
+        let message = |maps: &[SuppliedMaps], scenes| check(maps, scenes).unwrap_err().to_string();
         assert!(message(slice::from_ref(&alone), 2).contains("as in sgbm=maps/{scene}.pfm"));
         assert!(message(&[alone, given], 1).contains("another 'sgbm'"));
     }

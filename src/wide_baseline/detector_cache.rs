@@ -1,4 +1,4 @@
-//! Interest points of one picture after the other.
+//! Detection of interest points in one picture after the other.
 
 use crate::{
     backend::Backend,
@@ -10,27 +10,27 @@ use crate::{
     luma::{pack, upload},
 };
 
-/// Finds interest points, and keeps the last detector: to build one takes longer than to use it, and most pictures have
-/// the size of the one before. No more than the last one, as it holds memory for each pixel.
-pub(super) struct Detecting<'b> {
+/// Finds interest points and keeps the last detector: building one takes longer than using it, and most pictures have
+/// the size of the previous one. Only one detector is kept, as it holds memory for each pixel.
+pub(super) struct DetectorCache<'b> {
     backend: &'b Backend,
-    last: Option<Built>,
+    last: Option<SizedDetector>,
 }
 
-/// A detector with what it is for and the picture that it reads.
-struct Built {
+/// A detector, the picture size (width and height in pixels) and configuration it was built for, and its luma buffer.
+struct SizedDetector {
     size: (u32, u32),
     config: FeatureConfig,
     luma: wgpu::Buffer,
     detector: Detector,
 }
 
-impl<'b> Detecting<'b> {
+impl<'b> DetectorCache<'b> {
     pub(super) fn new(backend: &'b Backend) -> Self {
         Self { backend, last: None }
     }
 
-    /// As [`Backend::features`].
+    /// Detects the features of one picture, as [`Backend::features`].
     pub(super) async fn features(&mut self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self.backend {
             Backend::Cpu => cpu::features::detector::detect(luma, config),
@@ -39,19 +39,19 @@ impl<'b> Detecting<'b> {
     }
 
     async fn on_device(&mut self, gpu: &Gpu, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
-        let built = match self.last.take().filter(|last| last.size == luma.size() && last.config == *config) {
+        let detector = match self.last.take().filter(|last| last.size == luma.size() && last.config == *config) {
             Some(last) => {
                 gpu.queue.write_buffer(&last.luma, 0, bytemuck::cast_slice(&pack(luma)));
                 last
             }
-            None => Built::new(gpu, luma, config).await?,
+            None => SizedDetector::new(gpu, luma, config).await?,
         };
-        let Built { detector, luma, .. } = self.last.insert(built);
+        let SizedDetector { detector, luma, .. } = self.last.insert(detector);
         detector.detect(luma).await
     }
 }
 
-impl Built {
+impl SizedDetector {
     async fn new(gpu: &Gpu, luma: &Luma, config: &FeatureConfig) -> Result<Self> {
         let (size, buffer) = (luma.size(), upload(gpu, luma).await?);
         let detector = Detector::new(gpu, size, config).await?;

@@ -1,4 +1,4 @@
-//! Matches and points that another program found.
+//! Matches and interest points of another program, from CSV files.
 
 use std::path::Path;
 
@@ -9,11 +9,12 @@ use hsad::{
     io::csv,
 };
 
-/// A match is of a point if it is this close to it, in pixels: a place rounded to a pixel is 0.71 off at most.
+/// Largest distance between a match and its interest point, in pixels: rounding to whole pixels moves a position by
+/// 0.71 px at most.
 const SAME: f64 = 0.75;
 
-/// The matches of a file: columns x1, y1, x2, y2 and, if it has one, confidence. Without it the order of the lines is that
-/// of confidence, the surest first.
+/// Reads matches: columns x1, y1, x2, y2 in pixels, and optionally confidence. Without that column the lines are taken
+/// to be in order of confidence, the most confident first.
 pub fn matches(path: &Path, sizes: [(u32, u32); 2]) -> Result<Vec<PointMatch>> {
     let table = csv::read(path, &["x1", "y1", "x2", "y2"], &["confidence"])?;
     let matches = table.rows.iter().enumerate().map(|(i, (line, values))| {
@@ -26,7 +27,7 @@ pub fn matches(path: &Path, sizes: [(u32, u32); 2]) -> Result<Vec<PointMatch>> {
     matches.collect()
 }
 
-/// The points of a file, as `hsad features` writes them: columns x, y and scale.
+/// Reads interest points as `hsad features` writes them: columns x, y and scale, in pixels.
 pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
     let table = csv::read(path, &["x", "y", "scale"], &[])?;
     let points = table.rows.iter().map(|(line, values)| {
@@ -40,8 +41,8 @@ pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
     points.collect()
 }
 
-/// Tells every match which points it joins: in each view the nearest one, and of several at one place, such as those of
-/// one point with several orientations, the first that no match before joins.
+/// Assigns to every match the points it joins: in each view the nearest point. Of several points at one position, such
+/// as one point with several orientations, the match takes the first that no earlier match has taken.
 pub fn join(matches: &mut [PointMatch], points: [&[Point]; 2]) {
     let mut joined = points.map(|points| vec![0_usize; points.len()]);
     let nearest = |points: &[Point], joined: &[usize], place: DVec2| {

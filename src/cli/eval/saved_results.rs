@@ -1,0 +1,199 @@
+//! Results saved in the output folder, so that an interrupted evaluation can be resumed.
+
+use std::{
+    fs,
+    hash::{DefaultHasher, Hash, Hasher},
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use hsad::{Error, Result};
+use serde_json::Value;
+
+use crate::cli::output::Output;
+
+/// The file of a saved result, next to its pictures if it has any.
+const NAME: &str = "result.json";
+
+/// A result that can be saved as JSON.
+pub trait Saveable: Sized {
+    /// The result as a JSON object.
+    fn to_json(&self) -> Value;
+
+    /// Reads an object that [`Self::to_json`] wrote; `None` if a value is missing.
+    fn from_json(value: &Value) -> Option<Self>;
+}
+
+/// Where results are saved, and a fingerprint of everything that they depend on; without a folder nothing is saved.
+#[derive(Clone, Debug)]
+pub struct SavedResults(Option<Location>);
+
+#[derive(Clone, Debug)]
+struct Location {
+    folder: PathBuf,
+    /// Hash of everything that the results depend on. The standard library's hash function may change with the
+    /// compiler, but then the program changes, too.
+    fingerprint: DefaultHasher,
+    /// Whether results of an earlier run are ignored.
+    fresh: bool,
+}
+
+impl SavedResults {
+    /// Saves results below `folder`, valid for this build of the program only: a developer must not be shown the
+    /// results of another build. Without a folder nothing is saved; with `fresh` nothing is loaded.
+    pub fn new(folder: Option<&Path>, fresh: bool) -> Self {
+        Self(folder.map(|folder| {
+            let mut fingerprint = DefaultHasher::new();
+            env!("CARGO_PKG_VERSION").hash(&mut fingerprint);
+            match std::env::current_exe().and_then(fs::read) {
+                Ok(bytes) => bytes.hash(&mut fingerprint),
+                // The program file was replaced since the start: saved results cannot be attributed to this build.
+                Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
+            }
+            Location { folder: folder.into(), fingerprint, fresh }
+        }))
+    }
+
+    /// The same dependencies, in the subfolder `name`.
+    #[must_use]
+    pub fn below(mut self, name: &str) -> Self {
+        if let Some(location) = &mut self.0 {
+            location.folder.push(name);
+        }
+        self
+    }
+
+    /// Adds a text to the dependencies.
+    #[must_use]
+    pub fn depending_on(mut self, text: &str) -> Self {
+        if let Some(location) = &mut self.0 {
+            text.hash(&mut location.fingerprint);
+        }
+        self
+    }
+
+    /// Adds the content of a file to the dependencies.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be read.
+    pub fn depending_on_file(mut self, path: &Path) -> Result<Self> {
+        if let Some(location) = &mut self.0 {
+            fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut location.fingerprint);
+        }
+        Ok(self)
+    }
+
+    /// The result of an earlier run; `None` if its files or one of its dependencies have changed.
+    pub fn load<R: Saveable>(&self) -> Option<R> {
+        let location = self.0.as_ref().filter(|location| !location.fresh)?;
+        let result: Value = serde_json::from_str(&fs::read_to_string(location.folder.join(NAME)).ok()?).ok()?;
+        let is_whole = |(name, hash): (&String, &Value)| location.hash(name).is_ok_and(|found| *hash == found);
+        let holds =
+            result["fingerprint"] == text(&location.fingerprint) && result["files"].as_object()?.iter().all(is_whole);
+        if holds { R::from_json(&result) } else { None }
+    }
+
+    /// Saves a result, with the files that `add` adds beside it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with the file; the errors of `add`.
+    pub fn save(&self, result: &impl Saveable, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
+        let Some(location) = &self.0 else { return Ok(()) };
+        let mut output = Output::open(&location.folder)?;
+        add(&mut output)?;
+        // Until `result.json` is replaced, its hashes do not match the new files, and no result is loaded.
+        output.finish()?;
+        let mut result = result.to_json();
+        result["fingerprint"] = text(&location.fingerprint).into();
+        let files = output.names().iter().map(|&name| Ok((name.to_string(), location.hash(name)?.into())));
+        result["files"] = Value::Object(files.collect::<Result<_>>()?);
+        output.add_json(NAME, &result)?;
+        output.finish()
+    }
+}
+
+impl Location {
+    /// Hash of a file in the folder.
+    fn hash(&self, name: &str) -> Result<String> {
+        let path = self.folder.join(name);
+        let mut hasher = DefaultHasher::new();
+        fs::read(&path).map_err(|source| Error::Io { path, source })?.hash(&mut hasher);
+        Ok(text(&hasher))
+    }
+}
+
+fn text(hasher: &DefaultHasher) -> String {
+    format!("{:016x}", hasher.finish())
+}
+
+/// End of the sentence about the output folder: how many results were reused from an earlier run; empty for none.
+pub fn reuse_note(reused: usize, total: usize) -> String {
+    match reused {
+        0 => String::new(),
+        _ => format!("; {reused} of {total} results are from an earlier run (--fresh computes them again)"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use serde_json::json;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq)]
+    struct Number(u64);
+
+    impl Saveable for Number {
+        fn to_json(&self) -> Value {
+            json!({ "number": self.0 })
+        }
+
+        fn from_json(value: &Value) -> Option<Self> {
+            value["number"].as_u64().map(Self)
+        }
+    }
+
+    #[test]
+    fn a_result_is_found_while_all_that_it_depends_on_is_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let input = folder.path().join("input");
+        fs::write(&input, "picture").unwrap();
+        let root = SavedResults::new(Some(folder.path()), false);
+        let saved = || root.clone().below("a").depending_on("noise=3").depending_on_file(&input).unwrap();
+        assert_eq!(saved().load::<Number>(), None);
+        saved().save(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
+        assert_eq!(saved().load(), Some(Number(7)));
+
+        assert_eq!(
+            root.clone().below("b").depending_on("noise=3").depending_on_file(&input).unwrap().load::<Number>(),
+            None
+        );
+        assert_eq!(
+            root.clone().below("a").depending_on("noise=4").depending_on_file(&input).unwrap().load::<Number>(),
+            None
+        );
+        let fresh = SavedResults::new(Some(folder.path()), true).below("a").depending_on("noise=3");
+        assert_eq!(fresh.depending_on_file(&input).unwrap().load::<Number>(), None);
+        fs::write(&input, "another").unwrap();
+        assert_eq!(saved().load::<Number>(), None);
+        fs::write(&input, "picture").unwrap();
+        assert_eq!(saved().load(), Some(Number(7)));
+        let map = folder.path().join("a/map");
+        fs::write(&map, "2").unwrap();
+        assert_eq!(saved().load::<Number>(), None, "half of it is another");
+        fs::write(&map, "1").unwrap();
+        assert_eq!(saved().load(), Some(Number(7)));
+        fs::remove_file(map).unwrap();
+        assert_eq!(saved().load::<Number>(), None, "half of it is gone");
+    }
+
+    #[test]
+    fn without_a_folder_nothing_is_kept_or_read() {
+        let saved = SavedResults::new(None, false).below("a").depending_on_file(Path::new("nowhere")).unwrap();
+        saved.save(&Number(7), |_| panic!("there is no folder")).unwrap();
+        assert_eq!(saved.load::<Number>(), None);
+        assert!(SavedResults::new(Some(Path::new("here")), false).depending_on_file(Path::new("nowhere")).is_err());
+    }
+}
