@@ -15,6 +15,10 @@
 // The loops marked 'unroll' are written out before compilation (src/gpu/unroll.rs): only then do
 // their arrays become registers, which is worth a factor of forty on software drivers.
 
+#import selection
+#import consistent
+#import words
+
 struct Params {
     width: u32,
     rows: u32,

@@ -1,5 +1,7 @@
 // Left-right consistency where both views are known.
 
+#import consistent
+
 struct Params {
     width: u32,
     rows: u32,

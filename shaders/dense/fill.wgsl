@@ -5,6 +5,8 @@
 // by at most a pixel from the one before: the least squares' one, at most STEEPEST, and none at all if
 // there are fewer than SHORTEST.
 
+#import words
+
 struct Params {
     width: u32,
     height: u32,

@@ -3,6 +3,8 @@
 // Writes rows [first_row, first_row + rows) and words from first_word on, each pixel the nearest one
 // of the picture, so that no window and no search step has to ask where it is.
 
+#import brightness
+
 struct Params {
     width: u32,
     height: u32,

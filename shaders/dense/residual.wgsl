@@ -1,6 +1,9 @@
 // The photometric residual: by how much the lumas of a pixel and of its partner differ, at the nearest whole
 // disparity, up to LIMIT. It is 0 where there is no disparity, and LIMIT where there is no partner.
 
+#import consistent
+#import brightness
+
 struct Params {
     width: u32,
     rows: u32,

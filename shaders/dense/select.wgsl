@@ -2,6 +2,38 @@
 // winner-take-all, uniqueness, sub-pixel. What the last path costs is needed by nobody else, and not
 // stored.
 
+#import selection
+#import line
+
+struct Params {
+    width: u32,
+    // Of the band, and the row of the picture where it begins.
+    rows: u32,
+    first_row: u32,
+    // Where the band begins in the volume of this path.
+    path_start: u32,
+    // Whether the row before the band's first one holds where the lines come from.
+    goes_on: u32,
+    // To the next pixel of a line, each -1, 0 or 1.
+    dx: i32,
+    dy: i32,
+    // What follows is for the selection. Where the first path's volume begins, and how far it is to the next.
+    volumes_start: u32,
+    volume_words: u32,
+    min_disparity: i32,
+    disparities: u32,
+    uniqueness: u32,
+    // Where the confidences begin, four a word, and the winners' keys, a word a pixel.
+    confidence_offset: u32,
+    key_offset: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+// A word a pixel: the luma in the lowest byte.
+@group(0) @binding(1) var<storage, read> reference: array<u32>;
+// Four disparities a word, WORDS words a pixel, 8 bits each.
+@group(0) @binding(2) var<storage, read> costs: array<u32>;
+@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
 // A fixed-point disparity a pixel; if FULL, a confidence a pixel, 0 to 255, four a word; if KEYS, the
 // winner's key a pixel.
 @group(0) @binding(4) var<storage, read_write> matches: array<atomic<u32>>;

@@ -2,8 +2,18 @@
 // 2x2 samples a subregion and compressed gradients): one workgroup a keypoint, a thread for each
 // of its 4x4 subregions.
 
+#import keypoint
+#import haar
+
 const SUBREGIONS = 16u;
 
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> integral: array<u32>;
 @group(0) @binding(2) var<storage, read> found: u32;
 @group(0) @binding(3) var<storage, read> keypoints: array<Keypoint>;
 // 16 subregions a keypoint, row by row: sum dx, sum dy, sum |dx|, sum |dy|.

@@ -5,6 +5,8 @@
 // of them survives: a thread finds the largest of its block first and then holds only that one
 // against its 26 neighbours (Neubeck and Van Gool, 'Efficient Non-Maximum Suppression', ICPR 2006).
 
+#import keypoint
+
 struct Params {
     width: u32,
     height: u32,

@@ -6,6 +6,9 @@
 // Bins are sums of fixed-point numbers: the order of the additions is not known, and must not
 // matter.
 
+#import keypoint
+#import haar
+
 const TAU = 6.28318530717958;
 // Units in a grey level. 109 samples of at most 510 grey levels stay below 2^31.
 const FIXED_POINT = 32768.0;
@@ -13,6 +16,13 @@ const FIXED_POINT = 32768.0;
 // pictures, lies on a border, where the last digit of atan2 would decide.
 const PHASE = 0.5;
 
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> integral: array<u32>;
 @group(0) @binding(2) var<storage, read> found: u32;
 @group(0) @binding(3) var<storage, read_write> keypoints: array<Keypoint>;
 

@@ -1,5 +1,7 @@
 // A texture's colours to luma, packed four pixels a word: (77 R + 150 G + 29 B + 128) >> 8 of bytes 0 to 255.
 
+#import luma_words
+
 struct Params {
     width: u32,
     height: u32,
@@ -32,4 +34,12 @@ fn luma_at(x: u32, y: u32) -> u32 {
         return bytes.r;
     }
     return luma_of(bytes);
+}
+
+@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let words = (params.width + 3u) / 4u;
+    if id.x < words && id.y < params.height {
+        luma[id.y * words + id.x] = luma_word(4u * id.x, id.y);
+    }
 }

@@ -1,13 +1,7 @@
 // Haar wavelet responses at any position and of any size, exact in integers. All lengths are in
 // 1/16 px and all positions from the picture's corner, where pixels are unit squares.
 
-struct Params {
-    width: u32,
-    height: u32,
-}
-
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> integral: array<u32>;
+#import keypoint
 
 // To the nearest whole number.
 fn whole(value: f32) -> i32 {

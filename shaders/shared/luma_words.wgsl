@@ -14,15 +14,9 @@ fn luma_or_nothing(x: u32, y: u32) -> u32 {
     return luma_at(x, y);
 }
 
-@compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let words = (params.width + 3u) / 4u;
-    if id.x >= words || id.y >= params.height {
-        return;
-    }
-    let x = 4u * id.x;
-    luma[id.y * words + id.x] = luma_or_nothing(x, id.y)
-        | (luma_or_nothing(x + 1u, id.y) << 8u)
-        | (luma_or_nothing(x + 2u, id.y) << 16u)
-        | (luma_or_nothing(x + 3u, id.y) << 24u);
+fn luma_word(x: u32, y: u32) -> u32 {
+    return luma_or_nothing(x, y)
+        | (luma_or_nothing(x + 1u, y) << 8u)
+        | (luma_or_nothing(x + 2u, y) << 16u)
+        | (luma_or_nothing(x + 3u, y) << 24u);
 }

@@ -6,6 +6,8 @@
 //
 // The module around it has `params` with `min_disparity` (of index 0) and `uniqueness` (per cent).
 
+#import quotient
+
 const NOTHING = 0xffffffffu;
 const INDEX_MASK = (1u << SHIFT) - 1u;
 

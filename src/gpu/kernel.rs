@@ -1,6 +1,6 @@
 //! A kernel: WGSL text with its constants written in front, its bindings and its pipeline.
 
-use super::{context::Context, limits::BUFFER_LIMITS, shader_struct::Shape, unroll::unrolled};
+use super::{context::Context, imports::imported, limits::BUFFER_LIMITS, shader_struct::Shape, unroll::unrolled};
 use crate::error::{Error, Result};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
@@ -42,7 +42,7 @@ impl Bindable for wgpu::TextureView {
 pub struct Stage {
     /// The stage's name: that of its shader, its Rust file, its CPU twin and its test.
     pub name: &'static str,
-    /// The shader's text, without its constants.
+    /// The shader's text, without its constants and its imports.
     pub source: &'static str,
     /// The buffers of bind group 0, in order.
     pub bindings: &'static [Binding],
@@ -51,13 +51,13 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The whole module: the constants, then the shader's text with its marked loops written out.
+    /// The whole module: the constants, the imported parts, the shader's text, with marked loops written out.
     pub fn wgsl(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.constants {
             text += &format!("const {name} = {value};\n");
         }
-        text + &unrolled(self.source, &self.constants)
+        text + &unrolled(&imported(self.source), &self.constants)
     }
 }
 

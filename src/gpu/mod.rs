@@ -2,6 +2,7 @@
 
 mod context;
 mod device;
+mod imports;
 mod kernel;
 mod limits;
 mod readback;

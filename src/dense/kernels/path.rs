@@ -73,11 +73,7 @@ impl Path {
     pub fn stage(penalties: &Penalties, words: u32) -> Stage {
         Stage {
             name: "path",
-            source: concat!(
-                include_str!("../../../shaders/shared/quotient.wgsl"),
-                include_str!("../../../shaders/shared/line.wgsl"),
-                include_str!("../../../shaders/dense/path.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/path.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: line_constants(penalties, words),
         }
