@@ -1,7 +1,16 @@
 //! The bit of wgpu that every stage shares: choosing a device, building kernels, reading results.
+//!
+//! # The text that is compiled
+//!
+//! What a driver is given of a shader is not its file: constants and imported parts stand in front of it, and loops are
+//! written out. With the environment variable `HSAD_DUMP_WGSL` set to a folder, which is created, each kernel that is
+//! built also writes its text there, except in browsers: `<stage>-<hash of the text>.wgsl`, so that every variant of a
+//! stage has a file. A file that cannot be written is a warning in the log and nothing more.
 
 mod context;
 mod device;
+#[cfg(not(target_arch = "wasm32"))]
+mod dump;
 mod imports;
 mod kernel;
 mod limits;
