@@ -27,7 +27,7 @@
 //   SEARCHED_FIRST   pixel of the WORDS + 1 searched u32 at which the partner of FIRST at a step's first disparity lies
 //   DIRECTION        partner column = column + DIRECTION * disparity: -1 if the reference is the left view, 1 if the
 //                    right view
-//   START            searched u32 at which those loaded before the first step begin: 1 if each step shifts down, else 0
+//   START            first of the WORDS searched u32 loaded before the first step: 1 if a step shifts rows down, else 0
 //   HALVED           1: the other view's disparities are of a picture of half the size; 0: of the picture's size
 //   SHIFT            bits of a disparity's index in a key
 //   FULL             1: disparities, checked and interpolated, and confidences; 0: the winners' whole disparities alone

@@ -10,8 +10,8 @@ pub(super) fn dump(name: &str, text: &str) {
     }
 }
 
-/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Variants of one stage have names of
-/// their own, and the same variant is one file however often it is compiled.
+/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Variants of one stage have names
+/// of their own, and the same variant is one file however often it is compiled.
 fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let file = folder.join(format!("{name}-{:016x}.wgsl", fnv_1a(text.as_bytes())));

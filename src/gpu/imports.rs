@@ -1,7 +1,7 @@
 //! Text that several shaders share, put in front of a shader before compilation.
 //!
-//! A line `#import line` in a shader or in a shared part stands for `shaders/shared/line.wgsl`. Each part comes once, in
-//! the order of first mention, behind the parts that it imports itself.
+//! A line `#import line` in a shader or in a shared part stands for `shaders/shared/line.wgsl`. Each part comes once,
+//! in the order of first mention, behind the parts that it imports itself.
 
 /// The table of shared parts: name and text of each.
 macro_rules! parts {

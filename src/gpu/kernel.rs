@@ -51,7 +51,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The whole module: the constants, the imported parts, the shader's text, with marked loops written out.
+    /// The whole module: the constants, the imported parts, the shader's text, with marked loops unrolled.
     pub fn wgsl(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.constants {

@@ -9,7 +9,7 @@ use crate::{
 const WORKGROUP: u32 = 16;
 
 shader_struct! {
-    /// The uniforms of all kernels that follow lines: `shaders/shared/line.wgsl`.
+    /// The uniforms of both kernels that follow lines, as `path.wgsl` and `select.wgsl` declare them.
     pub(super) struct Params {
         pub(super) width: u32,
         pub(super) rows: u32,
