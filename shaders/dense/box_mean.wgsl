@@ -1,43 +1,48 @@
-// The mean cost of SIDE neighbouring pixels along one direction, for each of their disparities, rounded to
-// the nearest. Along the rows, then along the columns, it is that of a square.
+// Mean cost of SIDE neighbouring pixels along one direction, per disparity, rounded to the nearest: along the rows,
+// then along the columns, the mean over a square.
 //
-// A thread owns four disparities of a line and walks along it with their running sums: at each step a
-// pixel enters and another leaves. Beyond its ends a line goes on with its last pixel.
+// One thread owns four disparities of one line of pixels and slides their running sums along the line: at each step one
+// pixel enters and one pixel leaves. Beyond its ends a line is continued by its last pixel.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   SIDE               side of the square, odd, in pixels
 
 struct Params {
-    // Words a pixel of the volume: a word holds the costs of four disparities, 8 bits each.
+    // u32 per pixel of the volume: the costs of four disparities packed per u32, 8 bits each.
     words: u32,
     lines: u32,
-    // Words from a line to the next, and from a pixel to the next of its line.
+    // u32 from one line to the next, and from one pixel of a line to the next.
     line_step: u32,
     pixel_step: u32,
-    // Pixels of a line.
+    // Pixels per line.
     length: u32,
-    // The pixel that the means begin with, and how many are wanted.
+    // First pixel of a line, and number of pixels, to compute means of.
     first: u32,
     wanted: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> costs: array<u32>;
-// The wanted means of a line, from where its costs begin on, with the same steps.
+// Means, with the steps of the costs; the first mean of a line is where the costs of the line begin.
 @group(0) @binding(2) var<storage, read_write> means: array<u32>;
 
 const RADIUS = SIDE / 2;
 
-// A quotient by SIDE is a product and a shift: exact, since the reciprocal is too large by less than SIDE,
-// which, times any sum, stays below 2^QUOTIENT_BITS (31 times 31 * 255 + 15).
+// Division by SIDE is a product and a shift. The result is exact: the reciprocal is too large by less than SIDE, and
+// SIDE times any sum stays below 2^QUOTIENT_BITS (31 times 31 * 255 + 15).
 const QUOTIENT_BITS = 20u;
 const RECIPROCAL = ((1u << QUOTIENT_BITS) + SIDE - 1) / SIDE;
 
-// The even and the odd disparities of a line's pixel, each two of 16 bits.
-fn halves(line: u32, pixel: i32) -> vec2<u32> {
-    let nearest = u32(clamp(pixel, 0, i32(params.length) - 1));
-    let word = costs[line + nearest * params.pixel_step];
+// Costs of four disparities of a pixel: the two even ones in one u32, the two odd ones in the other, 16 bits each.
+fn even_and_odd(line: u32, pixel: i32) -> vec2<u32> {
+    let inside = u32(clamp(pixel, 0, i32(params.length) - 1));
+    let word = costs[line + inside * params.pixel_step];
     return vec2<u32>(word, word >> 8u) & vec2<u32>(0x00ff00ffu);
 }
 
-// Of sums in which half of SIDE is contained already.
+// Means, packed, of sums to which half of SIDE was added for rounding.
 fn mean(sums: vec2<u32>) -> u32 {
     let low = ((sums & vec2<u32>(0xffffu)) * RECIPROCAL) >> vec2<u32>(QUOTIENT_BITS);
     let high = ((sums >> vec2<u32>(16u)) * RECIPROCAL) >> vec2<u32>(QUOTIENT_BITS);
@@ -54,11 +59,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let first = i32(params.first);
     var sums = vec2<u32>(0x00010001u * RADIUS);
     for (var i = -RADIUS; i <= RADIUS; i++) {
-        sums += halves(line, first + i);
+        sums += even_and_odd(line, first + i);
     }
     for (var i = 0u; i < params.wanted; i++) {
         means[line + i * params.pixel_step] = mean(sums);
         let pixel = first + i32(i);
-        sums += halves(line, pixel + RADIUS + 1) - halves(line, pixel - RADIUS);
+        sums += even_and_odd(line, pixel + RADIUS + 1) - even_and_odd(line, pixel - RADIUS);
     }
 }

@@ -1,23 +1,28 @@
-// The census transform: of each pixel, which of the 24 others of its 5x5 window are darker than it.
+// Census transform: one bit per neighbour of a pixel in its 5x5 window, 1 if the neighbour is darker.
 //
-// Zabih and Woodfill: 'Non-parametric local transforms for computing visual correspondence', ECCV
-// 1994. The 24 bits, the neighbour above and to the left the highest, stand above the pixel's own
-// luma: one word holds all that the matching cost wants to know.
+// Zabih and Woodfill: 'Non-parametric local transforms for computing visual correspondence', ECCV 1994. One u32 per
+// pixel holds all inputs of the matching cost: 24 bits, the upper left neighbour the highest, above 8 bits of the
+// pixel's luma.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   ROWS               rows of pixels per thread
 
 struct Params {
     width: u32,
     rows: u32,
-    // Words a row of the padded plane, which begins four columns left of and two rows above the picture.
+    // u32 per row of the padded plane, which begins four columns left of and two rows above the picture.
     stride: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// The padded plane, four pixels a word.
+// Padded plane, four pixels packed per u32.
 @group(0) @binding(1) var<storage, read> plane: array<u32>;
-// A word a pixel.
+// One u32 per pixel: census bits above the luma.
 @group(0) @binding(2) var<storage, read_write> census: array<u32>;
 
-// Of a row of the plane, the thread's four pixels and two on either side.
+// One row: lumas of the thread's four pixels and of the halo, two pixels on either side.
 alias Row = array<u32, 8>;
 
 fn row_at(first: u32) -> Row {
@@ -31,6 +36,7 @@ fn row_at(first: u32) -> Row {
     );
 }
 
+// Census transforms of four pixels.
 fn transformed(window: array<Row, 5>) -> vec4<u32> {
     let centre = vec4<u32>(window[2][2], window[2][3], window[2][4], window[2][5]);
     var bits = vec4<u32>(0u);
@@ -45,7 +51,7 @@ fn transformed(window: array<Row, 5>) -> vec4<u32> {
     return (bits << vec4<u32>(8u)) | centre;
 }
 
-// A thread transforms four pixels of a row, and those below them in ROWS rows.
+// One thread transforms 4 x ROWS pixels.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = 4u * id.x;

@@ -1,24 +1,30 @@
-// What the other view sees, as far as the reference view's winners tell: each pixel claims its partner, and
-// of several claims to one the cheapest holds. Where a pixel's own claim is not the one that holds,
-// something nearer hides it from the other view, or it is wrong.
+// Consistency check without a search of the other view: each pixel of the reference view claims its partner, and of
+// several claims to one partner the cheapest stands. A pixel whose claim does not stand is occluded in the other view,
+// or wrong.
 //
-// As OpenCV's semi-global matcher checks its map: a whole search of the other view does better, for as
-// much work again.
+// OpenCV's semi-global matcher (StereoSGBM) checks its map in this way. A full search of the other view is more
+// accurate, at twice the work.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   INDEX_BITS         bits of a disparity's index in a key
 
 struct Params {
     width: u32,
     rows: u32,
     min_disparity: i32,
-    // From a pixel to its partner: -1 where the reference is the left view, 1 where it is the right.
+    // Partner column = column + direction * disparity: -1 if the reference is the left view, 1 if the right view.
     direction: i32,
-    // Where the winners' keys begin.
+    // Index of the first key in `matches`.
     key_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// The keys: the cost above, the disparity's index in the lower INDEX_BITS bits, or all ones.
+// One key per pixel from key_offset on: the cost above, the disparity's index in the lower INDEX_BITS bits; all ones
+// without a disparity.
 @group(0) @binding(1) var<storage, read> matches: array<u32>;
-// The inverted keys of the claims that hold; 0 before the first.
+// One u32 per pixel of the other view: the inverted key of the claim that stands, or 0.
 @group(0) @binding(2) var<storage, read_write> claims: array<atomic<u32>>;
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)

@@ -1,29 +1,44 @@
-// The matching cost of each pixel and disparity, 8 bits each: the Hamming distance of the census
-// transforms, the difference of the lumas and that of their gradients along the row, each weighted
-// and the latter two truncated.
+// Matching cost of each pixel and disparity, 8 bits each: the Hamming distance of the census transforms, the difference
+// of the lumas and the difference of their horizontal gradients, each weighted, the two differences truncated.
 //
-// A thread walks through the disparities of eight pixels, four a step: of the other view it then
-// needs eleven pixels and their neighbours, of which a step brings four. A pixel without a partner is
-// compared with the nearest one of its partner's row.
+// One thread owns eight pixels and visits the disparities, four per step. A step needs eleven pixels of the other view
+// and their two neighbours; four of these are new. A partner outside the picture is replaced by the nearest pixel of
+// its row.
+
+// Constants:
+//   WORKGROUP_WIDTH     threads per workgroup along x
+//   WORKGROUP_HEIGHT    threads per workgroup along y
+//   DIRECTION           partner column = column + DIRECTION * disparity: -1 if the reference is the left view, 1 if the
+//                       right view
+//   FRONT               element of `b` that holds the partner of the first pixel at a step's first disparity
+//   KEPT                first element of `b` that the first step takes over from the load before the loop
+//   NEW                 first element of `b` that a step loads
+//   CENSUS_WEIGHT       weight of the Hamming distance, per bit, in 2^-WEIGHT_BITS
+//   DIFFERENCE_WEIGHT   weight of the difference of lumas, in 2^-WEIGHT_BITS
+//   DIFFERENCE_LIMIT    largest difference of lumas, in grey levels
+//   GRADIENT_WEIGHT     weight of the difference of gradients, in 2^-WEIGHT_BITS
+//   GRADIENT_LIMIT      largest difference of gradients, in grey levels
+//   WEIGHT_BITS         fractional bits of the weights
+//   MAX_COST            largest cost
 
 struct Params {
     width: u32,
-    // Of the band whose costs are wanted, and the row of the picture where it begins.
+    // Rows of the band, and the picture row where the band begins.
     rows: u32,
     first_row: u32,
     min_disparity: i32,
-    // Words a pixel of the volume: a word holds the costs of four disparities, the least in its lowest byte.
+    // u32 per pixel of the volume: costs of four disparities packed per u32, the smallest disparity in the lowest byte.
     words: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// A word a pixel of the reference view and of the other one: the census transform above the luma.
+// One u32 per pixel of the reference view, one u32 per pixel of the other view: census bits above 8 bits of luma.
 @group(0) @binding(1) var<storage, read> reference: array<u32>;
 @group(0) @binding(2) var<storage, read> other: array<u32>;
 @group(0) @binding(3) var<storage, read_write> volume: array<u32>;
 
-// The word of a row's pixel, or of the nearest.
-fn column(x: i32) -> u32 {
+// The column nearest to x inside the picture.
+fn inside(x: i32) -> u32 {
     return u32(clamp(x, 0, i32(params.width) - 1));
 }
 
@@ -31,7 +46,7 @@ fn luma(word: u32) -> i32 {
     return i32(word & 255u);
 }
 
-// The cost of four pixels.
+// Costs of four pixels, from census and luma of the pixels `a` and their partners `b`, and from the gradients of both.
 fn cost(a: vec4<u32>, b: vec4<u32>, gradient_a: vec4<i32>, gradient_b: vec4<i32>) -> vec4<u32> {
     let hamming = countOneBits((a ^ b) >> vec4<u32>(8u));
     let difference = vec4<u32>(abs(vec4<i32>(a & vec4<u32>(255u)) - vec4<i32>(b & vec4<u32>(255u))));
@@ -49,27 +64,27 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let row = (params.first_row + id.y) * params.width;
-    var near: array<u32, 10>;
+    var a_row: array<u32, 10>;
     for (var i = 0; i < 10; i++) { // unroll
-        near[i] = reference[row + column(x - 1 + i)];
+        a_row[i] = reference[row + inside(x - 1 + i)];
     }
     var a: array<vec4<u32>, 2>;
     var gradient_a: array<vec4<i32>, 2>;
     for (var q = 0; q < 2; q++) { // unroll
-        a[q] = vec4<u32>(near[4 * q + 1], near[4 * q + 2], near[4 * q + 3], near[4 * q + 4]);
+        a[q] = vec4<u32>(a_row[4 * q + 1], a_row[4 * q + 2], a_row[4 * q + 3], a_row[4 * q + 4]);
         gradient_a[q] = vec4<i32>(
-            luma(near[4 * q + 2]) - luma(near[4 * q]),
-            luma(near[4 * q + 3]) - luma(near[4 * q + 1]),
-            luma(near[4 * q + 4]) - luma(near[4 * q + 2]),
-            luma(near[4 * q + 5]) - luma(near[4 * q + 3]),
+            luma(a_row[4 * q + 2]) - luma(a_row[4 * q]),
+            luma(a_row[4 * q + 3]) - luma(a_row[4 * q + 1]),
+            luma(a_row[4 * q + 4]) - luma(a_row[4 * q + 2]),
+            luma(a_row[4 * q + 5]) - luma(a_row[4 * q + 3]),
         );
     }
-    // The partners of a step's least disparity and pixel, its neighbour in front, and on: those that the
-    // first step has in common with one before it.
+    // Consecutive pixels of the other view: the eleven partners of a step and one neighbour on either side. Before the
+    // loop the nine pixels are loaded that the first step shares with a step before it.
     let begin = x + DIRECTION * params.min_disparity - FRONT;
     var b: array<u32, 13>;
     for (var i = 0; i < 9; i++) { // unroll
-        b[i + KEPT] = other[row + column(begin + i + KEPT - DIRECTION * 4)];
+        b[i + KEPT] = other[row + inside(begin + i + KEPT - DIRECTION * 4)];
     }
     for (var step = 0u; step < params.words; step++) {
         let first = begin + DIRECTION * 4 * i32(step);
@@ -83,7 +98,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
         for (var i = 0; i < 4; i++) { // unroll
-            b[NEW + i] = other[row + column(first + NEW + i)];
+            b[NEW + i] = other[row + inside(first + NEW + i)];
         }
         var gradient_b: array<i32, 11>;
         for (var i = 0; i < 11; i++) { // unroll

@@ -1,19 +1,22 @@
-// A picture of half the size, each pixel the mean of four, or of as many as there are at the edges.
-//
-// A thread makes one word, from two words of either row.
+// Picture of half the size: each pixel is the mean of 2x2 pixels, of fewer at the right and lower edges. One thread
+// makes one u32 of four pixels, from two u32 of either row.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
 
 struct Params {
-    // Of the picture.
+    // Pixels of the picture.
     width: u32,
     height: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Both packed, four pixels a word, rows in whole words.
+// Picture and halved picture, four pixels packed per u32, each row in u32 of its own; bytes beyond the width are 0.
 @group(0) @binding(1) var<storage, read> luma: array<u32>;
 @group(0) @binding(2) var<storage, read_write> halved: array<u32>;
 
-// Of the four pixels of a word the first two added up, and the other two.
+// Sum of the first two pixels of a u32, and sum of the last two.
 fn pairs(word: u32) -> vec2<u32> {
     let sums = (word & 0x00ff00ffu) + ((word >> 8u) & 0x00ff00ffu);
     return vec2<u32>(sums & 0xffffu, sums >> 16u);
@@ -36,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         sums[2 * i] = sum.x;
         sums[2 * i + 1] = sum.y;
     }
-    // What lies beyond the width is 0 in the picture, so a mean of the last column alone is of two.
+    // Pixels beyond the width are 0: of an odd width the last mean is over two pixels.
     let new_width = (params.width + 1u) / 2u;
     var word = 0u;
     for (var i = 0; i < 4; i++) { // unroll

@@ -1,33 +1,39 @@
-// A picture with its edges continued for ever, as much of it as block matching will look at.
-//
-// Writes rows [first_row, first_row + rows) and words from first_word on, each pixel the nearest one
-// of the picture, so that no window and no search step has to ask where it is.
+// Padding: a plane of the picture with a halo, in which each pixel outside the picture has the luma of the nearest
+// pixel inside, so that block matching needs no bounds checks. Brightness is corrected on the way.
+
+#import brightness
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
 
 struct Params {
     width: u32,
     height: u32,
-    // Of the padded plane, which may begin left of and above the picture.
+    // First column in u32 and first row of the padded plane, from the picture's corner; negative: left of or above the
+    // picture.
     first_word: i32,
     first_row: i32,
     rows: u32,
-    // Words of a row of the padded plane, and where in the output it begins.
+    // u32 per row of the padded plane, and index in `padded` where the plane begins.
     stride: u32,
     offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> brightness: Brightness;
+// Four pixels packed per u32, rows of ceil(width / 4) u32.
 @group(0) @binding(2) var<storage, read> luma: array<u32>;
 @group(0) @binding(3) var<storage, read_write> padded: array<u32>;
 
-// A word of four pixels after the change of brightness.
+// Four packed pixels with corrected brightness.
 fn brightened_word(word: u32) -> u32 {
     let pixels = vec4<i32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u));
     let bytes = vec4<u32>(brightened(pixels, brightness));
     return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }
 
-// The lowest n bytes, 0 to 4 of them.
+// Mask of the lowest n bytes of a u32; n is clamped to 0 to 4.
 fn mask(n: i32) -> u32 {
     let bits = 4u * u32(clamp(n, 0, 4));
     return ~((0xffffffffu << bits) << bits);
@@ -42,7 +48,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let y = u32(clamp(params.first_row + i32(id.y), 0, i32(params.height) - 1));
     let word = params.first_word + i32(id.x);
     let nearest = luma[y * ((params.width + 3u) / 4u) + u32(clamp(word, 0, (width - 1) / 4))];
-    // Without a branch: software drivers run both sides of one for every word.
+    // Masks instead of branches: software drivers run both sides of a branch for every u32.
     let left = mask(-4 * word);
     let right = ~mask(width - 4 * word);
     let first_pixel = (nearest & 255u) * 0x01010101u;

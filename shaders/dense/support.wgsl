@@ -1,48 +1,63 @@
-// Takes away the disparities that hardly any of their neighbours share: speckles, without having to
-// follow their outlines. A disparity stays if at least LEAST pixels of the window around it, itself
-// included, have one that differs by at most TOLERANCE. Their number becomes the better part of its
-// confidence: 1 + 5 (number - 1), up to 4 more for what its confidence was, and less by an eighth of the
-// photometric residuals of the 5x5 around it; at least 1.
+// Removes speckles without following their outlines: a disparity stays if at least LEAST pixels of its window, the
+// pixel itself included, have a disparity that differs by at most TOLERANCE.
+//
+// Confidence of a disparity with n such pixels: 1 + 5 (n - 1), plus up to 4 for the confidence so far, minus an eighth
+// of the sum of the photometric residuals in the 5x5 window; at least 1.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   RADIUS             radius of the window, in pixels
+//   SIDE               side of the window: 2 RADIUS + 1, in pixels
+//   SPAN               pixels per row of four windows: SIDE + 3
+//   KEPT               rows of a window that the window one row below shares: SIDE - 1
+//   ROWS               rows of pixels per thread
+//   TOLERANCE          largest difference of disparities, in 1/256 px
+//   LEAST              supporting pixels, at least
+//   NONE               sentinel: the pixel has no disparity
+//   FAR                sentinel farther than TOLERANCE from any disparity: no disparity
 
 struct Params {
     width: u32,
     height: u32,
-    // Where the confidences begin, four a word.
+    // Index of the first u32 of the confidences in `matches` and `supported`.
     confidence_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// A fixed-point disparity a pixel, then a confidence a pixel, four a word.
+// One i32 per pixel: the disparity, fixed-point. Then the confidences, four packed per u32.
 @group(0) @binding(1) var<storage, read> matches: array<i32>;
-// Four a word, rows of (width + 3) / 4 words; 0 beyond the width.
+// Residuals, four packed per u32, rows of ceil(width / 4) u32; bytes beyond the width are 0.
 @group(0) @binding(2) var<storage, read> residuals: array<u32>;
+// Disparities and confidences, laid out as `matches`.
 @group(0) @binding(3) var<storage, read_write> supported: array<i32>;
 
 struct Row {
-    // From RADIUS columns left of a thread's four pixels to RADIUS right of them; FAR where there is none.
+    // Disparities of the thread's four pixels and RADIUS columns on either side; FAR for pixels without a disparity.
     disparities: array<i32, SPAN>,
-    // The sums of the residuals from two columns left of each of the pixels to two right of it.
+    // Per pixel of the thread: sum of the residuals of the pixel and two columns on either side.
     residuals: vec4<u32>,
 }
 
+// Row y of the windows of the four pixels from column x on.
 fn row_at(x: i32, y: i32) -> Row {
     let width = i32(params.width);
     let height = i32(params.height);
-    let nearest_row = clamp(y, 0, height - 1);
-    let is_row = y == nearest_row;
+    let inside_row = clamp(y, 0, height - 1);
+    let is_row = y == inside_row;
     var row: Row;
     for (var i = 0; i < SPAN; i++) { // unroll
         let column = x + i - RADIUS;
-        let nearest = clamp(column, 0, width - 1);
-        let disparity = matches[nearest_row * width + nearest];
-        row.disparities[i] = select(FAR, disparity, is_row & (column == nearest) & (disparity != NONE));
+        let inside = clamp(column, 0, width - 1);
+        let disparity = matches[inside_row * width + inside];
+        row.disparities[i] = select(FAR, disparity, is_row & (column == inside) & (disparity != NONE));
     }
     let stride = (width + 3) / 4;
     var words: vec3<u32>;
     for (var i = 0; i < 3; i++) { // unroll
         let word = x / 4 + i - 1;
-        let nearest = clamp(word, 0, stride - 1);
-        words[i] = select(0u, residuals[nearest_row * stride + nearest], is_row & (word == nearest));
+        let inside = clamp(word, 0, stride - 1);
+        words[i] = select(0u, residuals[inside_row * stride + inside], is_row & (word == inside));
     }
     let before = (words.xx >> vec2<u32>(16u, 24u)) & vec2<u32>(255u);
     let own = (words.yyyy >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
@@ -52,8 +67,8 @@ fn row_at(x: i32, y: i32) -> Row {
     return row;
 }
 
-// How many pixels of their windows share the disparities of the thread's pixels.
-fn sharing(window: array<Row, SIDE>) -> vec4<u32> {
+// Supporting pixels of each of the thread's four pixels.
+fn support(window: array<Row, SIDE>) -> vec4<u32> {
     let own = window[RADIUS].disparities;
     let centre = vec4<i32>(own[RADIUS], own[RADIUS + 1], own[RADIUS + 2], own[RADIUS + 3]);
     var count = vec4<u32>(0u);
@@ -67,7 +82,7 @@ fn sharing(window: array<Row, SIDE>) -> vec4<u32> {
     return count;
 }
 
-// A thread decides four pixels of a row, and those below them in ROWS rows.
+// One thread decides 4 x ROWS pixels.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = 4 * i32(id.x);
@@ -86,14 +101,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             window[j] = window[j + 1];
         }
         window[KEPT] = row_at(x, y + RADIUS);
-        let count = sharing(window);
-        var unlike = vec4<u32>(0u);
+        let count = support(window);
+        var residual_sum = vec4<u32>(0u);
         for (var j = 0; j < 5; j++) { // unroll
-            unlike += window[RADIUS - 2 + j].residuals;
+            residual_sum += window[RADIUS - 2 + j].residuals;
         }
         let word = params.confidence_offset + u32(y) * ((params.width + 3u) / 4u) + id.x;
         let confidences = u32(matches[word]);
-        var confident = 0u;
+        var new_confidences = 0u;
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < width {
                 let disparity = window[RADIUS].disparities[RADIUS + t];
@@ -101,10 +116,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 supported[y * width + x + t] = select(NONE, disparity, stays);
                 let margin = (5u * ((confidences >> (8u * t)) & 255u)) >> 8u;
                 let confidence = 5u * count[t] - 4u + margin;
-                let lowered = confidence - min(unlike[t] >> 3u, confidence - 1u);
-                confident |= select(0u, lowered, stays) << (8u * t);
+                let lowered = confidence - min(residual_sum[t] >> 3u, confidence - 1u);
+                new_confidences |= select(0u, lowered, stays) << (8u * t);
             }
         }
-        supported[word] = i32(confident);
+        supported[word] = i32(new_confidences);
     }
 }

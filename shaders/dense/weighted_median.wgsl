@@ -1,66 +1,78 @@
-// The median of the disparities around a pixel, each weighted by how much its luma is like the pixel's:
-// edges of the map move to edges of the picture.
+// Weighted median of the disparities around a pixel. Neighbours weigh more the closer their luma is to the pixel's
+// luma, so that edges of the map move to edges of the picture.
 //
-// Ma, He, Wei, Sun and Wu: 'Constant time weighted median filtering for stereo matching and beyond',
-// ICCV 2013; here with integer weights and straight from the definition. A neighbour whose luma differs
-// by g weighs 256 / 2^(g / 2^HALVING_BITS), interpolated between whole powers. The median is the least
-// disparity of the window for which those up to it weigh at least half of all.
-//
-// A thread filters four pixels of a row, and those below them in ROWS rows: of the next window it has
-// all but one row, KEPT.
+// Ma, He, Wei, Sun and Wu: 'Constant time weighted median filtering for stereo matching and beyond', ICCV 2013; here
+// with integer weights and straight from the definition. A neighbour whose luma differs by g weighs 256 / 2^(g /
+// 2^HALVING_BITS), interpolated between powers of two. The median is the least disparity of the window for which the
+// disparities up to and including it have at least half of the total weight.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   RADIUS             radius of the window, in pixels
+//   SIDE               side of the window: 2 RADIUS + 1, in pixels
+//   KEPT               rows of a window that the window one row below shares: SIDE - 1
+//   SPAN               pixels per row of four windows: SIDE + 3
+//   HALVING_BITS       log2 of the difference of lumas that halves the weight, in grey levels
+//   HOLES_ONLY         1: only pixels that have no disparity in `before` are filtered
+//   ROWS               rows of pixels per thread
+//   FARTHEST           bound above any absolute disparity, in 1/256 px
+//   NONE               sentinel: the pixel has no disparity
 
 struct Params {
     width: u32,
     height: u32,
-    // Where the rows begin in the luma.
+    // Index of the first row's first u32 in `luma`.
     luma_start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Four pixels a word, rows of (width + 3) / 4 words.
+// Four pixels packed per u32, rows of ceil(width / 4) u32.
 @group(0) @binding(1) var<storage, read> luma: array<u32>;
+// One i32 per pixel: the disparity, fixed-point.
 @group(0) @binding(2) var<storage, read> disparities: array<i32>;
-// With HOLES_ONLY those before holes were filled: only what was filled is filtered.
+// Disparities before holes were filled; read if HOLES_ONLY.
 @group(0) @binding(3) var<storage, read> before: array<i32>;
 @group(0) @binding(4) var<storage, read_write> filtered: array<i32>;
 
-// The disparities of a row, from RADIUS columns left of a thread's pixels to RADIUS right of them, and the
-// lumas, packed: of the thread's pixels and four on either side.
+// One row: disparities of the thread's four pixels and RADIUS columns on either side; lumas, packed, of the four pixels
+// and four columns on either side.
 struct Row {
     disparities: array<i32, SPAN>,
     luma: array<u32, 3>,
 }
 
-// What a thread sees.
+// Windows of the thread's four pixels.
 alias Window = array<Row, SIDE>;
 
+// Weight of a difference of lumas, 0 to 256.
 fn weight(difference: vec4<u32>) -> vec4<u32> {
     let sixteenths = (difference << vec4<u32>(4u)) >> vec4<u32>(HALVING_BITS);
     let fraction = sixteenths & vec4<u32>(15u);
     return ((32u - fraction) * 8u) >> min(sixteenths >> vec4<u32>(4u), vec4<u32>(31u));
 }
 
-// Row `y` around the thread's pixels, of which x is the first. Outside are no disparities; lumas there are
-// anything.
+// Row y of the windows of the four pixels from column x on. Pixels outside the picture have no disparity, and lumas
+// that do not matter.
 fn row_at(x: i32, y: i32) -> Row {
     let width = i32(params.width);
-    let nearest_row = clamp(y, 0, i32(params.height) - 1);
+    let inside_row = clamp(y, 0, i32(params.height) - 1);
     var row: Row;
     for (var i = 0; i < SPAN; i++) { // unroll
         let column = x + i - RADIUS;
-        let nearest = clamp(column, 0, width - 1);
-        let disparity = disparities[nearest_row * width + nearest];
-        row.disparities[i] = select(NONE, disparity, (y == nearest_row) & (column == nearest));
+        let inside = clamp(column, 0, width - 1);
+        let disparity = disparities[inside_row * width + inside];
+        row.disparities[i] = select(NONE, disparity, (y == inside_row) & (column == inside));
     }
     let luma_stride = (width + 3) / 4;
     for (var i = 0; i < 3; i++) { // unroll
         let word = clamp(x / 4 + i - 1, 0, luma_stride - 1);
-        row.luma[i] = luma[params.luma_start + u32(nearest_row * luma_stride + word)];
+        row.luma[i] = luma[params.luma_start + u32(inside_row * luma_stride + word)];
     }
     return row;
 }
 
-// The medians of the thread's pixels where they are wanted; elsewhere anything.
+// Medians of the thread's four pixels; `otherwise` for pixels that are not `wanted` or have no neighbour with a weight.
 fn median(window: Window, wanted: vec4<bool>, otherwise: vec4<i32>) -> vec4<i32> {
     let own = (vec4<u32>(window[RADIUS].luma[1]) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
     var values: array<array<vec4<i32>, SIDE>, SIDE>;
@@ -82,18 +94,18 @@ fn median(window: Window, wanted: vec4<bool>, otherwise: vec4<i32>) -> vec4<i32>
             );
             let other = vec4<u32>(lumas[i], lumas[i + 1], lumas[i + 2], lumas[i + 3]);
             let difference = vec4<u32>(abs(vec4<i32>(other) - vec4<i32>(own)));
-            let counts = value != vec4<i32>(NONE);
+            let is_known = value != vec4<i32>(NONE);
             values[j][i] = value;
-            weights[j][i] = select(vec4<u32>(0u), weight(difference), counts);
+            weights[j][i] = select(vec4<u32>(0u), weight(difference), is_known);
             total += weights[j][i];
-            // Those that weigh nothing do not matter.
+            // Neighbours of weight 0 do not bound the search.
             let matters = weights[j][i] > vec4<u32>(0u);
             low = select(low, min(low, value), matters);
             high = select(high, max(high, value), matters);
         }
     }
-    let found = wanted & (total > vec4<u32>(0u));
-    // Halve the span in which the median lies until it is one number. What is not wanted takes no time.
+    let has_median = wanted & (total > vec4<u32>(0u));
+    // Bisection for the median, until low = high in all lanes. Lanes that are not wanted begin with low = high.
     low = select(high, low, wanted);
     while any(low < high) {
         let middle = low + ((high - low) >> vec4<u32>(1u));
@@ -107,7 +119,7 @@ fn median(window: Window, wanted: vec4<bool>, otherwise: vec4<i32>) -> vec4<i32>
         high = select(high, middle, reached);
         low = select(middle + 1, low, reached);
     }
-    return select(otherwise, low, found);
+    return select(otherwise, low, has_median);
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)

@@ -1,16 +1,21 @@
-// Determinant of the Hessian by box filters (Bay et al., 'Speeded-Up Robust Features', CVIU 110,
-// 2008, section 3.2), for the four layers of one octave.
+// Determinant of the Hessian by box filters, for the four layers of one octave (Bay et al., 'Speeded-Up Robust
+// Features', CVIU 110, 2008, section 3.2).
 //
-// Every corner that the three filters of a point read from the integral image has a counterpart
-// one lobe (a third of the filter's side) further on. So, where the grid has a point for every
-// pixel (DENSE), a thread takes four rows a lobe apart and walks along them a lobe at a time,
-// reading 12 corners a point instead of 32. On coarser grids no corners meet, and a thread takes
-// one point; but half of the filters are those of the finer octave, whose results are copied.
+// Each corner of the three filters of one point is also a corner of the filters one lobe (a third of the filter's side)
+// further on. On the dense grid (DENSE = 1), one point per pixel, a thread takes WALK points in each of four rows, all
+// one lobe apart, and reads 12 corners per point instead of 32. On coarser grids no corners coincide: a thread takes
+// one point, and copies the responses of filters that the finer octave has already applied.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   DENSE              1: the grid has one point per pixel; 0: fewer
+//   WALK               points per thread in each of its four rows, if DENSE
 
 struct Layer {
-    // A third of the filter's side.
+    // A third of the filter's side, in pixels.
     lobe: u32,
-    // Factors that bring Dxx and Dyy, and Dxy, to 1/256 grey level.
+    // Factors from Dxx and Dyy, and from Dxy, to 1/256 grey level.
     scale_xx: f32,
     scale_xy: f32,
     padding: u32,
@@ -19,11 +24,11 @@ struct Layer {
 struct Params {
     width: u32,
     height: u32,
-    // The grid: a point every `step` pixels, from pixel 0 on.
+    // Grid of this octave: one point every `step` pixels, from pixel 0 on.
     step: u32,
     grid_width: u32,
     grid_height: u32,
-    // The grid of the finer octave, and how many layers come from there.
+    // Grid of the finer octave, and number of layers copied from the finer octave.
     finer_width: u32,
     finer_height: u32,
     shared_layers: u32,
@@ -32,28 +37,28 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> integral: array<u32>;
-// Responses of the finer octave, where there is one.
+// Responses of the finer octave, if there is a finer octave.
 @group(0) @binding(2) var<storage, read> finer: array<i32>;
-// Four layers of grid points: determinant << 1 | (trace > 0), or 0 where the filter does not fit.
+// Four layers of grid points: determinant << 1 | (trace > 0), or 0 where the filter leaves the picture.
 @group(0) @binding(3) var<storage, read_write> responses: array<i32>;
 
-// Corners outside the picture only ever belong to points whose filter does not fit, and whose
-// result is replaced by 0; whatever the bounds checks return for them does no harm.
+// Entry of the integral image. Corners outside the picture belong to filters that leave the picture, whose responses
+// are replaced by 0: the value that the bounds check returns for such a corner does not matter.
 fn corner(x: u32, y: u32) -> u32 {
     return integral[y * (params.width + 1u) + x];
 }
 
-// Sum of the columns left of `x` between the rows `y0` (included) and `y1` (not included).
+// Sum of the columns left of `x`, from row `y0` to row `y1` exclusive.
 fn above(x: u32, y0: u32, y1: u32) -> u32 {
     return corner(x, y1) - corner(x, y0);
 }
 
-// Sum of the rows over `y` between the columns `x0` (included) and `x1` (not included).
+// Sum of the rows above `y`, from column `x0` to column `x1` exclusive.
 fn beside(x0: u32, x1: u32, y: u32) -> u32 {
     return corner(x1, y) - corner(x0, y);
 }
 
-// The weights 1 -2 1 of three lobes side by side, from the running sums at their four borders.
+// Three adjacent lobes weighted 1, -2, 1, from the prefix sums at their four borders.
 fn second_difference(s0: u32, s1: u32, s2: u32, s3: u32) -> i32 {
     return bitcast<i32>(s3 - s0 - 3u * (s2 - s1));
 }
@@ -82,7 +87,7 @@ fn dyy(x: u32, y: u32, l: u32) -> i32 {
     );
 }
 
-// The lobe right of column `x` minus the lobe left of it, over all rows above `y`.
+// The lobe right of column `x` minus the lobe left of column `x`, over all rows above `y`.
 fn right_minus_left(x: u32, y: u32, l: u32) -> u32 {
     return beside(x + 1u, x + l + 1u, y) - beside(x - l, x, y);
 }
@@ -93,7 +98,7 @@ fn dxy(x: u32, y: u32, l: u32) -> i32 {
     return bitcast<i32>(upper - lower);
 }
 
-// What follows is for four points at once, at (x, y), (x, y + l), (x, y + 2 l) and (x, y + 3 l).
+// The functions named four_* compute four points at once: (x, y), (x, y + l), (x, y + 2 l) and (x, y + 3 l).
 
 fn four_corners(x: u32, y: u32, l: u32) -> vec4u {
     return vec4u(corner(x, y), corner(x, y + l), corner(x, y + 2u * l), corner(x, y + 3u * l));
@@ -103,7 +108,7 @@ fn four_second_differences(s0: vec4u, s1: vec4u, s2: vec4u, s3: vec4u) -> vec4i 
     return bitcast<vec4i>(s3 - s0 - 3u * (s2 - s1));
 }
 
-// `above` for the rows of Dxx.
+// `above` over the rows of the Dxx filters.
 fn four_above(x: u32, y: u32, l: u32) -> vec4u {
     return four_corners(x, y + l, l) - four_corners(x, y - l + 1u, l);
 }
@@ -119,15 +124,16 @@ fn four_dyy(x: u32, y: u32, l: u32) -> vec4i {
     return four_second_differences(s, vec4u(s.yzw, s4), vec4u(s.zw, s4, s5), vec4u(s.w, s4, s5, s6));
 }
 
-// The columns left of `x`: their lobe above each point minus their lobe below it.
+// Sum of the columns left of `x`: the lobe above each point minus the lobe below the point.
 fn four_upper_minus_lower(x: u32, y: u32, l: u32) -> vec4u {
     let above = four_corners(x, y - l, l) - four_corners(x, y + 1u, l);
     let last = corner(x, y + 3u * l) - corner(x, y + 4u * l + 1u);
     return vec4u(above.yzw, last) - above;
 }
 
+// Determinant and sign of the trace of one Hessian, as `responses` stores both.
 fn response(xx: i32, yy: i32, xy: i32, layer: Layer) -> i32 {
-    // One rounded product each, and nothing to fuse it with: the same integers on every device.
+    // Each product is rounded at once and cannot be fused with an addition: the integers are equal on every device.
     let nxx = i32(round(f32(xx) * layer.scale_xx));
     let nyy = i32(round(f32(yy) * layer.scale_xx));
     let nxy = i32(round(f32(xy) * layer.scale_xy));
@@ -135,7 +141,7 @@ fn response(xx: i32, yy: i32, xy: i32, layer: Layer) -> i32 {
     return (determinant << 1u) | select(0, 1, nxx + nyy > 0);
 }
 
-fn store(i: u32, j: u32, k: u32, lobe: u32, value: i32) {
+fn store_if_inside(i: u32, j: u32, k: u32, lobe: u32, value: i32) {
     if i >= params.grid_width || j >= params.grid_height {
         return;
     }
@@ -150,22 +156,22 @@ fn one_point(i: u32, j: u32, k: u32) {
     let l = params.layers[k].lobe;
     let x = i * params.step;
     let y = j * params.step;
-    store(i, j, k, l, response(dxx(x, y, l), dyy(x, y, l), dxy(x, y, l), params.layers[k]));
+    store_if_inside(i, j, k, l, response(dxx(x, y, l), dyy(x, y, l), dxy(x, y, l), params.layers[k]));
 }
 
-// The finer octave's second and fourth filter are this one's first and second.
-fn copy(i: u32, j: u32, k: u32) {
+// Layers 0 and 1 have the filters of layers 1 and 3 of the finer octave.
+fn copy_from_finer(i: u32, j: u32, k: u32) {
     if i < params.grid_width && j < params.grid_height {
         let value = finer[((2u * k + 1u) * params.finer_height + 2u * j) * params.finer_width + 2u * i];
         responses[(k * params.grid_height + j) * params.grid_width + i] = value;
     }
 }
 
-// WALK points in each of four rows, all of them a lobe apart, the uppermost left one at (first, y).
-fn walk(first: u32, y: u32, k: u32) {
+// WALK points in each of four rows, all one lobe apart; the upper left point is (first, y).
+fn four_rows(first: u32, y: u32, k: u32) {
     let layer = params.layers[k];
     let l = layer.lobe;
-    // The corners that a point shares with the one before it.
+    // Prefix sums of the columns, shared by a point and the next point of its row.
     let border = first - (3u * l - 1u) / 2u;
     var s0 = four_above(border, y, l);
     var s1 = four_above(border + l, y, l);
@@ -180,10 +186,10 @@ fn walk(first: u32, y: u32, k: u32) {
         let xx = four_second_differences(s0, s1, s2, s3);
         let yy = four_dyy(x, y, l);
         let xy = bitcast<vec4i>(right_outer - right_inner - (left_inner - left_outer));
-        store(x, y, k, l, response(xx.x, yy.x, xy.x, layer));
-        store(x, y + l, k, l, response(xx.y, yy.y, xy.y, layer));
-        store(x, y + 2u * l, k, l, response(xx.z, yy.z, xy.z, layer));
-        store(x, y + 3u * l, k, l, response(xx.w, yy.w, xy.w, layer));
+        store_if_inside(x, y, k, l, response(xx.x, yy.x, xy.x, layer));
+        store_if_inside(x, y + l, k, l, response(xx.y, yy.y, xy.y, layer));
+        store_if_inside(x, y + 2u * l, k, l, response(xx.z, yy.z, xy.z, layer));
+        store_if_inside(x, y + 3u * l, k, l, response(xx.w, yy.w, xy.w, layer));
         s0 = s1;
         s1 = s2;
         s2 = s3;
@@ -197,9 +203,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let k = id.z;
     if DENSE == 1 {
         let l = params.layers[k].lobe;
-        walk(id.x / l * WALK * l + id.x % l, id.y / l * 4u * l + id.y % l, k);
+        four_rows(id.x / l * WALK * l + id.x % l, id.y / l * 4u * l + id.y % l, k);
     } else if k < params.shared_layers {
-        copy(id.x, id.y, k);
+        copy_from_finer(id.x, id.y, k);
     } else {
         one_point(id.x, id.y, k);
     }

@@ -1,7 +1,8 @@
-// First half of the integral image (Viola and Jones, CVPR 2001): the running sum of every row.
-//
-// One thread walks one row. Row 0 of the integral image lies above the picture and is 0, and so
-// is column 0 to its left.
+// Integral image, first half (Viola and Jones, CVPR 2001): prefix sums of every row. One thread adds up one row. Row 0
+// and column 0 of the integral image, above and left of the picture, are 0.
+
+// Constants:
+//   WORKGROUP   threads per workgroup
 
 struct Params {
     width: u32,
@@ -9,9 +10,9 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Four pixels a word, rows of ceil(width / 4) words.
+// Four pixels packed per u32, rows of ceil(width / 4) u32.
 @group(0) @binding(1) var<storage, read> luma: array<u32>;
-// Rows of width + 1 sums, height + 1 of them.
+// height + 1 rows of width + 1 sums.
 @group(0) @binding(2) var<storage, read_write> integral: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -20,8 +21,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if row > params.height {
         return;
     }
-    let out = row * (params.width + 1u);
-    integral[out] = 0u;
+    let row_start = row * (params.width + 1u);
+    integral[row_start] = 0u;
     if row == 0u {
         for (var x = 1u; x <= params.width; x++) {
             integral[x] = 0u;
@@ -29,15 +30,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let first = (row - 1u) * ((params.width + 3u) / 4u);
-    let whole = params.width / 4u;
+    let full_words = params.width / 4u;
     var sum = 0u;
-    for (var i = 0u; i < whole; i++) {
+    for (var i = 0u; i < full_words; i++) {
         let word = luma[first + i];
         let s1 = sum + (word & 255u);
         let s2 = s1 + ((word >> 8u) & 255u);
         let s3 = s2 + ((word >> 16u) & 255u);
         sum = s3 + (word >> 24u);
-        let at = out + 4u * i;
+        let at = row_start + 4u * i;
         integral[at + 1u] = s1;
         integral[at + 2u] = s2;
         integral[at + 3u] = s3;
@@ -46,10 +47,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if params.width % 4u == 0u {
         return;
     }
-    var rest = luma[first + whole];
-    for (var x = 4u * whole; x < params.width; x++) {
-        sum += rest & 255u;
-        rest >>= 8u;
-        integral[out + x + 1u] = sum;
+    var last_word = luma[first + full_words];
+    for (var x = 4u * full_words; x < params.width; x++) {
+        sum += last_word & 255u;
+        last_word >>= 8u;
+        integral[row_start + x + 1u] = sum;
     }
 }

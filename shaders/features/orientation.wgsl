@@ -1,19 +1,35 @@
-// The dominant direction of the gradient around each keypoint (Bay et al. 2008, section 4.1): one
-// workgroup a keypoint.
+// Orientation of each keypoint: the dominant direction of the gradient around the keypoint (Bay et al., 'Speeded-Up
+// Robust Features', CVIU 110, 2008, section 4.1). One workgroup per keypoint.
 //
-// The paper slides a window of pi/3 over the angles of the responses. Here it starts at BINS
-// directions, so that the responses can be gathered in bins first, and a window is WINDOW of them.
-// Bins are sums of fixed-point numbers: the order of the additions is not known, and must not
-// matter.
+// The paper slides a window of pi/3 over the angles of the responses. Here windows start at BINS angles, so that
+// responses are first summed per bin, and a window is WINDOW consecutive bins. Bins hold fixed-point sums, which do not
+// depend on the order of the atomic additions.
+
+#import keypoint
+#import haar
+
+// Constants:
+//   WORKGROUP        threads per workgroup
+//   DISPATCH_WIDTH   workgroups per row of a dispatch
+//   BINS             bins per full turn
+//   WINDOW           bins per window of pi/3
 
 const TAU = 6.28318530717958;
-// Units in a grey level. 109 samples of at most 510 grey levels stay below 2^31.
+// Fixed-point units per grey level: the sum of 109 samples of at most 510 grey levels stays below 2^31.
 const FIXED_POINT = 32768.0;
-// Bins start half of their width after angle 0, so that no multiple of 45 degrees, frequent in
-// pictures, lies on a border, where the last digit of atan2 would decide.
+// Angle at which bin 0 starts, in bins: with half a bin no multiple of 45 degrees, frequent in pictures, lies on a
+// border between bins, where the rounding of atan2 would decide.
 const PHASE = 0.5;
 
-@group(0) @binding(2) var<storage, read> found: u32;
+struct Params {
+    width: u32,
+    height: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> integral: array<u32>;
+// Maxima found, also those for which the list had no room.
+@group(0) @binding(2) var<storage, read> keypoint_count: u32;
 @group(0) @binding(3) var<storage, read_write> keypoints: array<Keypoint>;
 
 var<workgroup> bins_x: array<atomic<i32>, BINS>;
@@ -28,7 +44,7 @@ fn bin_of(direction: vec2f) -> u32 {
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let n = group.y * DISPATCH_WIDTH + group.x;
-    if n >= min(found, arrayLength(&keypoints)) {
+    if n >= min(keypoint_count, arrayLength(&keypoints)) {
         return;
     }
     if local < BINS {
@@ -37,17 +53,17 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
     }
     workgroupBarrier();
 
-    let place = place_of(keypoints[n]);
-    let radius = 2 * place.scale;
+    let position = position_of(keypoints[n]);
+    let radius = 2 * position.scale;
     let unit = FIXED_POINT / f32(radius * radius);
-    // The disc of radius 6 in the square of side 11.
+    // Samples in the disc of radius 6, of the square of side 11, at distances of one scale.
     for (var sample = local; sample < 121u; sample += WORKGROUP) {
         let i = i32(sample % 11u) - 5;
         let j = i32(sample / 11u) - 5;
         let distance = i * i + j * j;
         if distance < 36 {
-            let response = vec2f(haar(place.x + i * place.scale, place.y + j * place.scale, radius));
-            // atan2(0, 0) may be anything, and adds nothing.
+            let response = vec2f(haar(position.x + i * position.scale, position.y + j * position.scale, radius));
+            // atan2(0, 0) is undefined; a response of 0 adds nothing.
             if any(response != vec2f(0.0)) {
                 let weight = exp(-f32(distance) / (2.0 * 2.5 * 2.5));
                 let weighted = vec2i(round(weight * unit * response));
@@ -84,7 +100,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
         if angle < 0.0 {
             angle += TAU;
         }
-        // A tiny negative angle rounds to the whole turn.
+        // A negative angle near 0 plus TAU may round to TAU.
         keypoints[n].orientation = select(angle, 0.0, angle >= TAU);
     }
 }

@@ -1,30 +1,40 @@
-// Min-sum belief propagation on the grid: half of the nodes, like the squares of one colour on a chessboard,
+// Min-sum belief propagation on the grid of pixels: half of the nodes, like the squares of one colour on a chessboard,
 // send a message to each neighbour.
 //
 //     m(d) = min over e of (h(e) + V(d - e)) - min h,   h = own data cost + all messages but the receiver's,
-//     V(k) = min(SLOPE |k|, LIMIT), both times the link's weight / 16 and rounded down
+//     V(k) = min(SLOPE |k|, LIMIT), SLOPE and LIMIT times the link's weight / 16, rounded down
 //
-// Felzenszwalb and Huttenlocher: 'Efficient belief propagation for early vision', IJCV 70(1), 2006: a message in
-// linear time (section 3.1: once forth, once back), half of the nodes at a time (3.2), from coarse to fine (3.3).
+// Felzenszwalb and Huttenlocher: 'Efficient belief propagation for early vision', IJCV 70(1), 2006: messages in linear
+// time by a forward and a backward pass (section 3.1), half of the nodes at a time (3.2), from coarse to fine (3.3).
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   FOURS              vectors of four disparities per node
+//   SLOPE              V per disparity of difference, at weight 16
+//   LIMIT              largest V, at weight 16
 
 struct Params {
     width: u32,
     height: u32,
-    // Which half sends: nodes with x + y of this parity.
+    // Parity of x + y of the nodes that send.
     parity: u32,
-    // Whether the neighbours' messages are still those of their parents in the grid of half the size.
+    // 1: the neighbours' messages are those of their parents in the grid of half the size.
     from_parents: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Two disparities a word, 16 bits each, 2 FOURS words a node.
+// Data costs: 2 FOURS u32 per node, two disparities packed per u32, 16 bits each.
 @group(0) @binding(1) var<storage, read> costs: array<u32>;
-// The weight of a node's link to the right in the lowest byte, and downwards in the next, 0 to 16 each.
+// One u32 per node: weight of the link to the right in the lowest byte, weight of the link downwards in the next byte,
+// 0 to 16 each.
 @group(0) @binding(2) var<storage, read> links: array<u32>;
+// Messages of the grid of half the size, laid out as `messages`.
 @group(0) @binding(3) var<storage, read> parents: array<u32>;
-// What each node sends up, down, left and right: four disparities a word, FOURS words a direction.
+// Messages of each node up, down, left and right: FOURS u32 per direction, four disparities packed per u32.
 @group(0) @binding(4) var<storage, read_write> messages: array<u32>;
 
+// Costs of a node, four disparities per vector.
 alias Costs = array<vec4<u32>, FOURS>;
 
 fn unpack(word: u32) -> vec4<u32> {
@@ -35,6 +45,7 @@ fn pack(values: vec4<u32>) -> u32 {
     return values.x | (values.y << 8u) | (values.z << 16u) | (values.w << 24u);
 }
 
+// The neighbour of (x, y) in direction 0 to 3: up, down, left, right.
 fn neighbour(x: i32, y: i32, direction: u32) -> vec2<i32> {
     switch direction {
         case 0u: { return vec2<i32>(x, y - 1); }
@@ -48,14 +59,15 @@ fn is_inside(at: vec2<i32>) -> bool {
     return at.x >= 0 && at.y >= 0 && at.x < i32(params.width) && at.y < i32(params.height);
 }
 
-// Where the message begins that the node at `from` sends in a direction.
-fn place(from_node: vec2<i32>, direction: u32) -> u32 {
+// Index of the first u32 of the message that `from_node`, or its parent, sends in a direction.
+fn message_start(from_node: vec2<i32>, direction: u32) -> u32 {
     let at = vec2<u32>(from_node);
     let parent = (at.y / 2u) * ((params.width + 1u) / 2u) + at.x / 2u;
     let node = select(at.y * params.width + at.x, parent, params.from_parents != 0u);
     return (4u * node + direction) * FOURS;
 }
 
+// Four disparities of a received message.
 fn received(word: u32) -> vec4<u32> {
     if params.from_parents != 0u {
         return unpack(parents[word]);
@@ -63,13 +75,13 @@ fn received(word: u32) -> vec4<u32> {
     return unpack(messages[word]);
 }
 
-// The weight of the link from a node to the neighbour at `to`.
-fn link(node: vec2<i32>, to: vec2<i32>) -> u32 {
+// Weight of the link between a node and its neighbour `to`.
+fn link_weight(node: vec2<i32>, to: vec2<i32>) -> u32 {
     let first = vec2<u32>(min(node, to));
     return (links[first.y * params.width + first.x] >> select(0u, 8u, node.x == to.x)) & 255u;
 }
 
-fn least(h: Costs) -> u32 {
+fn min_cost(h: Costs) -> u32 {
     var least = h[0];
     for (var k = 0; k < FOURS; k++) { // unroll
         least = min(least, h[k]);
@@ -77,13 +89,13 @@ fn least(h: Costs) -> u32 {
     return min(min(least.x, least.y), min(least.z, least.w));
 }
 
-// More than any cost with four messages on top of it, and far from what 32 bits hold.
-const BEYOND = 0xffffffu;
+// Sentinel above any data cost plus four messages; adding SLOPE does not overflow.
+const UNREACHABLE = 0xffffffu;
 
-// Each cost or what it takes to come from a smaller disparity.
-fn forth(h: Costs, slope: u32) -> Costs {
+// Forward pass: the least of each cost and of the costs of smaller disparities plus the slope.
+fn forward_pass(h: Costs, slope: u32) -> Costs {
     var out: Costs;
-    var last = BEYOND;
+    var last = UNREACHABLE;
     for (var k = 0; k < FOURS; k++) { // unroll
         let x = min(h[k].x, last + slope);
         let y = min(h[k].y, x + slope);
@@ -94,10 +106,10 @@ fn forth(h: Costs, slope: u32) -> Costs {
     return out;
 }
 
-// Each cost or what it takes to come from a larger disparity.
-fn back(h: Costs, slope: u32) -> Costs {
+// Backward pass: the least of each cost and of the costs of larger disparities plus the slope.
+fn backward_pass(h: Costs, slope: u32) -> Costs {
     var out: Costs;
-    var last = BEYOND;
+    var last = UNREACHABLE;
     for (var k = 0; k < FOURS; k++) { // unroll
         let w = min(h[FOURS - 1 - k].w, last + slope);
         let z = min(h[FOURS - 1 - k].z, w + slope);
@@ -108,7 +120,8 @@ fn back(h: Costs, slope: u32) -> Costs {
     return out;
 }
 
-fn minus(sum: Costs, start: u32) -> Costs {
+// `sum` without the message that begins at `start`.
+fn without_message(sum: Costs, start: u32) -> Costs {
     var h: Costs;
     for (var k = 0; k < FOURS; k++) { // unroll
         h[k] = sum[k] - received(start + k);
@@ -116,7 +129,8 @@ fn minus(sum: Costs, start: u32) -> Costs {
     return h;
 }
 
-fn plus(sum: Costs, start: u32) -> Costs {
+// `sum` with the message that begins at `start`.
+fn with_message(sum: Costs, start: u32) -> Costs {
     var h: Costs;
     for (var k = 0; k < FOURS; k++) { // unroll
         h[k] = sum[k] + received(start + k);
@@ -124,7 +138,8 @@ fn plus(sum: Costs, start: u32) -> Costs {
     return h;
 }
 
-fn data(node: u32) -> Costs {
+// Data costs of a node.
+fn data_costs(node: u32) -> Costs {
     var h: Costs;
     for (var k = 0; k < FOURS; k++) { // unroll
         let low = costs[2u * (node * FOURS + k)];
@@ -134,11 +149,12 @@ fn data(node: u32) -> Costs {
     return h;
 }
 
+// Writes the message of costs `h` over a link of this weight, from u32 `start` of `messages` on.
 fn send(h: Costs, weight: u32, start: u32) {
     let slope = (SLOPE * weight) >> 4u;
     let limit = (LIMIT * weight) >> 4u;
-    let minimum = least(h);
-    let costs = back(forth(h, slope), slope);
+    let minimum = min_cost(h);
+    let costs = backward_pass(forward_pass(h, slope), slope);
     for (var k = 0; k < FOURS; k++) { // unroll
         messages[start + k] = pack(min(costs[k] - minimum, vec4<u32>(limit)));
     }
@@ -151,18 +167,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let index = id.y * params.width + u32(node.x);
-    var sum = data(index);
+    var sum = data_costs(index);
     for (var direction = 0u; direction < 4u; direction++) {
         let from_node = neighbour(node.x, node.y, direction);
         if is_inside(from_node) {
-            sum = plus(sum, place(from_node, direction ^ 1u));
+            sum = with_message(sum, message_start(from_node, direction ^ 1u));
         }
     }
     for (var direction = 0u; direction < 4u; direction++) {
         let to = neighbour(node.x, node.y, direction);
         let start = (4u * index + direction) * FOURS;
         if is_inside(to) {
-            send(minus(sum, place(to, direction ^ 1u)), link(node, to), start);
+            send(without_message(sum, message_start(to, direction ^ 1u)), link_weight(node, to), start);
         } else {
             for (var k = 0; k < FOURS; k++) { // unroll
                 messages[start + k] = 0u;

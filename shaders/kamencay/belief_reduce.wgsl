@@ -1,17 +1,22 @@
-// The data costs of a grid of half the size: those of each block of 2x2 nodes added up, at most FAR.
+// Data costs of the grid of half the size: the sum over each block of 2x2 nodes, at most FAR.
 //
 // Felzenszwalb and Huttenlocher: 'Efficient belief propagation for early vision', IJCV 70(1), 2006, section 3.3.
 
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   FAR                largest data cost, 2^16 - 1: the mask of one cost as well
+
 struct Params {
-    // Of the finer grid.
+    // Nodes of the finer grid.
     width: u32,
     height: u32,
-    // Words a node.
+    // u32 per node.
     words: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Two disparities a word, 16 bits each.
+// Data costs of the finer grid, then of the coarser one: two disparities packed per u32, 16 bits each.
 @group(0) @binding(1) var<storage, read> fine: array<u32>;
 @group(0) @binding(2) var<storage, read_write> coarse: array<u32>;
 

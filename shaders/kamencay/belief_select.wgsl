@@ -1,27 +1,35 @@
-// From messages to disparities: the least belief, which is a pixel's data cost and all that its neighbours send.
+// Winner-take-all over the beliefs: the belief of a pixel and disparity is the data cost plus the messages of all
+// neighbours; the least belief wins.
+
+// Constants:
+//   WORKGROUP_WIDTH    threads per workgroup along x
+//   WORKGROUP_HEIGHT   threads per workgroup along y
+//   INDEX_BITS         bits of a disparity's index in a key
 
 struct Params {
     width: u32,
     height: u32,
     disparities: u32,
-    // Fours of disparities a pixel.
+    // Vectors of four disparities per pixel.
     fours: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Two disparities a word, 16 bits each.
+// Data costs: two disparities packed per u32, 16 bits each.
 @group(0) @binding(1) var<storage, read> costs: array<u32>;
-// What each pixel sends up, down, left and right: four disparities a word.
+// Messages of each pixel up, down, left and right: four disparities packed per u32.
 @group(0) @binding(2) var<storage, read> messages: array<u32>;
-// A pixel's least belief above its disparity's index of INDEX_BITS bits; then the least belief of all that
-// are two or more disparities away, or all ones.
+// Two u32 per pixel: the winner's key, which is its belief shifted left by INDEX_BITS with its disparity's index in the
+// lower bits; then the least belief of disparities two or more away from the winner, all ones without any.
 @group(0) @binding(3) var<storage, read_write> winners: array<u32>;
 
+// Four disparities of the message that a node sends in direction 0 to 3: up, down, left, right.
 fn sent(node: u32, direction: u32, four: u32) -> vec4<u32> {
     let word = messages[(4u * node + direction) * params.fours + four];
     return (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
 }
 
+// Beliefs of four disparities of the pixel `id`.
 fn beliefs(id: vec3<u32>, four: u32) -> vec4<u32> {
     let node = id.y * params.width + id.x;
     let low = costs[2u * (node * params.fours + four)];
@@ -62,9 +70,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var rival = 0xffffffffu;
     for (var four = 0u; four < params.fours; four++) {
         let index = 4u * four + offsets;
-        let away = abs(vec4<i32>(index) - best) >= vec4<i32>(2);
-        let counts = away & (index < vec4<u32>(params.disparities));
-        rival = min(rival, least(select(vec4<u32>(0xffffffffu), beliefs(id, four), counts)));
+        let is_distant = abs(vec4<i32>(index) - best) >= vec4<i32>(2);
+        let is_rival = is_distant & (index < vec4<u32>(params.disparities));
+        rival = min(rival, least(select(vec4<u32>(0xffffffffu), beliefs(id, four), is_rival)));
     }
     let node = id.y * params.width + id.x;
     winners[2u * node] = key;

@@ -1,34 +1,31 @@
-// Haar wavelet responses at any position and of any size, exact in integers. All lengths are in
-// 1/16 px and all positions from the picture's corner, where pixels are unit squares.
+// Haar wavelet responses at any position and of any size, from an integral image, exact in integers (Bay et al.,
+// 'Speeded-Up Robust Features', CVIU 110, 2008, section 4.1). Lengths are in 1/16 px; positions are in 1/16 px from the
+// picture's upper left corner, where pixels are unit squares.
+//
+// The module has `params` with `width` and `height`, and the integral image `integral`.
 
-struct Params {
-    width: u32,
-    height: u32,
-}
+#import keypoint
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> integral: array<u32>;
-
-// To the nearest whole number.
-fn whole(value: f32) -> i32 {
+// `value` rounded to the nearest integer, halves up.
+fn rounded(value: f32) -> i32 {
     return i32(floor(value + 0.5));
 }
 
-// A keypoint's place, rounded once: what is sampled around it is then the same on every device.
-struct Place {
+// Position and scale of a keypoint, rounded once, so that every device samples at the same points.
+struct Position {
     x: i32,
     y: i32,
     scale: i32,
 }
 
-fn place_of(keypoint: Keypoint) -> Place {
-    // The first pixel's centre, the origin of keypoints, is half a pixel from the corner.
-    return Place(whole(16.0 * keypoint.x) + 8, whole(16.0 * keypoint.y) + 8, whole(16.0 * keypoint.scale));
+fn position_of(keypoint: Keypoint) -> Position {
+    // The origin of keypoints is the first pixel's centre: half a pixel from the corner.
+    return Position(rounded(16.0 * keypoint.x) + 8, rounded(16.0 * keypoint.y) + 8, rounded(16.0 * keypoint.scale));
 }
 
-// 256 times the sum of the grey values left of and above a point: bilinear between four entries of
-// the integral image. It wraps at 32 bits, as they do.
-fn area(x: i32, y: i32) -> u32 {
+// 256 times the sum of the grey values left of and above a point: four entries of the integral image, interpolated
+// bilinearly. The sum wraps at 32 bits, as the entries do.
+fn area_sum(x: i32, y: i32) -> u32 {
     let px = u32(clamp(x, 0, 16 * i32(params.width)));
     let py = u32(clamp(y, 0, 16 * i32(params.height)));
     let fx = px & 15u;
@@ -42,17 +39,17 @@ fn area(x: i32, y: i32) -> u32 {
     return (16u - fy) * upper + fy * lower;
 }
 
-// Right minus left half, and lower minus upper half, of the square of side 2 * `radius` around
-// (x, y), times 256.
+// Wavelet responses dx and dy over the square of side 2 * `radius` around (x, y), times 256: right half minus left
+// half, lower half minus upper half.
 fn haar(x: i32, y: i32, radius: i32) -> vec2i {
     let x0 = x - radius;
     let x1 = x + radius;
     let y0 = y - radius;
     let y1 = y + radius;
-    let upper = vec3u(area(x0, y0), area(x, y0), area(x1, y0));
-    let left = area(x0, y);
-    let right = area(x1, y);
-    let lower = vec3u(area(x0, y1), area(x, y1), area(x1, y1));
+    let upper = vec3u(area_sum(x0, y0), area_sum(x, y0), area_sum(x1, y0));
+    let left = area_sum(x0, y);
+    let right = area_sum(x1, y);
+    let lower = vec3u(area_sum(x0, y1), area_sum(x, y1), area_sum(x1, y1));
     let whole_square = lower.z - lower.x - upper.z + upper.x;
     let left_half = lower.y - lower.x - upper.y + upper.x;
     let upper_half = right - left - upper.z + upper.x;

@@ -1,13 +1,13 @@
-// A maximum of the determinant, as the keypoint list holds it.
+// Keypoint: a local maximum of the Hessian's determinant, one element of the keypoint list.
 
 struct Keypoint {
     // Column, row and scale in pixels.
     x: f32,
     y: f32,
     scale: f32,
-    // In radians, 0 until the orientation is known.
+    // Angle of the dominant gradient, 0 until computed, in radians.
     orientation: f32,
-    // The sample's response word, and where the sample is.
+    // The sample's response as the hessian stage stores responses, its octave, its index in the octave's grid.
     response: i32,
     octave: u32,
     index: u32,

@@ -1,50 +1,33 @@
-// Semi-global matching along a line: the cost of each pixel and disparity together with that of the
-// best way to it, on which a step of one disparity costs P1 and a larger one P2.
+// Semi-global matching along one line of pixels: the path cost L of pixel p at disparity d is the matching cost C plus
+// the cost of the cheapest way to (p, d), on which a change of disparity by one costs P1 and a larger change P2.
 //
 //     L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + P1, L(q, d + 1) + P1, M + P2) - M,  M = min L(q, .)
 //
-// where q is the pixel before p. Hirschmueller: 'Stereo processing by semiglobal matching and mutual
-// information', PAMI 30(2), 2008, equations 12 and 13. P2 falls where the luma changes:
-// P2 = max(LEAST_P2, P2 K / (K + |luma(p) - luma(q)|)), rounded down.
+// where q is the pixel before p. Hirschmueller: 'Stereo processing by semiglobal matching and mutual information', PAMI
+// 30(2), 2008, equations 12 and 13. P2 is smaller where the luma changes, rounded down:
 //
-// A thread owns a line and keeps the costs of its last pixel, of all disparities, in registers. A
-// slanted line goes on at the other side of the picture where it leaves it, and begins anew there.
+//     P2(p, q) = max(LEAST_P2, P2 K / (K + |luma(p) - luma(q)|)),  K = P2_SCALE
+//
+// One thread owns one line and keeps the path costs of the last pixel, all disparities, in registers. A diagonal line
+// that leaves the picture at one side starts anew at the other side.
+//
+// The module has `params` with `width`, `rows`, `first_row`, `path_start`, `goes_on`, `dx` and `dy`, and the buffers
+// `reference`, `costs` and `paths`: see path.wgsl.
 
-struct Params {
-    width: u32,
-    // Of the band, and the row of the picture where it begins.
-    rows: u32,
-    first_row: u32,
-    // Where the band begins in the volume of this path.
-    path_start: u32,
-    // Whether the row before the band's first one holds where the lines come from.
-    goes_on: u32,
-    // To the next pixel of a line, each -1, 0 or 1.
-    dx: i32,
-    dy: i32,
-    // What follows is for the selection. Where the first path's volume begins, and how far it is to the next.
-    volumes_start: u32,
-    volume_words: u32,
-    min_disparity: i32,
-    disparities: u32,
-    uniqueness: u32,
-    // Where the confidences begin, four a word, and the winners' keys, a word a pixel.
-    confidence_offset: u32,
-    key_offset: u32,
-}
+#import quotient
 
-@group(0) @binding(0) var<uniform> params: Params;
-// A word a pixel: the luma in the lowest byte.
-@group(0) @binding(1) var<storage, read> reference: array<u32>;
-// Four disparities a word, WORDS words a pixel, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<u32>;
-@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
+// Constants:
+//   WORDS      u32 per pixel of a volume, four disparities packed per u32
+//   P1         penalty of a change of disparity by one
+//   P2         penalty of a larger change, at equal lumas
+//   LEAST_P2   penalty of a larger change, at least
+//   P2_SCALE   change of luma at which P2 is halved, in grey levels
 
-// More than any cost; what no path comes from.
-const FAR = 0x10000u;
+// Sentinel above any path cost, of disparities outside the range.
+const UNREACHABLE = 0x10000u;
 
-// The costs at a pixel, four disparities each, between two that nothing is reached from.
-alias State = array<vec4<u32>, WORDS + 2>;
+// Path costs of a pixel, four disparities per vector, between two vectors of sentinels.
+alias PathCosts = array<vec4<u32>, WORDS + 2>;
 
 fn unpack(word: u32) -> vec4<u32> {
     return (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
@@ -54,41 +37,54 @@ fn pack(costs: vec4<u32>) -> u32 {
     return costs.x | (costs.y << 8u) | (costs.z << 16u) | (costs.w << 24u);
 }
 
-// Four disparities of the next pixel from those of the last one and their neighbours.
-fn advance(before: vec4<u32>, here: vec4<u32>, after: vec4<u32>, jump: u32, cost: vec4<u32>) -> vec4<u32> {
-    let below = vec4<u32>(before.w, here.xyz);
-    let above = vec4<u32>(here.yzw, after.x);
-    return cost + min(min(here, min(below, above) + P1), vec4<u32>(jump));
+// Path costs of four disparities of the next pixel. `quad` holds the path costs of these disparities at the last pixel,
+// `quad_before` and `quad_after` those of the next smaller and the next larger four; `jump` is M + P2.
+fn advance(
+    quad_before: vec4<u32>,
+    quad: vec4<u32>,
+    quad_after: vec4<u32>,
+    jump: u32,
+    cost: vec4<u32>,
+) -> vec4<u32> {
+    let below = vec4<u32>(quad_before.w, quad.xyz);
+    let above = vec4<u32>(quad.yzw, quad_after.x);
+    return cost + min(min(quad, min(below, above) + P1), vec4<u32>(jump));
 }
 
-fn least(state: State) -> u32 {
-    var least = state[1];
+// M: the least path cost of a pixel.
+fn min_cost(path: PathCosts) -> u32 {
+    var least = path[1];
     for (var k = 0; k < WORDS; k++) { // unroll
-        least = min(least, state[k + 1]);
+        least = min(least, path[k + 1]);
     }
     return min(min(least.x, least.y), min(least.z, least.w));
 }
 
-// A line on its way.
+// State of a line at one pixel.
 struct Line {
     x: i32,
     y: i32,
-    // The luma of the last pixel.
+    // Luma of the last pixel.
     luma: u32,
-    // Whether it begins here: where it does, all costs before it are 0.
-    fresh: bool,
-    state: State,
+    // Whether the line starts at this pixel: all path costs before the first pixel are 0.
+    starts: bool,
+    // Path costs of the last pixel.
+    path: PathCosts,
 }
 
+// Lines of the path through the band.
 fn line_count() -> u32 {
     return select(params.width, params.rows, params.dy == 0);
 }
 
+// Pixels per line.
 fn line_length() -> u32 {
     return select(params.rows, params.width, params.dy == 0);
 }
 
-fn begin(index: u32) -> Line {
+// Line `index` at its first pixel. Where the band before this one holds the pixel that the line comes from, the path
+// costs of that pixel are read back.
+fn first_pixel(index: u32) -> Line {
     var line: Line;
     line.x = i32(index);
     line.y = select(0, i32(params.rows) - 1, params.dy < 0);
@@ -97,58 +93,58 @@ fn begin(index: u32) -> Line {
         line.y = i32(index);
     }
     line.luma = 0u;
-    line.fresh = true;
-    line.state[0] = vec4<u32>(FAR);
-    line.state[WORDS + 1] = vec4<u32>(FAR);
+    line.starts = true;
+    line.path[0] = vec4<u32>(UNREACHABLE);
+    line.path[WORDS + 1] = vec4<u32>(UNREACHABLE);
     let width = i32(params.width);
     let came_from = line.x - params.dx;
     if params.dy != 0 && params.goes_on != 0u && came_from >= 0 && came_from < width {
         let pixel = (line.y - params.dy) * width + came_from;
         line.luma = reference[u32(i32(params.first_row) * width + pixel)] & 255u;
         for (var k = 0; k < WORDS; k++) { // unroll
-            line.state[k + 1] = unpack(paths[params.path_start + u32(pixel) * WORDS + k]);
+            line.path[k + 1] = unpack(paths[params.path_start + u32(pixel) * WORDS + k]);
         }
-        line.fresh = false;
+        line.starts = false;
     }
     return line;
 }
 
-// The luma of the line's pixel.
+// Luma of the line's pixel.
 fn luma_at(line: Line) -> u32 {
     return reference[(params.first_row + u32(line.y)) * params.width + u32(line.x)] & 255u;
 }
 
-// The costs at the line's pixel, whose luma is `here`, packed.
-fn follow(line: Line, here: u32) -> array<u32, WORDS> {
-    let change = u32(abs(i32(here) - i32(line.luma)));
+// Path costs of the line's pixel, of luma `luma`, packed: equation 13.
+fn path_costs(line: Line, luma: u32) -> array<u32, WORDS> {
+    let change = u32(abs(i32(luma) - i32(line.luma)));
     let p2 = max(LEAST_P2, quotient(P2 * P2_SCALE, P2_SCALE + change));
-    // A line that begins has no past: the same as one of zeros.
-    let scale = select(0xffffffffu, 0u, line.fresh);
-    let minimum = least(line.state) & scale;
-    let jump = (minimum + p2) & scale;
+    // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
+    let mask = select(0xffffffffu, 0u, line.starts);
+    let minimum = min_cost(line.path) & mask;
+    let jump = (minimum + p2) & mask;
     let start = (u32(line.y) * params.width + u32(line.x)) * WORDS;
     var words: array<u32, WORDS>;
     for (var k = 0; k < WORDS; k++) { // unroll
         let cost = unpack(costs[start + k]);
-        words[k] = pack(advance(line.state[k], line.state[k + 1], line.state[k + 2], jump, cost) - minimum);
+        words[k] = pack(advance(line.path[k], line.path[k + 1], line.path[k + 2], jump, cost) - minimum);
     }
     return words;
 }
 
-// The line at its next pixel. The costs are unpacked again, so that software drivers pack vectors and
-// not lane by lane.
-fn next_of(line: Line, words: array<u32, WORDS>, here: u32) -> Line {
+// The line at its next pixel, from the path costs `words` and the luma of this pixel. The path costs are packed and
+// unpacked again, so that software drivers pack whole vectors instead of single lanes.
+fn next_pixel(line: Line, words: array<u32, WORDS>, luma: u32) -> Line {
     var next = line;
     for (var k = 0; k < WORDS; k++) { // unroll
-        next.state[k + 1] = unpack(words[k]);
+        next.path[k + 1] = unpack(words[k]);
     }
-    next.luma = here;
+    next.luma = luma;
     next.x += params.dx;
     next.y += params.dy;
-    next.fresh = false;
+    next.starts = false;
     if params.dx != 0 && params.dy != 0 && (next.x < 0 || next.x >= i32(params.width)) {
         next.x -= params.dx * i32(params.width);
-        next.fresh = true;
+        next.starts = true;
     }
     return next;
 }

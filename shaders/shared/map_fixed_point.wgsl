@@ -1,4 +1,4 @@
-// A disparity as it is.
+// Texel of a disparity map in fixed point: the disparity as stored, the sentinel included.
 
 alias Map = texture_storage_2d<r32sint, write>;
 

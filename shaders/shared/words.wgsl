@@ -1,10 +1,17 @@
-// Where a texture that holds words one after the other has one of them (src/gpu/words.rs).
-fn place_of(index: u32) -> vec2<u32> {
+// Reading u32 number `index` of a buffer that was copied to a texture, row by row (src/gpu/words.rs). Software drivers
+// load from textures for all lanes at once.
+//
+// The module has the texture `words`.
+
+// Constants:
+//   ROW_BITS   log2 of the texels per row of the texture, one u32 per texel
+
+fn texel_of(index: u32) -> vec2<u32> {
     return vec2<u32>(index & ((1u << ROW_BITS) - 1u), index >> ROW_BITS);
 }
 
-// A word of the texture `words` of the module around it. Not an argument, since Metal's language names how a texture is
-// used in its type, and naga cannot for an argument.
+// Reads `words`, and has no parameter for the texture: in Metal's language the type of a texture says how the texture
+// is accessed, and naga does not write that type for parameters.
 fn word_at(index: u32) -> u32 {
-    return textureLoad(words, place_of(index)).x;
+    return textureLoad(words, texel_of(index)).x;
 }

@@ -37,14 +37,14 @@ impl Keypoint {
 pub(crate) const DISPATCH_WIDTH: u32 = 256;
 
 shader_struct! {
-    /// Width and height of the picture, as `haar.wgsl` declares them.
+    /// Width and height of the picture, as `orientation.wgsl` and `descriptor.wgsl` declare them.
     pub(crate) struct Params {
         pub(crate) width: u32,
         pub(crate) height: u32,
     }
 }
 
-/// The uniform that `haar.wgsl` declares.
+/// The uniform of `orientation.wgsl` and `descriptor.wgsl`.
 pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 
 /// Room for the keypoints of a picture, on the device, in buffers with `STORAGE`, `COPY_SRC` and `COPY_DST`.

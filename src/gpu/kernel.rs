@@ -65,9 +65,12 @@ impl Kernel {
             })
             .collect();
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+        let text = stage.wgsl();
+        #[cfg(not(target_arch = "wasm32"))]
+        super::dump::dump(stage.name, &text);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label,
-            source: wgpu::ShaderSource::Wgsl(stage.wgsl().into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label,

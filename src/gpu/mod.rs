@@ -1,11 +1,21 @@
 //! The part of wgpu that every stage shares: a handle on a device, kernels, buffers, and results that are read back.
+//!
+//! # The text that is compiled
+//!
+//! A driver is not given a shader's file: constants and imported parts stand in front of it, and loops are unrolled. With
+//! the environment variable `HSAD_DUMP_WGSL` set to a folder, which is created, each kernel that is built also writes its
+//! text there, except in browsers: `<stage>-<hash of the text>.wgsl`, so that every variant of a stage has a file. A file
+//! that cannot be written is a warning in the log and nothing more.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod block_on;
 mod buffers;
 mod device;
+#[cfg(not(target_arch = "wasm32"))]
+mod dump;
 mod guard;
 mod handle;
+mod imports;
 mod kernel;
 mod limits;
 mod readback;

@@ -1,6 +1,6 @@
 //! A stage: WGSL text, its bindings, and the constants that host and shader share.
 
-use super::{shader_struct::Shape, unroll::unrolled};
+use super::{imports::imported, shader_struct::Shape, unroll::unrolled};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum Binding {
 pub struct Stage {
     /// The stage's name: that of its shader, its Rust file, its CPU twin and its test.
     pub name: &'static str,
-    /// The shader's text, without its constants.
+    /// The shader's text, without its constants and its imports.
     pub source: &'static str,
     /// The buffers of bind group 0, in order.
     pub bindings: &'static [Binding],
@@ -33,12 +33,12 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The whole module: the constants, then the shader's text with its marked loops written out.
+    /// The whole module: the constants, the imported parts, the shader's text, with marked loops unrolled.
     pub fn wgsl(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.constants {
             text += &format!("const {name} = {value};\n");
         }
-        text + &unrolled(self.source, &self.constants)
+        text + &unrolled(&imported(self.source), &self.constants)
     }
 }

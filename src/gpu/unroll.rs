@@ -1,9 +1,9 @@
-//! Loops written out before compilation.
+//! Unrolls marked loops before compilation.
 //!
-//! Shader compilers differ in what they make of a small array that is indexed by a loop counter:
-//! some keep it in registers, some in memory, at forty times the cost (Mesa 22). With the loop
-//! written out every index is a constant, and all of them keep it in registers. So that a shader
-//! stays readable, and valid WGSL, its loops stay loops in the file, marked for this pass:
+//! Shader compilers differ in where they keep a small array that is indexed by a loop counter: some in registers, some
+//! in memory, at forty times the cost (Mesa 22). In an unrolled loop every index is a constant, and every compiler
+//! keeps the array in registers. So that a shader stays readable and valid WGSL, its loops stay loops in the file,
+//! marked for this pass:
 //!
 //! ```wgsl
 //! for (var y = 0; y < ROWS + 1; y++) { // unroll
@@ -11,14 +11,13 @@
 //! }
 //! ```
 //!
-//! Each turn becomes a block of its own, with the counter's value in place of its name. Keep what is
-//! written out in small functions: naga 30 takes time quadratic in the length of a function.
+//! Each iteration becomes a block of its own, with the counter's value in place of the counter's name. Unroll in small
+//! functions only: the time that naga 30 takes is quadratic in the length of a function.
 
-/// `source` with every marked loop written out; bounds are sums of numbers and of `constants`.
+/// `source` with every marked loop unrolled; the bounds of loops are sums of numbers and of `constants`.
 ///
 /// # Panics
-/// If a marked loop does not have exactly the form above: the shaders are ours, and a test goes
-/// through all of them.
+/// If a marked loop does not have exactly the form above: the shaders are ours, and a test goes through all of them.
 pub(crate) fn unrolled(source: &str, constants: &[(&str, i64)]) -> String {
     let mut out = String::with_capacity(source.len());
     let mut rest = source;
@@ -31,12 +30,12 @@ pub(crate) fn unrolled(source: &str, constants: &[(&str, i64)]) -> String {
         let indent = &line[..line.len() - line.trim_start().len()];
         let length = body_length(after, indent).unwrap_or_else(|| panic!("no end of the loop: {line}"));
         let (counter, bound) = parse_head(head.trim());
-        // Inner loops first: their copies are then only copied on.
+        // Inner loops first: each is unrolled once, not once per copy of the outer loop's body.
         let body = unrolled(&after[..length], constants);
-        for turn in 0..evaluate(bound, constants) {
+        for iteration in 0..evaluate(bound, constants) {
             out.push_str(indent);
             out.push_str("{\n");
-            substitute(&body, counter, &turn.to_string(), &mut out);
+            substitute(&body, counter, &iteration.to_string(), &mut out);
             out.push_str(indent);
             out.push_str("}\n");
         }
@@ -45,7 +44,7 @@ pub(crate) fn unrolled(source: &str, constants: &[(&str, i64)]) -> String {
     out
 }
 
-/// Where the line begins that closes, with a brace at `indent`, what `text` is the inside of.
+/// The length of the loop body at the start of `text`: up to the line with the closing brace at `indent`.
 fn body_length(text: &str, indent: &str) -> Option<usize> {
     let mut length = 0;
     for line in text.split_inclusive('\n') {
@@ -57,7 +56,7 @@ fn body_length(text: &str, indent: &str) -> Option<usize> {
     None
 }
 
-/// The first line with its end, and what follows.
+/// The first line with its line break, and the rest.
 fn split_line(text: &str) -> Option<(&str, &str)> {
     let end = text.find('\n').map_or(text.len(), |end| end + 1);
     (end > 0).then(|| text.split_at(end))
@@ -69,9 +68,9 @@ fn substitute(body: &str, counter: &str, value: &str, out: &mut String) {
     let mut rest = body;
     while let Some(start) = rest.find(counter) {
         let (before, after) = (&rest[..start], &rest[start + counter.len()..]);
-        let whole = !before.ends_with(part_of_word) && !after.starts_with(part_of_word);
+        let is_counter = !before.ends_with(part_of_word) && !after.starts_with(part_of_word);
         out.push_str(before);
-        out.push_str(if whole { value } else { counter });
+        out.push_str(if is_counter { value } else { counter });
         rest = after;
     }
     out.push_str(rest);
@@ -85,9 +84,10 @@ fn parse_head(head: &str) -> (&str, &str) {
         let bound = inner.strip_prefix(counter)?.strip_prefix(" < ")?.strip_suffix(counter)?.strip_suffix("; ")?;
         Some((counter, bound))
     };
-    parse().unwrap_or_else(|| panic!("not a loop that can be written out: {head}"))
+    parse().unwrap_or_else(|| panic!("not a loop that can be unrolled: {head}"))
 }
 
+/// The value of a sum of numbers and constants.
 fn evaluate(sum: &str, constants: &[(&str, i64)]) -> i64 {
     let value = |term: &str| {
         let constant = constants.iter().find(|(name, _)| *name == term).map(|&(_, value)| value);

@@ -1,6 +1,7 @@
 //! Every shader against its Rust side, without any GPU: parsed, validated, its bindings and structs compared, and
 //! translated to what drivers are given.
 
+mod heads;
 mod translations;
 
 use std::path::Path;

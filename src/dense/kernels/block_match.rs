@@ -92,13 +92,7 @@ impl BlockMatch {
         };
         Stage {
             name: "block_match",
-            source: concat!(
-                include_str!("../../../shaders/shared/quotient.wgsl"),
-                include_str!("../../../shaders/shared/selection.wgsl"),
-                include_str!("../../../shaders/shared/consistent.wgsl"),
-                include_str!("../../../shaders/shared/words.wgsl"),
-                include_str!("../../../shaders/dense/block_match.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/block_match.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Read, Binding::Words, Binding::Write],
             constants: [
                 ("TILES_ACROSS", constant(tile.across)),

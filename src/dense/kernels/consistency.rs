@@ -41,10 +41,7 @@ impl Consistency {
     pub fn stage(others: CheckedAgainst) -> Stage {
         Stage {
             name: "consistency",
-            source: concat!(
-                include_str!("../../../shaders/shared/consistent.wgsl"),
-                include_str!("../../../shaders/dense/consistency.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/consistency.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),

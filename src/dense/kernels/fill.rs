@@ -37,10 +37,7 @@ impl Fill {
     pub fn stage() -> Stage {
         Stage {
             name: "fill",
-            source: concat!(
-                include_str!("../../../shaders/shared/words.wgsl"),
-                include_str!("../../../shaders/dense/fill.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/fill.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),

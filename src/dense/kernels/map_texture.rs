@@ -66,25 +66,18 @@ impl MapTexture {
         const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
         let (source, bindings): (_, &[Binding]) = match texel {
             MapTexel::FixedPoint => (
-                concat!(
-                    include_str!("../../../shaders/shared/map_fixed_point.wgsl"),
-                    include_str!("../../../shaders/dense/map_texture.wgsl")
-                ),
+                concat!("#import map_fixed_point\n", include_str!("../../../shaders/dense/map_texture.wgsl")),
                 &[PARAMS, Binding::Read, Binding::Map(wgpu::TextureFormat::R32Sint)],
             ),
             MapTexel::Pixels => (
-                concat!(
-                    include_str!("../../../shaders/shared/map_pixels.wgsl"),
-                    include_str!("../../../shaders/dense/map_texture.wgsl")
-                ),
+                concat!("#import map_pixels\n", include_str!("../../../shaders/dense/map_texture.wgsl")),
                 &[PARAMS, Binding::Read, Binding::Map(wgpu::TextureFormat::R32Float)],
             ),
         };
-        let constants = vec![
-            ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-            ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-            ("SCALE", SCALE.into()),
-        ];
+        let mut constants = vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())];
+        if texel == MapTexel::Pixels {
+            constants.push(("SCALE", SCALE.into()));
+        }
         Stage { name: "map_texture", source, bindings, constants }
     }
 

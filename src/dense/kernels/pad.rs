@@ -49,10 +49,7 @@ impl Pad {
     pub fn stage() -> Stage {
         Stage {
             name: "pad",
-            source: concat!(
-                include_str!("../../../shaders/shared/brightness.wgsl"),
-                include_str!("../../../shaders/dense/pad.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/pad.wgsl"),
             bindings: &[
                 Binding::Uniform(Params::SHAPE),
                 Binding::Uniform(Brightness::SHAPE),

@@ -9,7 +9,7 @@ use crate::{
 const WORKGROUP: u32 = 16;
 
 shader_struct! {
-    /// The uniforms of all kernels that follow lines: `shaders/shared/line.wgsl`.
+    /// The uniforms of both kernels that follow lines, as `path.wgsl` and `select.wgsl` declare them.
     pub(super) struct Params {
         pub(super) width: u32,
         pub(super) rows: u32,
@@ -74,11 +74,7 @@ impl Path {
     pub fn stage(penalties: &Penalties, words: u32) -> Stage {
         Stage {
             name: "path",
-            source: concat!(
-                include_str!("../../../shaders/shared/quotient.wgsl"),
-                include_str!("../../../shaders/shared/line.wgsl"),
-                include_str!("../../../shaders/dense/path.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/path.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: line_constants(penalties, words),
         }

@@ -40,11 +40,7 @@ impl Residual {
     pub fn stage() -> Stage {
         Stage {
             name: "residual",
-            source: concat!(
-                include_str!("../../../shaders/shared/consistent.wgsl"),
-                include_str!("../../../shaders/shared/brightness.wgsl"),
-                include_str!("../../../shaders/dense/residual.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/residual.wgsl"),
             bindings: &[
                 Binding::Uniform(Params::SHAPE),
                 Binding::Uniform(Brightness::SHAPE),

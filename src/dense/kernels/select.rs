@@ -42,12 +42,7 @@ impl Select {
         constants.extend(selection_constants(selection.interpolation, selection.wanted, SUM_INDEX_BITS));
         Stage {
             name: "select",
-            source: concat!(
-                include_str!("../../../shaders/shared/quotient.wgsl"),
-                include_str!("../../../shaders/shared/selection.wgsl"),
-                include_str!("../../../shaders/shared/line.wgsl"),
-                include_str!("../../../shaders/dense/select.wgsl")
-            ),
+            source: include_str!("../../../shaders/dense/select.wgsl"),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write, Binding::Write],
             constants,
         }

@@ -13,11 +13,7 @@ use crate::{
 pub fn stage(upright: bool) -> Stage {
     Stage {
         name: "descriptor",
-        source: concat!(
-            include_str!("../../../shaders/shared/keypoint.wgsl"),
-            include_str!("../../../shaders/shared/haar.wgsl"),
-            include_str!("../../../shaders/features/descriptor.wgsl")
-        ),
+        source: include_str!("../../../shaders/features/descriptor.wgsl"),
         bindings: &[PARAMS, Binding::Read, Binding::Read, Binding::Read, Binding::Write],
         constants: vec![("DISPATCH_WIDTH", DISPATCH_WIDTH.into()), ("UPRIGHT", upright.into())],
     }

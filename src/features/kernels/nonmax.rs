@@ -27,10 +27,7 @@ shader_struct! {
 pub fn stage() -> Stage {
     Stage {
         name: "nonmax",
-        source: concat!(
-            include_str!("../../../shaders/shared/keypoint.wgsl"),
-            include_str!("../../../shaders/features/nonmax.wgsl")
-        ),
+        source: include_str!("../../../shaders/features/nonmax.wgsl"),
         bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }

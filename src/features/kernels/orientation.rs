@@ -15,11 +15,7 @@ const BINS: u32 = 48;
 pub fn stage() -> Stage {
     Stage {
         name: "orientation",
-        source: concat!(
-            include_str!("../../../shaders/shared/keypoint.wgsl"),
-            include_str!("../../../shaders/shared/haar.wgsl"),
-            include_str!("../../../shaders/features/orientation.wgsl")
-        ),
+        source: include_str!("../../../shaders/features/orientation.wgsl"),
         bindings: &[PARAMS, Binding::Read, Binding::Read, Binding::Write],
         constants: vec![
             ("WORKGROUP", WORKGROUP.into()),

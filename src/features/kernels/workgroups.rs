@@ -10,10 +10,7 @@ use crate::{
 pub fn stage() -> Stage {
     Stage {
         name: "workgroups",
-        source: concat!(
-            include_str!("../../../shaders/shared/keypoint.wgsl"),
-            include_str!("../../../shaders/features/workgroups.wgsl")
-        ),
+        source: include_str!("../../../shaders/features/workgroups.wgsl"),
         bindings: &[Binding::Read, Binding::Read, Binding::Write],
         constants: vec![("DISPATCH_WIDTH", DISPATCH_WIDTH.into())],
     }

@@ -15,10 +15,7 @@ shader_struct! {
 pub fn stage() -> Stage {
     Stage {
         name: "luma",
-        source: concat!(
-            include_str!("../../../shaders/shared/luma_words.wgsl"),
-            include_str!("../../../shaders/luma/luma.wgsl")
-        ),
+        source: include_str!("../../../shaders/luma/luma.wgsl"),
         bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }

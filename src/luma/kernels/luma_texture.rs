@@ -49,10 +49,7 @@ impl TexelFormat {
 pub fn stage() -> Stage {
     Stage {
         name: "luma_texture",
-        source: concat!(
-            include_str!("../../../shaders/shared/luma_words.wgsl"),
-            include_str!("../../../shaders/luma/luma_texture.wgsl")
-        ),
+        source: include_str!("../../../shaders/luma/luma_texture.wgsl"),
         bindings: &[Binding::Uniform(Params::SHAPE), Binding::Picture, Binding::Write],
         constants: vec![("WORKGROUP_WIDTH", WORKGROUP[0].into()), ("WORKGROUP_HEIGHT", WORKGROUP[1].into())],
     }

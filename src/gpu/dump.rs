@@ -1,0 +1,56 @@
+//! The text that the shader compiler is given, written to a folder: `HSAD_DUMP_WGSL`, see [`super`].
+
+use std::{fs, io, path::Path, path::PathBuf};
+
+/// Writes `text` of stage `name` to the folder that `HSAD_DUMP_WGSL` names, if it is set.
+pub(super) fn dump(name: &str, text: &str) {
+    let Some(folder) = std::env::var_os("HSAD_DUMP_WGSL") else { return };
+    if let Err(error) = write(Path::new(&folder), name, text) {
+        log::warn!("HSAD_DUMP_WGSL: {name} is not written to {}: {error}", folder.display());
+    }
+}
+
+/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Variants of one stage have names
+/// of their own, and the same variant is one file however often it is compiled.
+fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
+    fs::create_dir_all(folder)?;
+    let file = folder.join(format!("{name}-{:016x}.wgsl", fnv_1a(text.as_bytes())));
+    fs::write(&file, text)?;
+    Ok(file)
+}
+
+/// Fowler, Noll and Vo: FNV-1a of 64 bits.
+fn fnv_1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of the algorithm's authors (draft-eastlake-fnv).
+    #[test]
+    fn hashes_are_those_of_fnv_1a() {
+        assert_eq!(fnv_1a(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fnv_1a(b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(fnv_1a(b"foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    #[test]
+    fn a_text_is_one_file_in_a_new_folder() {
+        let temporary = tempfile::tempdir().expect("a temporary folder");
+        let folder = temporary.path().join("new").join("folder");
+        let file = write(&folder, "census", "foobar").expect("written");
+        assert_eq!(file, folder.join("census-85944171f73967e8.wgsl"));
+        assert_eq!(write(&folder, "census", "foobar").expect("written"), file);
+        assert_ne!(write(&folder, "census", "another variant").expect("written"), file);
+        assert_eq!(fs::read_to_string(&file).expect("a file"), "foobar");
+        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 2);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_is_an_error() {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        assert!(write(file.path(), "census", "text").is_err());
+    }
+}
