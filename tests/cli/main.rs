@@ -11,6 +11,8 @@ mod eval_dense;
 mod eval_features;
 mod eval_paper;
 mod features;
+#[cfg(unix)]
+mod interruption;
 mod man;
 mod match_views;
 #[path = "../pictures/mod.rs"]
