@@ -23,7 +23,9 @@ use naga::{
 };
 
 /// A stage's module and what its validation tells, or what is wrong with it.
-fn valid(stage: &Stage) -> Result<(Module, ModuleInfo), String> {
+type Validated = Result<(Module, ModuleInfo), String>;
+
+fn valid(stage: &Stage) -> Validated {
     let text = stage.wgsl();
     let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
@@ -32,10 +34,10 @@ fn valid(stage: &Stage) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// Every stage with its valid module, or with what is wrong with it. Large modules take seconds to be read, so all tests
+/// Every stage with its module. Large modules take seconds to be read, so all tests
 /// share them.
-fn modules() -> &'static [(Stage, Result<(Module, ModuleInfo), String>)] {
-    static MODULES: OnceLock<Vec<(Stage, Result<(Module, ModuleInfo), String>)>> = OnceLock::new();
+fn modules() -> &'static [(Stage, Validated)] {
+    static MODULES: OnceLock<Vec<(Stage, Validated)>> = OnceLock::new();
     MODULES.get_or_init(|| {
         let with_module = |stage: Stage| {
             let module = valid(&stage);
@@ -60,7 +62,7 @@ fn on_all_processors<I: Send, O: Send>(items: Vec<I>, work: impl Fn(I) -> O + Sy
 }
 
 /// The module of a stage that another test checks.
-fn checked(module: &Result<(Module, ModuleInfo), String>) -> &(Module, ModuleInfo) {
+fn checked(module: &Validated) -> &(Module, ModuleInfo) {
     module.as_ref().expect("checked by another test")
 }
 
@@ -161,7 +163,7 @@ fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) 
 }
 
 /// What of `stage`'s shader, whose module `valid` is, is not as its Rust side says; empty where they agree.
-fn disagreements(stage: &Stage, valid: &Result<(Module, ModuleInfo), String>) -> Vec<String> {
+fn disagreements(stage: &Stage, valid: &Validated) -> Vec<String> {
     let (module, _) = match valid {
         Ok(valid) => valid,
         Err(error) => return vec![error.clone()],
