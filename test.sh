@@ -7,14 +7,16 @@
 # `hsad verify` runs on a second driver as well, SwiftShader, whose compiler and subgroups are others; Debian's package
 # chromium has it. HSAD_SWIFTSHADER names its ICD file elsewhere. Where it is not installed, root and apt install it.
 # The page in web/ is tested in that Chromium. `spirv-val` and `glslangValidator` check what the shaders are translated to,
-# and are installed in the same way. What is missing all the same is told as NOT RUN.
+# `groff` checks the manual pages, and all three are installed in the same way. What is missing all the same is told as
+# NOT RUN.
 set -euo pipefail
 cd "$(dirname "$0")"
 
 # Mesa complains about a missing one in every process.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
-say() { printf '\n== %s\n' "$*"; }
+# With the time since the beginning, which is where minutes go.
+say() { printf '\n== %s (%d:%02d)\n' "$*" $((SECONDS / 60)) $((SECONDS % 60)); }
 
 # What a check can do without: where it cannot be installed, whoever asked for it says what was not run.
 install() {
@@ -67,6 +69,9 @@ if ! check_translations; then
 fi
 check_translations || echo "NOT RUN: the checks of translated shaders by spirv-val and glslangValidator, not both of which" \
     "are installed (Debian: apt-get install spirv-tools glslang-tools): they are translated and not checked"
+command -v groff >/dev/null || install groff-base
+command -v groff >/dev/null ||
+    echo 'NOT RUN: the check of manual pages by groff, which is not installed (Debian: apt-get install groff-base)'
 cargo test
 
 say 'regression suite'
@@ -94,3 +99,5 @@ else
     echo "NOT RUN: there is no $chromium (Debian: apt-get install chromium, or HSAD_CHROMIUM names another one)," \
         "so the page was not tested"
 fi
+
+say 'done'

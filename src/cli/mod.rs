@@ -1,10 +1,12 @@
 //! The subcommands of `hsad`, one file each, and their shared modules.
 
+mod completions;
 mod demo;
 mod devices;
 mod eval;
 mod features;
 mod job;
+mod man;
 mod match_views;
 mod options;
 mod output;
@@ -44,6 +46,8 @@ enum Command {
     Demo(demo::Demo),
     Eval(eval::Eval),
     Verify(verify::Verify),
+    Completions(completions::Completions),
+    Man(man::Manual),
 }
 
 impl Cli {
@@ -57,6 +61,8 @@ impl Cli {
             Command::Demo(command) => command.run(),
             Command::Eval(command) => command.run(),
             Command::Verify(command) => command.run(),
+            Command::Completions(command) => command.run(),
+            Command::Man(command) => command.run(),
         }
     }
 }

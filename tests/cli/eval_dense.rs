@@ -15,6 +15,8 @@ use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
 
 use crate::common::{fails, folder, grey_png, hsad, names, noise, scene as shipped};
+#[cfg(unix)]
+use crate::interruption::Run;
 
 const SIZE: (u32, u32) = (64, 48);
 
@@ -336,8 +338,6 @@ fn what_cannot_be_kept_is_told() {
 #[cfg(unix)]
 #[test]
 fn an_interruption_keeps_what_is_finished() {
-    use std::{process, thread, time::Duration};
-
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);
     let small = scene(&path(""), "small");
@@ -349,19 +349,12 @@ fn an_interruption_keeps_what_is_finished() {
     }
     write_pfm(&large.join("disp_left.pfm"), &Plane::filled(1500, 1300, 0));
     let out = path("out");
-    let mut run = process::Command::new(assert_cmd::cargo::cargo_bin!("hsad"))
-        .args(["eval", "dense", "-q", "--device", "cpu", "--disparities", "1000", "--force", "-o"])
-        .args([&out, &small, &large])
-        .spawn()
-        .unwrap();
-    while !out.join("small/result.json").exists() {
-        assert!(run.try_wait().unwrap().is_none(), "ended before it was interrupted");
-        thread::sleep(Duration::from_millis(5));
-    }
-    thread::sleep(Duration::from_millis(200));
-    // A background job of a shell ignores SIGINT, but not SIGTERM.
-    assert!(process::Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
-    assert_eq!(run.wait().unwrap().code(), Some(130));
+    let options = ["eval", "dense", "-q", "--device", "cpu", "--disparities", "1000", "--force", "-o"];
+    let arguments = options.iter().map(std::ffi::OsStr::new).chain([&out, &small, &large].map(|path| path.as_os_str()));
+    let mut run = Run::start(arguments, &[]);
+    run.wait_for(&out.join("small/result.json"));
+    run.signal(libc::SIGTERM);
+    assert_eq!(run.exit_code(), Some(130));
     assert_eq!(names(&out), ["small"]);
     assert_eq!(names(&out.join("small")), ["disparity.pfm", "error.png", "figure.png", "result.json"]);
 }

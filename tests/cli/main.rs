@@ -4,12 +4,16 @@
 
 mod bad_input;
 mod common;
+mod completions;
 mod demo;
 mod devices;
 mod eval_dense;
 mod eval_features;
 mod eval_paper;
 mod features;
+#[cfg(unix)]
+mod interruption;
+mod man;
 mod match_views;
 #[path = "../pictures/mod.rs"]
 mod pictures;
@@ -31,6 +35,8 @@ fn help_has_examples_and_exit_codes() {
         &["devices"],
         &["demo"],
         &["verify"],
+        &["completions"],
+        &["man"],
         &["eval", "dense"],
         &["eval", "features"],
         &["eval", "paper"],

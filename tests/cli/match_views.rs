@@ -13,6 +13,8 @@ use serde_json::json;
 use crate::common::{
     fails, folder, grey_png, hsad, hsad_without_driver, match_on_cpu, names, noise, report, scene, views,
 };
+#[cfg(unix)]
+use crate::interruption::Run;
 
 #[test]
 fn writes_maps_that_agree_and_a_report() {
@@ -330,28 +332,44 @@ fn other_kinds_of_pictures_are_read() {
     match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().success().stderr(contains("the same picture"));
 }
 
+/// A pair that the twins take a minute for, and the arguments of a match of it that leaves its results in `out`.
 #[cfg(unix)]
-#[test]
-fn nothing_is_left_after_an_interruption() {
-    use std::{process, thread, time::Duration};
-
-    let folder = folder();
-    let [left, right, out] = ["left.png", "right.png", "out/new"].map(|name| folder.path().join(name));
-    // The CPU twins take a minute for this pair.
+fn endless(folder: &Path, out: &Path) -> Vec<std::ffi::OsString> {
+    let [left, right] = ["left.png", "right.png"].map(|name| folder.join(name));
     for path in [&left, &right] {
         grey_png(path, &noise(1500, 1300, 3));
     }
-    let mut run = process::Command::new(assert_cmd::cargo::cargo_bin!("hsad"))
-        .args(["match", "--device", "cpu", "--disparities", "1000", "--force", "--quiet", "-o"])
-        .args([&out, &left, &right])
-        .spawn()
-        .unwrap();
-    while !out.exists() {
-        assert!(run.try_wait().unwrap().is_none(), "ended before it was interrupted");
-        thread::sleep(Duration::from_millis(5));
+    let options = ["match", "--device", "cpu", "--disparities", "1000", "--force", "--quiet", "-o"];
+    options.iter().map(Into::into).chain([out, &left, &right].map(Into::into)).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_is_left_after_an_interruption() {
+    let folder = folder();
+    let out = folder.path().join("out/new");
+    let arguments = endless(folder.path(), &out);
+    for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+        let mut run = Run::start(&arguments, &[]);
+        run.wait_for(&out);
+        run.signal(signal);
+        assert_eq!(run.exit_code(), Some(130), "signal {signal}");
+        assert!(!folder.path().join("out").exists(), "a folder is left by signal {signal}");
     }
-    thread::sleep(Duration::from_millis(200));
-    assert!(process::Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
-    assert_eq!(run.wait().unwrap().code(), Some(130));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_that_the_parent_ignores_stays_ignored() {
+    let folder = folder();
+    let out = folder.path().join("out/new");
+    let mut run = Run::start(endless(folder.path(), &out), &[libc::SIGINT, libc::SIGHUP]);
+    run.wait_for(&out);
+    for signal in [libc::SIGINT, libc::SIGHUP] {
+        run.signal(signal);
+        run.stays();
+    }
+    run.signal(libc::SIGTERM);
+    assert_eq!(run.exit_code(), Some(130));
     assert!(!folder.path().join("out").exists(), "a folder is left");
 }

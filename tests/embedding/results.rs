@@ -216,14 +216,14 @@ fn memory_is_what_the_device_gives() {
     }
 }
 
-/// Matchers take the memory that the README's table states, in MB.
+/// The table of docs/benchmarks.md, on a device with the limits that it names.
 #[test]
 fn matchers_take_the_memory_that_is_told() {
-    let readme = include_str!("../../README.md");
+    let benchmarks = include_str!("../../docs/benchmarks.md");
     let gpu = &Application::new().gpu;
     for (size, count) in [((640, 480), 128), ((768, 512), 64), ((1920, 1080), 256)] {
         let start = format!("| {}x{}, {count} | ", size.0, size.1);
-        let row = readme.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
+        let row = benchmarks.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
         let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
         let range = DisparityRange::new(0, count).unwrap();
         let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {

@@ -4,7 +4,14 @@
 mod heads;
 mod translations;
 
-use std::path::Path;
+use std::{
+    iter,
+    num::NonZero,
+    panic::resume_unwind,
+    path::Path,
+    sync::{Mutex, OnceLock},
+    thread,
+};
 
 use hsad::{
     features::keypoints::Keypoint,
@@ -17,13 +24,47 @@ use naga::{
 };
 
 /// A stage's module and what its validation tells, or what is wrong with it.
-fn valid(stage: &Stage) -> Result<(Module, ModuleInfo), String> {
+type Validated = Result<(Module, ModuleInfo), String>;
+
+fn valid(stage: &Stage) -> Validated {
     let text = stage.wgsl();
     let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .map_err(|error| error.emit_to_string(&text))?;
     Ok((module, info))
+}
+
+/// Every stage with its module. Large modules take seconds to be read, so all tests
+/// share them.
+fn modules() -> &'static [(Stage, Validated)] {
+    static MODULES: OnceLock<Vec<(Stage, Validated)>> = OnceLock::new();
+    MODULES.get_or_init(|| {
+        let with_module = |stage: Stage| {
+            let module = valid(&stage);
+            (stage, module)
+        };
+        on_all_processors(hsad::stages(), with_module)
+    })
+}
+
+/// `work` on each of `items`, in any order, on all processors; in order again.
+fn on_all_processors<I: Send, O: Send>(items: Vec<I>, work: impl Fn(I) -> O + Sync) -> Vec<O> {
+    let left = Mutex::new(items.into_iter().enumerate());
+    let next = || left.lock().expect("no panic while it is held").next();
+    let mut done: Vec<(usize, O)> = thread::scope(|scope| {
+        let count = thread::available_parallelism().map_or(1, NonZero::get);
+        let one = || iter::from_fn(next).map(|(index, item)| (index, work(item))).collect::<Vec<_>>();
+        let threads: Vec<_> = (0..count).map(|_| scope.spawn(one)).collect();
+        threads.into_iter().flat_map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    });
+    done.sort_by_key(|&(index, _)| index);
+    done.into_iter().map(|(_, output)| output).collect()
+}
+
+/// The module of a stage that another test checks.
+fn checked(module: &Validated) -> &(Module, ModuleInfo) {
+    module.as_ref().expect("checked by another test")
 }
 
 /// The values that a type consists of, each with its path of members, its place in bytes and its type.
@@ -122,11 +163,11 @@ fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) 
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
-/// What of `stage`'s shader is not as its Rust side says; empty where they agree.
-fn disagreements(stage: &Stage) -> Vec<String> {
-    let (module, _) = match valid(stage) {
+/// What of `stage`'s shader, whose module `valid` is, is not as its Rust side says; empty where they agree.
+fn disagreements(stage: &Stage, valid: &Validated) -> Vec<String> {
+    let (module, _) = match valid {
         Ok(valid) => valid,
-        Err(error) => return vec![error],
+        Err(error) => return vec![error.clone()],
     };
     let mut found = Vec::new();
     let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
@@ -152,12 +193,12 @@ fn disagreements(stage: &Stage) -> Vec<String> {
     }
     for (((_, place), variable), binding) in bindings.into_iter().zip(stage.bindings) {
         let difference = match (variable.space, binding) {
-            (AddressSpace::Uniform, Binding::Uniform(shape)) => difference(&module, variable.ty, shape),
+            (AddressSpace::Uniform, Binding::Uniform(shape)) => difference(module, variable.ty, shape),
             (AddressSpace::Storage { access }, Binding::Read) if !access.contains(StorageAccess::STORE) => None,
             (AddressSpace::Storage { access }, Binding::Write) if access.contains(StorageAccess::STORE) => None,
-            (AddressSpace::Handle, Binding::Words) if is_word_texture(&module, variable.ty) => None,
-            (AddressSpace::Handle, Binding::Picture) if is_picture(&module, variable.ty) => None,
-            (AddressSpace::Handle, Binding::Map(format)) if is_map(&module, variable.ty, *format) => None,
+            (AddressSpace::Handle, Binding::Words) if is_word_texture(module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Picture) if is_picture(module, variable.ty) => None,
+            (AddressSpace::Handle, Binding::Map(format)) if is_map(module, variable.ty, *format) => None,
             (space, binding) => Some(format!("it is in {space:?}, in Rust it is {binding:?}")),
         };
         found.extend(difference.map(|difference| format!("binding {place}: {difference}")));
@@ -165,7 +206,7 @@ fn disagreements(stage: &Stage) -> Vec<String> {
     // What a struct of a buffer's elements is called, and what Rust has for it.
     for (name, shape) in [("Keypoint", Keypoint::SHAPE)] {
         if let Some((ty, _)) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)) {
-            found.extend(difference(&module, ty, &shape).map(|difference| format!("{name}: {difference}")));
+            found.extend(difference(module, ty, &shape).map(|difference| format!("{name}: {difference}")));
         }
     }
     found
@@ -173,10 +214,9 @@ fn disagreements(stage: &Stage) -> Vec<String> {
 
 #[test]
 fn every_shader_is_valid_and_binds_what_rust_binds() {
-    let stages = hsad::stages();
-    assert!(stages.len() >= 9);
-    for stage in stages {
-        let found = disagreements(&stage);
+    assert!(modules().len() >= 9);
+    for (stage, module) in modules() {
+        let found = disagreements(stage, module);
         assert!(found.is_empty(), "{}: {}", stage.name, found.join("\n"));
     }
 }
@@ -206,8 +246,8 @@ fn stages_are_named_the_same_everywhere() {
 #[test]
 fn workgroups_fit_the_smallest_limits() {
     let limits = Limits::downlevel_defaults();
-    for stage in hsad::stages() {
-        let module = naga::front::wgsl::parse_str(&stage.wgsl()).expect("checked by another test");
+    for (stage, module) in modules() {
+        let (module, _) = checked(module);
         let [x, y, z] = module.entry_points[0].workgroup_size;
         assert!(x * y * z <= limits.max_compute_invocations_per_workgroup, "{}: {x}x{y}x{z}", stage.name);
         let memory: u32 = module
@@ -232,8 +272,8 @@ fn required_limits_are_those_that_some_shader_needs() {
     need("max_bind_groups", 1);
     need("max_texture_dimension_2d", 2048);
     need("max_compute_workgroups_per_dimension", 65_535);
-    for stage in hsad::stages() {
-        let module = naga::front::wgsl::parse_str(&stage.wgsl()).expect("checked by another test");
+    for (stage, module) in modules() {
+        let (module, _) = checked(module);
         let [x, y, z] = module.entry_points[0].workgroup_size;
         need("max_compute_workgroup_size_x", x.into());
         need("max_compute_workgroup_size_y", y.into());
@@ -268,7 +308,7 @@ fn a_changed_copy_disagrees() {
     let changed = |change: &dyn Fn(&mut Stage)| {
         let mut stage = good.clone();
         change(&mut stage);
-        disagreements(&stage)
+        disagreements(&stage, &valid(&stage))
     };
     assert!(changed(&|_| ()).is_empty());
     let uniforms = |members| [Binding::Uniform(Shape::Struct(8, members)), Binding::Read, Binding::Write];

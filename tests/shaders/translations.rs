@@ -5,12 +5,11 @@
 //! here.
 
 use std::{
-    fs, iter,
-    num::NonZero,
+    collections::BTreeMap,
+    fs,
     path::Path,
     process::{Command, Stdio},
     sync::Mutex,
-    thread,
 };
 
 use hsad::gpu::Stage;
@@ -21,7 +20,7 @@ use naga::{
     valid::ModuleInfo,
 };
 
-use crate::valid;
+use crate::{checked, modules, on_all_processors, valid};
 
 /// A language, and how a module becomes a text or binary of it.
 struct Target {
@@ -104,32 +103,28 @@ fn objection((module, info): &(Module, ModuleInfo), target: &Target, folder: &Pa
     })
 }
 
-fn is_installed(program: &str) -> bool {
-    let quiet = || Stdio::null();
-    Command::new(program).arg("--version").stdout(quiet()).stderr(quiet()).status().is_ok()
+/// Each program is asked once.
+fn is_installed(program: &'static str) -> bool {
+    static ASKED: Mutex<BTreeMap<&str, bool>> = Mutex::new(BTreeMap::new());
+    let starts = || {
+        let quiet = || Stdio::null();
+        Command::new(program).arg("--version").stdout(quiet()).stderr(quiet()).status().is_ok()
+    };
+    *ASKED.lock().expect("no panic while it is held").entry(program).or_insert_with(starts)
 }
 
 #[test]
 fn every_shader_can_be_told_in_every_language() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let stages = hsad::stages();
-    let check = |(index, stage): (usize, &Stage)| {
-        let module = valid(stage).expect("checked by another test");
+    let check = |(index, (stage, module)): (usize, &(Stage, _))| {
         let folder = folder.path().join(index.to_string());
         fs::create_dir(&folder).expect("a folder in a temporary folder");
         for target in &TARGETS {
-            let objection = objection(&module, target, &folder);
+            let objection = objection(checked(module), target, &folder);
             assert!(objection.is_none(), "{} in {}: {}", stage.name, target.name, objection.unwrap_or_default());
         }
     };
-    // Large modules take seconds, so all processors share them.
-    let left = Mutex::new(stages.iter().enumerate());
-    let next = || left.lock().expect("no panic while it is held").next();
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, NonZero::get) {
-            scope.spawn(|| iter::from_fn(next).for_each(check));
-        }
-    });
+    on_all_processors(modules().iter().enumerate().collect(), check);
 }
 
 /// The check itself must be able to fail.
