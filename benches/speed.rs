@@ -15,7 +15,7 @@ use std::{
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, DenseConfig, Destination, Matcher},
+    dense::{DenseConfig, Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{DeviceChoice, Gpu, block_on},
@@ -82,9 +82,11 @@ fn dense(
     is_selected: impl Fn(&str) -> bool,
 ) -> hsad::Result<()> {
     let range = DisparityRange::new(0, disparities)?;
-    let blocks = DenseConfig { uniqueness: 15, consistency: Some(256), ..DenseConfig::new(range) };
-    let preset =
-        |preset: Preset| (format!("{preset:?}").to_lowercase(), preset.config().dense(range, Brightness::SAME));
+    let blocks = DenseConfig::new(range).with(|parameters| {
+        parameters.uniqueness = 15;
+        parameters.consistency = Some(256);
+    });
+    let preset = |preset: Preset| (preset.to_string(), preset.dense_config(range));
     let presets = [Preset::Fast, Preset::Balanced, Preset::Quality].map(preset);
     let bytes = 4 * left.data().len() as u64;
     let [map, confidence] = ["disparities", "confidences"].map(|label| {

@@ -11,7 +11,7 @@ use hsad::{
     backend::Backend,
     config::{Config, Method, Preset},
     cpu,
-    dense::{Aggregation, Dense, DenseConfig, Search, View, kernels::CellBand},
+    dense::{Aggregation, Dense, DenseConfig, DenseParameters, Search, View, kernels::CellBand},
     disparity::{self, DisparityRange, SCALE},
     eval::scene::{self, SceneFiles},
     features::Feature,
@@ -120,16 +120,18 @@ fn main() -> Result<(), AnyError> {
     let columns = ["searched", "non-occ", "all", "whole n-o", "whole all"];
     table("preset Fast, coarse to fine, and over the whole range", &columns, &scenes, |scene| {
         let views = (&scene.data.left, &scene.data.right);
-        let coarse = Preset::Fast.config();
+        let coarse = Preset::Fast.dense_parameters();
         let whole = match coarse.aggregation {
-            Aggregation::Window { side, .. } => Aggregation::Window { side, search: Search::Whole },
-            paths => paths,
+            Aggregation::Sad { side, .. } => Aggregation::Sad { side, search: Search::Whole },
+            costs => costs,
         };
         let mut figures = [0.0; 5];
-        for (i, config) in [coarse.clone(), Config { aggregation: whole, ..coarse }].iter().enumerate() {
-            let outcome = pipeline::run(&backend, views, config, |_| ())?;
+        for (i, parameters) in [coarse, DenseParameters { aggregation: whole, ..coarse }].into_iter().enumerate() {
+            let config = Config { method: Method::Hsad(parameters), ..Preset::Fast.config() };
+            let outcome = pipeline::run(&backend, views, &config, |_| ())?;
             if i == 0 {
-                let config = config.dense(outcome.range, outcome.brightness);
+                let brightness = outcome.brightness;
+                let config = DenseConfig { brightness, ..Preset::Fast.dense_config(outcome.range) };
                 figures[0] = searched(&block_on(Pair::new(&backend, views.0, views.1))?, &config)?;
             }
             let scores = scene.data.score(&disparity::in_pixels(&outcome.dense.disparity))?;
@@ -168,9 +170,14 @@ fn main() -> Result<(), AnyError> {
 /// and both views at half the size; computed by the CPU twins.
 fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
     let (size, range) = (pair.size(), config.range);
-    let half =
-        DenseConfig { range: CellBand::new(size, (0, size.1), range).map_range, consistency: None, ..config.clone() };
-    let map = block_on(async { pair.reduced(2).await?.dense(&half.with_window(config.window())).await })?.disparity;
+    let plain = |parameters: &mut DenseParameters| {
+        parameters.consistency = None;
+        if let Aggregation::Sad { search, .. } = &mut parameters.aggregation {
+            *search = Search::Whole;
+        }
+    };
+    let half = DenseConfig { range: CellBand::new(size, (0, size.1), range).map_range, ..config.clone().with(plain) };
+    let map = block_on(async { pair.reduced(2).await?.dense(&half).await })?.disparity;
     let ranges = cpu::dense::cell_ranges(&map, size, range);
     let share = |cells: &cpu::dense::CellPlane| {
         let counts = cells.data().iter().map(|&(_, count)| f64::from(count) / f64::from(range.count));

@@ -1,117 +1,98 @@
-//! Everything that can be chosen for a pair, and presets of it.
+//! All parameters for a pair, and presets of them.
 
 use crate::{
     dense::{
-        Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Difference, Interpolation, Paths, Penalties,
-        Refinement, Search, SemiGlobal, View,
+        Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
+        Interpolation, Paths, Penalties, Refinement, Search, SemiGlobal, View,
     },
     disparity::DisparityRange,
-    error::{Error, Result},
+    error::Result,
     features::FeatureConfig,
     kamencay::{KamencayConfig, KamencayParameters},
+    names::names,
     seeding::SeedingConfig,
 };
 
-/// How disparities for all pixels are found.
+/// How every pixel gets a disparity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// As [`crate::dense`] does it.
-    Hsad,
-    /// As [`crate::kamencay`] does it, for comparison: what aggregates, interpolates, checks and refines there is not
-    /// asked for then. [`Config::reference`] and [`Config::equalise`] are.
+    /// Block matching or semi-global matching: see [`crate::dense`].
+    Hsad(DenseParameters),
+    /// The method that the paper compares itself with: see [`crate::kamencay`].
     Kamencay(KamencayParameters),
 }
 
-/// All parameters of the pipeline.
+/// All parameters of the pipeline. The default is that of [`Preset::Balanced`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// How interest points are found and described.
     pub features: FeatureConfig,
-    /// How they are matched, and what is concluded from the matches.
+    /// How interest points are matched, and what the matches must show.
     pub seeding: SeedingConfig,
-    /// The disparities to search; `None`: found from the seeds.
+    /// The disparities to search; `None`: found from the matches.
     pub range: Option<DisparityRange>,
-    /// A limit to a range that is found: no disparity below this is searched. 0 searches to one
-    /// side only.
+    /// A lower limit, in pixels, to a range that is found: no disparity below is searched; 0 searches to one side only.
+    /// `None`: no limit.
     pub least: Option<i32>,
-    /// How many interest points and matches a figure shows, the strongest ones; `None`: all. All
-    /// conclusions are drawn from all of them.
-    pub strongest: Option<usize>,
-    /// How the dense half works.
+    /// How every pixel gets a disparity.
     pub method: Method,
     /// The view whose pixels get a disparity.
     pub reference: View,
-    /// How matching costs are put together.
-    pub aggregation: Aggregation,
-    /// Sub-pixel interpolation.
-    pub interpolation: Interpolation,
-    /// See [`crate::dense::DenseConfig::uniqueness`].
-    pub uniqueness: u32,
-    /// See [`crate::dense::DenseConfig::consistency`].
-    pub consistency: Option<u32>,
-    /// See [`crate::dense::DenseConfig::refinement`].
-    pub refinement: Option<Refinement>,
-    /// Whether the right view is made as bright as the left one, as far as the seeds tell.
+    /// Whether the right view is made as bright as the left one, as far as the matches tell.
     pub equalise: bool,
-    /// Go on with a pair that is visibly not rectified.
+    /// Whether a pair that is visibly not rectified is matched all the same.
     pub force: bool,
 }
 
+impl Default for Config {
+    fn default() -> Self {
+        Preset::default().config()
+    }
+}
+
 impl Config {
-    /// Refuses what no step could work with, before any of them begins.
+    /// Refuses values outside their ranges, before any step begins.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the accepted range.
     pub fn validate(&self) -> Result<()> {
         self.features.validate()?;
         self.seeding.matching.validate()?;
-        if self.strongest == Some(0) {
-            return Err(Error::Parameter {
-                name: "strongest",
-                value: "0".into(),
-                expected: "it must be at least 1".into(),
-            });
-        }
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
         match &self.method {
-            Method::Hsad => self.dense(range, Brightness::SAME).validate(),
-            Method::Kamencay(parameters) => self.hybrid(parameters, range, Brightness::SAME).validate(),
+            Method::Hsad(parameters) => parameters.validate(),
+            Method::Kamencay(parameters) => parameters.validate(),
         }
     }
 
-    /// The side of the matching window, or of the census transform's where paths put the costs together: smaller
-    /// pictures are refused. The hybrid method's windows may lie outside.
-    pub fn window(&self) -> u32 {
-        match (&self.method, self.aggregation) {
-            (Method::Kamencay(_), _) => 1,
-            (Method::Hsad, Aggregation::Window { side, .. }) => side,
-            (Method::Hsad, Aggregation::Paths(_)) => 5,
+    /// The smallest side of a picture that the method takes, in pixels: that of the matching window, or of the census
+    /// transform. The windows of Kamencay's method may lie outside the picture.
+    pub(crate) fn smallest_side(&self) -> u32 {
+        match &self.method {
+            Method::Hsad(parameters) => parameters.smallest_side(),
+            Method::Kamencay(_) => 1,
         }
     }
 
-    /// What the hybrid method is asked to do in `range`, with the right view's brightness changed first.
-    pub fn hybrid(
+    /// Dense matching with these `parameters` in `range`, with the right view's brightness changed first.
+    pub(crate) fn dense(
+        &self,
+        parameters: &DenseParameters,
+        range: DisparityRange,
+        brightness: Brightness,
+    ) -> DenseConfig {
+        DenseConfig { range, reference: self.reference, brightness, parameters: *parameters }
+    }
+
+    /// Kamencay's method with these `parameters` in `range`, with the right view's brightness changed first.
+    pub(crate) fn kamencay(
         &self,
         parameters: &KamencayParameters,
         range: DisparityRange,
         brightness: Brightness,
     ) -> KamencayConfig {
         KamencayConfig { range, reference: self.reference, brightness, parameters: *parameters }
-    }
-
-    /// What the dense half is asked to do in `range`, with the right view's brightness changed first.
-    pub fn dense(&self, range: DisparityRange, brightness: Brightness) -> DenseConfig {
-        DenseConfig {
-            aggregation: self.aggregation,
-            brightness,
-            range,
-            reference: self.reference,
-            interpolation: self.interpolation,
-            uniqueness: self.uniqueness,
-            consistency: self.consistency,
-            refinement: self.refinement,
-        }
     }
 }
 
@@ -131,40 +112,62 @@ pub enum Preset {
     Quality,
     /// The paper to the letter: the right view is the reference and is searched for in the left to
     /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
-    /// neighbours and no check; orientations are computed, and the ten strongest points and matches
-    /// are shown. The disparity range, of which the paper does not say where it comes from, is found
-    /// from all matches: ten cannot confirm one another.
+    /// neighbours and no check; orientations are computed. The disparity range, of which the paper does not say where it
+    /// comes from, is found from all matches.
     Paper,
 }
 
-/// Measured on real pairs: see the README.
-const SEMI_GLOBAL: SemiGlobal = SemiGlobal {
+names!(Preset, "the preset", { Fast => "fast", Balanced => "balanced", Quality => "quality", Paper => "paper" });
+
+/// Measured on real pairs: see docs/benchmarks.md.
+const COSTS: CostAggregation = CostAggregation {
     cost: Cost {
         census: 20,
         difference: Difference { weight: 4, limit: 24 },
         gradient: Difference { weight: 12, limit: 16 },
     },
     window: 1,
-    penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 },
-    paths: Paths::Three,
+    semi_global: Some(SEMI_GLOBAL),
     cross_check: CrossCheck::Claimed,
 };
 
-impl Preset {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Fast, Self::Balanced, Self::Quality, Self::Paper];
+const SEMI_GLOBAL: SemiGlobal =
+    SemiGlobal { penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 }, paths: Paths::Three };
 
-    /// The preset's parameters.
+impl Preset {
+    /// All parameters of the preset.
     pub fn config(self) -> Config {
         let balanced = Config {
             features: FeatureConfig::default(),
             seeding: SeedingConfig::default(),
             range: None,
             least: None,
-            strongest: None,
-            method: Method::Hsad,
+            method: Method::Hsad(self.dense_parameters()),
             reference: View::Left,
-            aggregation: Aggregation::Paths(SEMI_GLOBAL),
+            equalise: true,
+            force: false,
+        };
+        match self {
+            Self::Fast | Self::Balanced | Self::Quality => balanced,
+            Self::Paper => Config {
+                features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..balanced.features },
+                least: Some(0),
+                reference: View::Right,
+                equalise: false,
+                ..balanced
+            },
+        }
+    }
+
+    /// Dense matching by the preset in a known `range`, without any change of brightness: for a [`crate::Matcher`].
+    pub fn dense_config(self, range: DisparityRange) -> DenseConfig {
+        self.config().dense(&self.dense_parameters(), range, Brightness::SAME)
+    }
+
+    /// The preset's parameters of dense matching.
+    pub fn dense_parameters(self) -> DenseParameters {
+        let balanced = DenseParameters {
+            aggregation: Aggregation::Costs(COSTS),
             interpolation: Interpolation::Equiangular,
             uniqueness: 1,
             consistency: Some(256),
@@ -175,13 +178,14 @@ impl Preset {
                 median_of_filled: false,
                 medians_after: 1,
             }),
-            equalise: true,
-            force: false,
         };
         match self {
             Self::Balanced => balanced,
-            Self::Quality => Config {
-                aggregation: Aggregation::Paths(SemiGlobal { paths: Paths::Four, ..SEMI_GLOBAL }),
+            Self::Quality => DenseParameters {
+                aggregation: Aggregation::Costs(CostAggregation {
+                    semi_global: Some(SemiGlobal { paths: Paths::Four, ..SEMI_GLOBAL }),
+                    ..COSTS
+                }),
                 refinement: Some(Refinement {
                     support: 10,
                     medians_before: 1,
@@ -191,25 +195,13 @@ impl Preset {
                 }),
                 ..balanced
             },
-            Self::Fast => Config {
-                aggregation: Aggregation::Window { side: 9, search: Search::CoarseToFine },
+            Self::Fast => DenseParameters {
+                aggregation: Aggregation::Sad { side: 9, search: Search::CoarseToFine },
                 uniqueness: 10,
                 refinement: None,
                 ..balanced
             },
-            Self::Paper => Config {
-                features: FeatureConfig { upright: false, threshold: OPENSURF_THRESHOLD, ..balanced.features },
-                least: Some(0),
-                strongest: Some(10),
-                reference: View::Right,
-                aggregation: Aggregation::Window { side: 7, search: Search::Whole },
-                interpolation: Interpolation::Parabola,
-                uniqueness: 0,
-                consistency: None,
-                refinement: None,
-                equalise: false,
-                ..balanced
-            },
+            Self::Paper => DenseParameters { interpolation: Interpolation::Parabola, ..DenseParameters::default() },
         }
     }
 }
@@ -219,18 +211,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn presets_are_valid_and_nonsense_is_named() {
+    fn presets_are_valid_and_have_names() {
         for preset in Preset::ALL {
             preset.config().validate().unwrap();
+            assert_eq!(preset.to_string().parse::<Preset>().unwrap(), preset);
         }
+        let error = "best".parse::<Preset>().unwrap_err().to_string();
+        assert_eq!(error, "the preset is 'best', but it must be one of fast, balanced, quality, paper");
+    }
+
+    #[test]
+    fn nonsense_is_named() {
         let balanced = || Preset::Balanced.config();
+        let with = |change: fn(&mut DenseParameters)| {
+            let mut parameters = Preset::Balanced.dense_parameters();
+            change(&mut parameters);
+            Config { method: Method::Hsad(parameters), ..balanced() }
+        };
+        let even = |parameters: &mut DenseParameters| {
+            parameters.aggregation = Aggregation::Sad { side: 8, search: Search::Whole };
+        };
         let bad = [
-            (
-                Config { aggregation: Aggregation::Window { side: 8, search: Search::Whole }, ..balanced() },
-                "window is 8",
-            ),
-            (Config { strongest: Some(0), ..balanced() }, "strongest is 0"),
-            (Config { uniqueness: 101, ..balanced() }, "uniqueness is 101"),
+            (with(even), "window is 8"),
+            (with(|parameters| parameters.uniqueness = 101), "uniqueness is 101"),
             (Config { least: Some(i32::MIN), ..balanced() }, "the disparity range"),
             (
                 Config { range: Some(DisparityRange { min: 0, count: 0 }), ..balanced() },

@@ -133,3 +133,22 @@ pub enum Error {
         reason: String,
     },
 }
+
+/// Refuses a parameter unless `holds`.
+pub(crate) fn check(
+    holds: bool,
+    name: &'static str,
+    value: impl std::fmt::Display,
+    expected: impl Into<String>,
+) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::Parameter { name, value: value.to_string(), expected: expected.into() }) }
+}
+
+/// Refuses a parameter outside `range`.
+pub(crate) fn check_range<T: PartialOrd + std::fmt::Display>(
+    name: &'static str,
+    value: T,
+    range: std::ops::RangeInclusive<T>,
+) -> Result<()> {
+    check(range.contains(&value), name, &value, format!("it must be {} to {}", range.start(), range.end()))
+}

@@ -26,7 +26,7 @@
 //!         disparities: &wgpu::TextureView,
 //!     ) -> hsad::Result<Self> {
 //!         let size = left.texture().size();
-//!         let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64)?, Brightness::SAME);
+//!         let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64)?);
 //!         let matcher = Matcher::new(device, (size.width, size.height), &config)?;
 //!         let inputs = matcher.inputs(device, Source::Texture(left), Source::Texture(right))?;
 //!         let outputs = matcher.outputs(device, Destination::Texture(disparities), None)?;
@@ -126,6 +126,7 @@ pub mod io;
 pub mod kamencay;
 pub mod luma;
 pub mod matching;
+mod names;
 pub mod pair;
 pub mod pipeline;
 pub mod seeding;

@@ -153,17 +153,17 @@ pub async fn run_async(
         _ => Brightness::SAME,
     };
     let (range, dense) = match &config.method {
-        Method::Hsad => {
-            let dense = config.dense(range, brightness);
+        Method::Hsad(parameters) => {
+            let dense = config.dense(parameters, range, brightness);
             let range = dense.searched(left.width())?;
             enter(Some(Step::Dense));
             (range, pair.dense(&DenseConfig { range, ..dense }).await?)
         }
         Method::Kamencay(parameters) => {
-            let hybrid = config.hybrid(parameters, range, brightness);
-            let range = hybrid.searched(left.width())?;
+            let task = config.kamencay(parameters, range, brightness);
+            let range = task.searched(left.width())?;
             enter(Some(Step::Dense));
-            (range, backend.kamencay(left, right, &KamencayConfig { range, ..hybrid }).await?)
+            (range, backend.kamencay(left, right, &KamencayConfig { range, ..task }).await?)
         }
     };
     enter(None);
@@ -200,13 +200,13 @@ fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange
 }
 
 fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
-    if width.min(height) >= config.window() {
+    if width.min(height) >= config.smallest_side() {
         return Ok(());
     }
     Err(Error::TooSmall {
         width,
         height,
-        what: format!("a window of {0}x{0}", config.window()),
+        what: format!("a window of {0}x{0}", config.smallest_side()),
         way_out: "use a larger picture or a smaller window".into(),
     })
 }

@@ -5,7 +5,7 @@ use std::{path::Path, process::Command};
 
 use hsad::{
     config::Preset,
-    dense::{self, Brightness},
+    dense::{self},
     disparity::DisparityRange,
     gpu::{DeviceChoice, Gpu, block_on},
     io::{color::turbo, load},
@@ -32,7 +32,7 @@ fn embed_draws_the_picture_and_its_disparities() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved");
     let [left, right] = ["left.png", "right.png"].map(|name| load::load(&scene.join(name)).unwrap());
     let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
-    let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64).unwrap(), Brightness::SAME);
+    let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64).unwrap());
     let map = block_on(dense::compute(&gpu, &left.luma(), &right.luma(), &config)).unwrap().disparity;
     let (width, height) = left.size();
     assert_eq!(frame.size(), (2 * width, height));

@@ -14,7 +14,7 @@ use std::{
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, Destination, Matcher},
+    dense::{Destination, Matcher},
     disparity::DisparityRange,
     gpu::Gpu,
     io::{Picture, atomic, load, png},
@@ -184,7 +184,7 @@ fn run() -> Result<(), AnyError> {
     let disparities = view(&renderer.texture(size, TextureFormat::R32Float, map));
 
     // Once per size: kernels, memory, inputs and outputs.
-    let config = Preset::Balanced.config().dense(DisparityRange::new(0, 64)?, Brightness::SAME);
+    let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64)?);
     let gpu = Gpu::new(renderer.device.clone(), renderer.queue.clone());
     let matcher = Matcher::new(&gpu, size, &config)?;
     let inputs = matcher.inputs(Source::Texture(&left), Source::Texture(&right))?;

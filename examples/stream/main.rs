@@ -12,7 +12,7 @@ use std::{path::Path, process::ExitCode, rc::Rc, time::Instant};
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, DenseConfig},
+    dense::DenseConfig,
     disparity::{DisparityRange, NONE},
     gpu::Gpu,
     io::{Picture, load},
@@ -161,7 +161,7 @@ fn stream() -> Result<(), AnyError> {
     }))?;
 
     // The range is a guess until there are seeds.
-    let config = Preset::Fast.config().dense(DisparityRange::new(0, 32)?, Brightness::SAME);
+    let config = Preset::Fast.dense_config(DisparityRange::new(0, 32)?);
     let mut stream = Stream::new(&Gpu::new(device, queue), config)?;
     run(&mut stream, &scene, false, tell)?;
     let overlapped = run(&mut stream, &scene, false, drop)?;

@@ -61,6 +61,7 @@ impl Demo {
             left: scene.left.clone(),
             right: scene.right.clone(),
             config: Preset::Balanced.config(),
+            strongest: None,
             calibration: Some(scene.calibration),
         };
         let mut completed = job.run(&self.run)?;

@@ -21,6 +21,8 @@ pub struct Job {
     pub left: Picture,
     pub right: Picture,
     pub config: Config,
+    /// Interest points and matches that a figure shows, the strongest ones; `None`: all.
+    pub strongest: Option<usize>,
     pub calibration: Option<Calibration>,
 }
 

@@ -54,13 +54,13 @@ pub struct Match {
 impl Match {
     /// Matches the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
-        let config = self.matching.config(&self.features)?;
+        let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
         let mut output = Output::open(&self.output)?;
         let (left, right) = (load::load(&self.left)?, load::load(&self.right)?);
 
         let calibration = self.depth.calibration(left.size())?;
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
-        let mut completed = Job { names, left, right, config, calibration }.run(&self.run)?;
+        let mut completed = Job { names, left, right, config, strongest, calibration }.run(&self.run)?;
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");

@@ -1,14 +1,21 @@
 //! Options that several subcommands share, and their translation to a configuration.
 
-use std::{fmt::Display, path::PathBuf};
+use std::{
+    fmt::{Debug, Display},
+    path::PathBuf,
+    str::FromStr,
+};
 
 use anyhow::anyhow;
-use clap::{Args, ValueEnum};
+use clap::{
+    Args, ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use hsad::{
     Error, Result,
     backend::Backend,
     config::{Config, Method, Preset},
-    dense::{Aggregation, CrossCheck, Interpolation, Paths, Search, SemiGlobal, View},
+    dense::{Aggregation, CrossCheck, DenseParameters, Interpolation, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -108,16 +115,16 @@ pub struct MatchOptions {
     #[arg(long, value_enum, default_value = "hsad")]
     method: MethodName,
     /// Set of parameters; single options override it [default: balanced]
-    #[arg(long, value_enum)]
-    preset: Option<PresetName>,
+    #[arg(long, value_parser = presets())]
+    preset: Option<Preset>,
     /// Match blocks: side of the square window in pixels, odd, 3 to 31 [default: fast 9, paper 7; balanced and
     /// quality match semi-globally]
     #[arg(long, value_name = "PX")]
     window: Option<u32>,
     /// Number of paths of semi-global matching; with 0 the cost window alone decides [default: balanced 3,
     /// quality 4]
-    #[arg(long, value_enum, value_name = "N", conflicts_with = "window")]
-    paths: Option<PathsName>,
+    #[arg(long, value_parser = paths(), value_name = "N", conflicts_with = "window")]
+    paths: Option<PathCount>,
     /// Side in pixels of the square window that averages the costs of each disparity before the paths, odd, 1 to
     /// 31 [default: 1]
     #[arg(long, value_name = "PX", conflicts_with = "window")]
@@ -134,8 +141,8 @@ pub struct MatchOptions {
     #[arg(long, value_name = "N")]
     disparities: Option<u32>,
     /// Reference view, whose pixels get a disparity [default: left, paper right]
-    #[arg(long, value_enum)]
-    reference: Option<ViewName>,
+    #[arg(long, value_parser = views())]
+    reference: Option<View>,
     /// Uniqueness margin: per cent by which the second best disparity must cost more than the best, 0 to 100
     /// [default: 1, fast 10, paper 0]
     #[arg(long, value_name = "PERCENT")]
@@ -159,8 +166,8 @@ pub struct MatchOptions {
     #[arg(long)]
     no_equalise: bool,
     /// Sub-pixel interpolation of disparities [default: equiangular, paper parabola]
-    #[arg(long, value_enum)]
-    interpolation: Option<InterpolationName>,
+    #[arg(long, value_parser = interpolations())]
+    interpolation: Option<Interpolation>,
     #[arg(long, value_name = "R", help = with_default("Ratio test: largest ratio of the distances of the best and the \
         second best descriptor, above 0, at most 1", MatchConfig::default().ratio))]
     ratio: Option<f32>,
@@ -179,74 +186,93 @@ impl MatchOptions {
     /// # Errors
     /// [`Error::Parameter`] for a value outside its range, or options that exclude each other.
     pub fn config(&self, features: &FeatureOptions) -> Result<Config> {
-        let mut config = self.preset.map_or(Preset::default(), Preset::from).config();
-        if let MethodName::Kamencay = self.method {
-            self.refuse_what_only_hsad_does()?;
-            config.method = Method::Kamencay(KamencayParameters::default());
-        }
+        let preset = self.preset.unwrap_or_default();
+        let mut config = preset.config();
+        config.method = match self.method {
+            MethodName::Hsad => Method::Hsad(self.dense_parameters(preset)?),
+            MethodName::Kamencay => {
+                self.refuse_what_only_hsad_does()?;
+                Method::Kamencay(KamencayParameters::default())
+            }
+        };
         config.features = features.over(config.features);
         config.seeding.matching.ratio = self.ratio.unwrap_or(config.seeding.matching.ratio);
         config.least = self.min_disparity.or(config.least);
         if let Some(count) = self.disparities {
             config.range = Some(DisparityRange::new(self.min_disparity.unwrap_or(0), count)?);
         }
-        config.strongest = self.strongest.or(config.strongest);
-        config.reference = self.reference.map_or(config.reference, View::from);
-        if let Some(side) = self.window {
-            let search = match config.aggregation {
-                Aggregation::Window { search, .. } => search,
-                Aggregation::Paths(_) => Search::Whole,
-            };
-            config.aggregation = Aggregation::Window { side, search };
-        }
-        if let (true, Aggregation::Window { search, .. }) = (self.whole_range, &mut config.aggregation) {
-            *search = Search::Whole;
-        }
-        if let (true, Aggregation::Paths(paths)) = (self.search_both_views, &mut config.aggregation) {
-            paths.cross_check = CrossCheck::Searched;
-        }
-        self.choose_paths(&mut config.aggregation)?;
-        config.interpolation = self.interpolation.map_or(config.interpolation, Interpolation::from);
-        config.uniqueness = self.uniqueness.unwrap_or(config.uniqueness);
-        if let Some(pixels) = self.max_lr_difference {
-            config.consistency = Some(fixed_point(pixels)?);
-        } else if self.no_lr_check {
-            config.consistency = None;
-        }
-        if let (true, Some(refinement)) = (self.no_fill, &mut config.refinement) {
-            refinement.fill = false;
-        }
+        config.reference = self.reference.unwrap_or(config.reference);
         config.equalise &= !self.no_equalise;
         config.force = self.force;
         config.validate()?;
         Ok(config)
     }
 
-    fn choose_paths(&self, aggregation: &mut Aggregation) -> Result<()> {
-        let Self { paths: asked, cost_window, .. } = *self;
-        match aggregation {
-            Aggregation::Paths(SemiGlobal { window, paths, .. }) => {
-                *paths = asked.map_or(*paths, Paths::from);
-                *window = cost_window.unwrap_or(*window);
-            }
-            Aggregation::Window { .. } if asked.is_some() || cost_window.is_some() => {
-                return Err(Error::Parameter {
-                    name: "preset",
-                    value: self
-                        .preset
-                        .and_then(|preset| preset.to_possible_value())
-                        .map_or_else(String::new, |name| name.get_name().into()),
-                    expected: "--paths and --cost-window need balanced or quality".into(),
-                });
-            }
-            Aggregation::Window { .. } => {}
+    /// How many interest points and matches a figure shows, the strongest ones; `None`: all. The paper shows ten.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for none.
+    pub fn strongest(&self) -> Result<Option<usize>> {
+        if self.strongest == Some(0) {
+            return Err(Error::Parameter {
+                name: "strongest",
+                value: "0".into(),
+                expected: "it must be at least 1".into(),
+            });
         }
-        Ok(())
+        Ok(self.strongest.or((self.preset == Some(Preset::Paper)).then_some(10)))
     }
-}
 
-impl MatchOptions {
-    /// Refuses the options that the hybrid method ignores.
+    /// The preset's parameters of dense matching, overridden by the options on the command line.
+    fn dense_parameters(&self, preset: Preset) -> Result<DenseParameters> {
+        let mut parameters = preset.dense_parameters();
+        parameters.aggregation = self.aggregation(parameters.aggregation)?;
+        parameters.interpolation = self.interpolation.unwrap_or(parameters.interpolation);
+        parameters.uniqueness = self.uniqueness.unwrap_or(parameters.uniqueness);
+        if let Some(pixels) = self.max_lr_difference {
+            parameters.consistency = Some(fixed_point(pixels)?);
+        } else if self.no_lr_check {
+            parameters.consistency = None;
+        }
+        if let (true, Some(refinement)) = (self.no_fill, &mut parameters.refinement) {
+            refinement.fill = false;
+        }
+        Ok(parameters)
+    }
+
+    /// The preset's aggregation, overridden by the options on the command line.
+    fn aggregation(&self, of_preset: Aggregation) -> Result<Aggregation> {
+        let Self { window, paths, cost_window, whole_range, search_both_views, .. } = *self;
+        match of_preset {
+            Aggregation::Sad { side, search } => {
+                if paths.is_some() || cost_window.is_some() {
+                    return Err(Error::Parameter {
+                        name: "preset",
+                        value: self.preset.unwrap_or_default().to_string(),
+                        expected: "--paths and --cost-window need balanced or quality".into(),
+                    });
+                }
+                let search = if whole_range { Search::Whole } else { search };
+                Ok(Aggregation::Sad { side: window.unwrap_or(side), search })
+            }
+            Aggregation::Costs(_) if window.is_some() => {
+                Ok(Aggregation::Sad { side: window.unwrap_or_default(), search: Search::Whole })
+            }
+            Aggregation::Costs(mut costs) => {
+                costs.window = cost_window.unwrap_or(costs.window);
+                if let Some(PathCount(paths)) = paths {
+                    let paths = |semi_global| paths.map(|paths| SemiGlobal { paths, ..semi_global });
+                    costs.semi_global = costs.semi_global.and_then(paths);
+                }
+                if search_both_views {
+                    costs.cross_check = CrossCheck::Searched;
+                }
+                Ok(Aggregation::Costs(costs))
+            }
+        }
+    }
+
+    /// Refuses the options that Kamencay's method ignores.
     fn refuse_what_only_hsad_does(&self) -> Result<()> {
         let given = [
             ("--preset", self.preset.is_some()),
@@ -332,87 +358,50 @@ enum MethodName {
     Kamencay,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PresetName {
-    /// Block matching, coarse to fine, with holes where the left-right consistency check fails
-    Fast,
-    /// Semi-global matching along 3 paths, with holes filled
-    Balanced,
-    /// Semi-global matching along 4 paths, with holes filled and further refinement
-    Quality,
-    /// The paper's method: block matching without checks
-    Paper,
+/// A parser of the values of an enum by their names, with a line of help for each.
+fn choices<T>(helps: &[(&'static str, &'static str)]) -> impl TypedValueParser<Value = T> + use<T>
+where
+    T: FromStr<Err: Debug> + Clone + Send + Sync + 'static,
+{
+    let values = helps.iter().map(|&(name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).map(|name| name.parse().expect("one of the names above"))
 }
 
-impl From<PresetName> for Preset {
-    fn from(name: PresetName) -> Self {
-        match name {
-            PresetName::Fast => Self::Fast,
-            PresetName::Balanced => Self::Balanced,
-            PresetName::Quality => Self::Quality,
-            PresetName::Paper => Self::Paper,
-        }
-    }
+fn presets() -> impl TypedValueParser<Value = Preset> {
+    choices(&[
+        (
+            Preset::Fast.name(),
+            "Block matching, coarse to fine, with holes where the left-right consistency check fails",
+        ),
+        (Preset::Balanced.name(), "Semi-global matching along 3 paths, with holes filled"),
+        (Preset::Quality.name(), "Semi-global matching along 4 paths, with holes filled and further refinement"),
+        (Preset::Paper.name(), "The paper's method: block matching without checks"),
+    ])
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PathsName {
-    /// No paths
-    #[value(name = "0")]
-    None,
-    /// Along rows in both directions, along columns downwards
-    #[value(name = "3")]
-    Three,
-    /// Along rows and columns in both directions
-    #[value(name = "4")]
-    Four,
-    /// Along rows, columns and diagonals in both directions
-    #[value(name = "8")]
-    Eight,
+fn interpolations() -> impl TypedValueParser<Value = Interpolation> {
+    choices(&[
+        (Interpolation::None.name(), "Whole pixels, no interpolation"),
+        (Interpolation::Parabola.name(), "Vertex of a parabola through three costs"),
+        (Interpolation::Equiangular.name(), "Intersection of two lines of opposite slope through three costs"),
+    ])
 }
 
-impl From<PathsName> for Paths {
-    fn from(name: PathsName) -> Self {
-        match name {
-            PathsName::None => Self::None,
-            PathsName::Three => Self::Three,
-            PathsName::Four => Self::Four,
-            PathsName::Eight => Self::Eight,
-        }
-    }
+fn views() -> impl TypedValueParser<Value = View> {
+    PossibleValuesParser::new(View::ALL.map(View::name)).map(|name| name.parse().expect("one of the names above"))
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum ViewName {
-    Left,
-    Right,
-}
+/// The number of paths; 0 is none.
+#[derive(Clone, Copy)]
+struct PathCount(Option<Paths>);
 
-impl From<ViewName> for View {
-    fn from(name: ViewName) -> Self {
-        match name {
-            ViewName::Left => Self::Left,
-            ViewName::Right => Self::Right,
-        }
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum InterpolationName {
-    /// Whole pixels, no interpolation
-    None,
-    /// Vertex of a parabola through three costs
-    Parabola,
-    /// Intersection of two lines of opposite slope through three costs
-    Equiangular,
-}
-
-impl From<InterpolationName> for Interpolation {
-    fn from(name: InterpolationName) -> Self {
-        match name {
-            InterpolationName::None => Self::None,
-            InterpolationName::Parabola => Self::Parabola,
-            InterpolationName::Equiangular => Self::Equiangular,
-        }
-    }
+fn paths() -> impl TypedValueParser<Value = PathCount> {
+    let value = |name, help| PossibleValue::new(name).help(help);
+    PossibleValuesParser::new([
+        value("0", "No paths"),
+        value(Paths::Three.name(), "Along rows in both directions, along columns downwards"),
+        value(Paths::Four.name(), "Along rows and columns in both directions"),
+        value(Paths::Eight.name(), "Along rows, columns and diagonals in both directions"),
+    ])
+    .map(|name| PathCount(name.parse().ok()))
 }

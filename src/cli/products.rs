@@ -53,8 +53,8 @@ impl CompletedJob {
 
     /// Adds the paper's figures 4 and 5: interest points in both views, and matches between them.
     pub fn add_figures(&self, output: &mut Output) -> Result<()> {
-        let Job { left, right, config, .. } = &self.job;
-        let count = config.strongest.unwrap_or(usize::MAX);
+        let Job { left, right, strongest, .. } = &self.job;
+        let count = strongest.unwrap_or(usize::MAX);
         let keypoints = |picture: &Picture, features: &[Feature]| -> Plane<[u8; 3]> {
             let mut features = features.to_vec();
             features.sort_by(|a, b| b.response.total_cmp(&a.response));

@@ -3,7 +3,7 @@
 use hsad::{
     backend::Backend,
     config::{Config, Method},
-    dense::{Aggregation, CrossCheck, Difference, Interpolation, Paths, Refinement, Search, SemiGlobal, View},
+    dense::{Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search},
     disparity::{DisparityRange, SCALE, coverage},
     io::Calibration,
     kamencay::KamencayParameters,
@@ -28,7 +28,7 @@ impl CompletedJob {
             "width": job.left.width(),
             "height": job.left.height(),
             "device": device(backend),
-            "parameters": parameters(&job.config),
+            "parameters": parameters(&job.config, job.strongest),
             "calibration": job.calibration.as_ref().map(calibration),
             "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
             "seeds": outcome.seeding.seeds.len(),
@@ -58,13 +58,13 @@ fn number(value: f32) -> Value {
     value.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// All parameters of the configuration.
-pub fn parameters(config: &Config) -> Value {
-    let Config { features, seeding, range, least, strongest, method, reference, equalise, force, .. } = config;
+/// All parameters of the configuration, and how many interest points and matches a figure shows.
+pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
+    let Config { features, seeding, range, least, method, reference, equalise, force } = config;
     let matching = &seeding.matching;
     let mut parameters = json!({
-        "method": match method { Method::Hsad => "hsad", Method::Kamencay(_) => "kamencay" },
-        "reference": match reference { View::Left => "left", View::Right => "right" },
+        "method": match method { Method::Hsad(_) => "hsad", Method::Kamencay(_) => "kamencay" },
+        "reference": reference.name(),
         "range": range.map(ends),
         "min_disparity": least,
         "equalise": equalise,
@@ -85,8 +85,8 @@ pub fn parameters(config: &Config) -> Value {
         "strongest": strongest,
     });
     let of_method = match method {
-        Method::Hsad => dense(config),
-        Method::Kamencay(parameters) => hybrid(parameters),
+        Method::Hsad(parameters) => dense(parameters),
+        Method::Kamencay(parameters) => kamencay(parameters),
     };
     for (name, value) in of_method {
         parameters[name] = value;
@@ -95,20 +95,15 @@ pub fn parameters(config: &Config) -> Value {
 }
 
 /// Parameters that only block matching and semi-global matching take.
-fn dense(config: &Config) -> Vec<(&'static str, Value)> {
-    let Config { aggregation, interpolation, uniqueness, consistency, refinement, .. } = config;
+fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
+    let DenseParameters { aggregation, interpolation, uniqueness, consistency, refinement } = parameters;
     let window = match aggregation {
-        Aggregation::Window { side, .. } => Some(side),
-        Aggregation::Paths(_) => None,
+        Aggregation::Sad { side, .. } => Some(side),
+        Aggregation::Costs(_) => None,
     };
     let search = match aggregation {
-        Aggregation::Window { search: Search::CoarseToFine, .. } => "coarse to fine",
-        Aggregation::Window { search: Search::Whole, .. } | Aggregation::Paths(_) => "whole",
-    };
-    let interpolation = match interpolation {
-        Interpolation::None => "none",
-        Interpolation::Parabola => "parabola",
-        Interpolation::Equiangular => "equiangular",
+        Aggregation::Sad { search: Search::CoarseToFine, .. } => "coarse to fine",
+        Aggregation::Sad { search: Search::Whole, .. } | Aggregation::Costs(_) => "whole",
     };
     let max_lr_difference = consistency.map(|difference| f64::from(difference) / f64::from(SCALE));
     let refinement = refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| {
@@ -124,15 +119,15 @@ fn dense(config: &Config) -> Vec<(&'static str, Value)> {
         ("aggregation", aggregation_of(aggregation)),
         ("window", json!(window)),
         ("search", json!(search)),
-        ("interpolation", json!(interpolation)),
+        ("interpolation", json!(interpolation.name())),
         ("uniqueness_percent", json!(uniqueness)),
         ("max_lr_difference_px", json!(max_lr_difference)),
         ("refinement", json!(refinement)),
     ]
 }
 
-/// Parameters that only the hybrid method (Kamencay et al.) takes.
-fn hybrid(parameters: &KamencayParameters) -> Vec<(&'static str, Value)> {
+/// Parameters that only Kamencay's method takes.
+fn kamencay(parameters: &KamencayParameters) -> Vec<(&'static str, Value)> {
     let KamencayParameters { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } =
         parameters;
     vec![
@@ -167,22 +162,22 @@ fn part(Difference { weight, limit }: Difference) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }) = aggregation else {
+    let Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check }) = aggregation else {
         return "window".into();
     };
     // Without paths no penalty is applied: null.
-    let penalty = |value: u32| (*paths != Paths::None).then_some(value);
+    let penalty = |value: fn(&Penalties) -> u32| semi_global.map(|semi_global| value(&semi_global.penalties));
     json!({
         "cost_window": window,
-        "paths": paths.directions().len(),
+        "paths": semi_global.map_or(0, |semi_global| semi_global.paths.directions().len()),
         "other_view": match cross_check { CrossCheck::Searched => "searched", CrossCheck::Claimed => "claimed" },
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),
-        "p1": penalty(penalties.p1),
-        "p2": penalty(penalties.p2),
-        "least_p2": penalty(penalties.least_p2),
-        "p2_scale": penalty(penalties.p2_scale),
+        "p1": penalty(|penalties| penalties.p1),
+        "p2": penalty(|penalties| penalties.p2),
+        "least_p2": penalty(|penalties| penalties.least_p2),
+        "p2_scale": penalty(|penalties| penalties.p2_scale),
     })
 }
 

@@ -7,7 +7,7 @@ use super::{
     inputs::Inputs,
     kernels::{MapRows, MapTexel, MapTexture},
     outputs::{Destination, Disparities, Outputs},
-    plan::{BandLimits, Plan, WordCopy, blocks, semi_global},
+    plan::{BandLimits, Plan, WordCopy, blocks, costs},
     readback::MapReadback,
 };
 #[cfg(not(target_arch = "wasm32"))]
@@ -121,9 +121,9 @@ impl Matcher {
             };
             let views = [&luma[0], &luma[1]];
             let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
-            let plan = match &config.aggregation {
-                Aggregation::Window { search, .. } => blocks::plan(gpu, size, config, *search, views, limits),
-                Aggregation::Paths(paths) => semi_global::plan(gpu, size, config, paths, views, limits),
+            let plan = match &config.parameters.aggregation {
+                Aggregation::Sad { search, .. } => blocks::plan(gpu, size, config, *search, views, limits),
+                Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, views, limits),
             }?;
             let gpu = gpu.clone();
             Ok(Self { gpu, size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })

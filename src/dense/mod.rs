@@ -17,8 +17,8 @@ mod plan;
 mod readback;
 
 pub use config::{
-    Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Difference, Direction, Interpolation, MAX_COST, Median,
-    Paths, Penalties, Refinement, Search, SemiGlobal, View, WEIGHT_BITS,
+    Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference, Direction,
+    Interpolation, MAX_COST, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WEIGHT_BITS,
 };
 pub use inputs::Inputs;
 pub use matcher::{Dense, Matcher, compute};

@@ -4,7 +4,7 @@ use super::{Conclusion, LinkWeights, ModeSeeking, Segmentation, Smoothness, Wind
 use crate::{
     dense::{Brightness, DenseConfig, Difference, View},
     disparity::DisparityRange,
-    error::{Error, Result},
+    error::{Error, Result, check_range},
 };
 
 /// More disparities make a kernel that drivers take minutes to compile.
@@ -101,7 +101,7 @@ impl KamencayConfig {
 
 impl KamencayParameters {
     /// As [`KamencayConfig::validate`].
-    fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let Self { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } = self;
         for (name, value, first, last) in [
             ("the radius of mean shift", mean_shift.radius, 1, 15),
@@ -123,10 +123,7 @@ impl KamencayParameters {
             ("the number of turns", *turns, 2, 100),
             ("the share of confirmed pixels", conclusion.least_confirmed, 0, 16),
         ] {
-            if !(first..=last).contains(&value) {
-                let expected = format!("it must be {first} to {last}");
-                return Err(Error::Parameter { name, value: value.to_string(), expected });
-            }
+            check_range(name, value, first..=last)?;
         }
         Ok(())
     }

@@ -55,7 +55,7 @@ impl Dice {
 
     /// A way to interpolate.
     pub fn interpolation(&mut self) -> Interpolation {
-        self.pick(&[Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular])
+        self.pick(&Interpolation::ALL)
     }
 
     /// Up to `most` disparities, 0 among them, so that in any picture some pixel has a partner.

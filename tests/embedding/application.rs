@@ -85,7 +85,7 @@ pub fn pair((width, height): (u32, u32), seed: u32) -> [Luma; 2] {
 }
 
 pub fn config() -> DenseConfig {
-    DenseConfig { consistency: Some(256), ..DenseConfig::new(DisparityRange::new(0, 24).unwrap()) }
+    DenseConfig::new(DisparityRange::new(0, 24).unwrap()).with(|parameters| parameters.consistency = Some(256))
 }
 
 /// The handler must see an error that is provoked.

@@ -3,7 +3,7 @@
 use hsad::{
     Error,
     config::Preset,
-    dense::{Brightness, Destination, Matcher},
+    dense::{Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{REQUIRED_LIMITS, block_on},
@@ -113,7 +113,7 @@ fn a_buffer_that_is_too_large_names_its_limits() {
     let application = Application::with(Features::empty(), limits);
     let gpu = &application.gpu;
     for (size, preset) in [((400, 30), Preset::Fast), ((400, 30), Preset::Balanced), ((200, 200), Preset::Balanced)] {
-        let config = preset.config().dense(DisparityRange::new(0, 128).unwrap(), Brightness::SAME);
+        let config = preset.dense_config(DisparityRange::new(0, 128).unwrap());
         let error = Matcher::new(gpu, size, &config).expect_err("an error").to_string();
         assert!(error.contains("at most 16384: ") && error.contains("max_storage_buffer_binding_size"), "{error}");
     }

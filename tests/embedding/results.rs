@@ -25,7 +25,7 @@ fn texels(luma: &Luma, format: TextureFormat) -> Vec<u8> {
 /// Configurations that run different kernels: block matching with and without refinement, and paths.
 fn configs() -> Vec<DenseConfig> {
     let range = DisparityRange::new(0, 24).unwrap();
-    let preset = |preset: Preset| preset.config().dense(range, Brightness::SAME);
+    let preset = |preset: Preset| preset.dense_config(range);
     vec![config(), preset(Preset::Fast), preset(Preset::Balanced)]
 }
 
@@ -58,7 +58,7 @@ fn textures_in_and_out_in_bands_and_not() {
                     inputs.record(encoder);
                     matcher.record(encoder, &outputs);
                 });
-                let what = format!("{texel:?} in bands of {band_rows}, {:?}", config.aggregation);
+                let what = format!("{texel:?} in bands of {band_rows}, {:?}", config.parameters.aggregation);
                 match texel {
                     MapTexel::FixedPoint => {
                         let confidences = bench.download::<u32>(&confidences).unwrap();
@@ -206,7 +206,7 @@ fn memory_is_what_the_device_gives() {
     for config in configs() {
         let before = taken();
         let matcher = Matcher::new(gpu, size, &config).unwrap();
-        check(&format!("{:?}", config.aggregation), before, matcher.memory());
+        check(&format!("{:?}", config.parameters.aggregation), before, matcher.memory());
     }
     for max_features in [500, 65_536] {
         let before = taken();
@@ -227,7 +227,7 @@ fn matchers_take_the_memory_that_is_told() {
         let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
         let range = DisparityRange::new(0, count).unwrap();
         let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
-            let matcher = Matcher::new(gpu, size, &preset.config().dense(range, Brightness::SAME)).unwrap();
+            let matcher = Matcher::new(gpu, size, &preset.dense_config(range)).unwrap();
             (matcher.memory() as f64 / 1e6).round()
         });
         assert_eq!(told, measured, "{start}");

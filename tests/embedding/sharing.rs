@@ -5,7 +5,7 @@ use std::thread;
 use hsad::{
     config::Preset,
     cpu::dense::compute,
-    dense::{self, Brightness, Destination, Inputs, MapReadback, Matcher, Outputs},
+    dense::{self, Destination, Inputs, MapReadback, Matcher, Outputs},
     disparity::DisparityRange,
     features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
     gpu::{Gpu, block_on},
@@ -37,7 +37,7 @@ fn everything_goes_to_other_threads() {
 fn threads_share_a_device() {
     let application = Application::new();
     let range = DisparityRange::new(0, 24).unwrap();
-    let configs = [config(), Preset::Balanced.config().dense(range, Brightness::SAME)];
+    let configs = [config(), Preset::Balanced.dense_config(range)];
     let pairs = [pair(SIZE, 9), pair(SIZE, 10)];
     thread::scope(|scope| {
         for (config, views) in configs.iter().zip(&pairs) {

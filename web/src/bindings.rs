@@ -82,7 +82,7 @@ impl Session {
         force: bool,
         begin: js_sys::Function,
     ) -> Result<Matched, JsValue> {
-        let config = Config { force, ..named(&preset).map_err(thrown)?.config() };
+        let config = Config { force, ..preset.parse::<Preset>().map_err(thrown)?.config() };
         let start = Instant::now();
         let outcome = pipeline::run_async(&self.backend, (&left.0, &right.0), &config, |step| {
             // An error of the page's callback does not stop the match.
@@ -92,22 +92,6 @@ impl Session {
         .map_err(thrown)?;
         Ok(Matched { outcome, milliseconds: 1e3 * start.elapsed().as_secs_f64() })
     }
-}
-
-fn named(preset: &str) -> hsad::Result<Preset> {
-    Ok(match preset {
-        "fast" => Preset::Fast,
-        "balanced" => Preset::Balanced,
-        "quality" => Preset::Quality,
-        "paper" => Preset::Paper,
-        _ => {
-            return Err(Error::Parameter {
-                name: "the preset",
-                value: preset.into(),
-                expected: "it must be fast, balanced, quality or paper".into(),
-            });
-        }
-    })
 }
 
 /// A JavaScript `Error` whose name is the kind of the error.

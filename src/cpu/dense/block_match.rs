@@ -45,7 +45,10 @@ pub fn winners(
     config: &DenseConfig,
     ranges: Option<&CellPlane>,
 ) -> DisparityMap {
-    let config = DenseConfig { interpolation: Interpolation::None, uniqueness: 0, ..config.clone() };
+    let config = config.clone().with(|parameters| {
+        parameters.interpolation = Interpolation::None;
+        parameters.uniqueness = 0;
+    });
     block_match(left, right, view, &config, ranges).disparity
 }
 
@@ -53,7 +56,7 @@ pub fn winners(
 /// around the pixel and around its partner, where a picture goes on beyond its edge with its last pixel. `None` where the
 /// partner lies outside the other picture.
 fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig) -> Vec<Vec<Option<u32>>> {
-    let (width, radius, y) = (i64::from(left.width()), i64::from(config.radius()), i64::from(y));
+    let (width, radius, y) = (i64::from(left.width()), i64::from(config.parameters.radius()), i64::from(y));
     let (reference, searched, direction) = match view {
         View::Left => (left, right, -1),
         View::Right => (right, left, 1),
@@ -69,7 +72,7 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
         // The pixels whose partner lies in the picture.
         let (first, last) = ((-shift).max(0), width - 1 - shift.max(0));
         let columns: Vec<u32> = (first - radius..=last + radius).map(column).collect();
-        for (x, window) in (first..).zip(columns.windows(config.window() as usize)) {
+        for (x, window) in (first..).zip(columns.windows(config.parameters.window() as usize)) {
             costs[x as usize][index as usize] = Some(window.iter().sum());
         }
     }
@@ -83,13 +86,13 @@ pub(super) fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
         return (NONE, 0);
     };
     let rival = candidates().filter(|&(_, index)| index.abs_diff(winner) > 1).map(|(cost, _)| cost).min();
-    let unique = |rival| config.uniqueness == 0 || 100 * rival > (100 + config.uniqueness) * best;
+    let unique = |rival| config.parameters.uniqueness == 0 || 100 * rival > (100 + config.parameters.uniqueness) * best;
     if !rival.is_none_or(unique) {
         return (NONE, 0);
     }
     let neighbour = |index: Option<usize>| costs.get(index?).copied().flatten();
     let between = match (neighbour(winner.checked_sub(1)), neighbour(winner.checked_add(1))) {
-        (Some(below), Some(above)) => interpolate(below, best, above, config.interpolation),
+        (Some(below), Some(above)) => interpolate(below, best, above, config.parameters.interpolation),
         _ => 0,
     };
     let confidence = match rival {
@@ -142,7 +145,7 @@ mod tests {
 
     #[test]
     fn the_rival_is_no_neighbour_of_the_winner() {
-        let c = DenseConfig { uniqueness: 50, ..config(0, 4) };
+        let c = config(0, 4).with(|parameters| parameters.uniqueness = 50);
         assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(20)], &c).0, 0);
         assert_eq!(decide(&[Some(10), Some(11), Some(99), Some(15)], &c).0, NONE);
         // 1 + 254 * (20 - 10) / 20

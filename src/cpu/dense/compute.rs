@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dense::{
-        Aggregation, CrossCheck, Dense, DenseConfig, Paths, Refinement, Search, SemiGlobal, View,
+        Aggregation, CostAggregation, CrossCheck, Dense, DenseConfig, Refinement, Search, SemiGlobal, View,
         kernels::halved_config,
     },
     disparity::{DisparityRange, NONE, SCALE},
@@ -29,32 +29,32 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
     let view = config.reference;
     let mut dense;
     let others;
-    match &config.aggregation {
-        Aggregation::Window { search: Search::Whole, .. } => {
+    match &config.parameters.aggregation {
+        Aggregation::Sad { search: Search::Whole, .. } => {
             dense = block_match(left, right, view, &config, None);
-            others = config.consistency.map(|_| winners(left, right, view.other(), &config, None));
+            others = config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
         }
-        Aggregation::Window { search: Search::CoarseToFine, .. } => {
+        Aggregation::Sad { search: Search::CoarseToFine, .. } => {
             dense = coarse_to_fine([left, right], unchanged, &config);
             others = None;
         }
-        Aggregation::Paths(semi_global) => {
-            let paths = all_paths(left, right, view, &config, semi_global);
+        Aggregation::Costs(costs) => {
+            let paths = all_paths(left, right, view, &config, costs);
             dense = select(&paths, left.size(), &config);
-            others = config.consistency.map(|_| match semi_global.cross_check {
+            others = config.parameters.consistency.map(|_| match costs.cross_check {
                 CrossCheck::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
                 CrossCheck::Searched => {
-                    let paths = all_paths(left, right, view.other(), &config, semi_global);
+                    let paths = all_paths(left, right, view.other(), &config, costs);
                     path_winners(&paths, left.size(), &config)
                         .map(|winner| winner.map_or(NONE, |(_, disparity)| disparity * SCALE))
                 }
             });
         }
     }
-    if let (Some(max_difference), Some(others)) = (config.consistency, others) {
+    if let (Some(max_difference), Some(others)) = (config.parameters.consistency, others) {
         consistency(&mut dense, view, &others, max_difference);
     }
-    match &config.refinement {
+    match &config.parameters.refinement {
         Some(refinement) => {
             let residuals = residual([left, right], view, &dense.disparity);
             let luma = unchanged[usize::from(view == View::Right)];
@@ -73,7 +73,7 @@ fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &Den
     let map = block_match(&left_half, &right_half, view, &half, None).disparity;
     let ranges = cell_ranges(&map, left.size(), config.range);
     let mut dense = block_match(left, right, view, config, Some(&ranges));
-    if let Some(max_difference) = config.consistency {
+    if let Some(max_difference) = config.parameters.consistency {
         let others = winners(&left_half, &right_half, view.other(), &half, None);
         half_consistency(&mut dense, view, &others, max_difference);
     }
@@ -102,14 +102,14 @@ fn all_paths(
     right: &Luma,
     view: View,
     config: &DenseConfig,
-    SemiGlobal { cost: parts, window, penalties, paths, .. }: &SemiGlobal,
+    aggregation: &CostAggregation,
 ) -> Vec<Vec<u8>> {
     let (left, right) = (census(left), census(right));
     let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
-    let costs = cost([reference, other], view, parts, config.range);
-    let costs = box_mean(&costs, left.size(), *window);
-    if *paths == Paths::None {
+    let costs = cost([reference, other], view, &aggregation.cost, config.range);
+    let costs = box_mean(&costs, left.size(), aggregation.window);
+    let Some(SemiGlobal { penalties, paths }) = &aggregation.semi_global else {
         return vec![costs];
-    }
+    };
     paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
 }

@@ -74,8 +74,8 @@ impl Grid<'_> {
 /// having another and of the difference, less the least of all.
 fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
     let least = h.iter().copied().min().unwrap_or(0);
-    // Further away the difference costs the limit at least; where it costs nothing the least is everywhere.
-    let reach = limit.checked_div(slope).unwrap_or(0) as usize;
+    // Beyond its reach a difference costs the limit at least; where a difference costs nothing, it reaches everywhere.
+    let reach = limit.checked_div(slope).map_or(h.len(), |reach| reach as usize);
     (0..h.len()).map(move |d| {
         let near = d.saturating_sub(reach)..=(d + reach).min(h.len() - 1);
         let way = near.map(|e| h[e] + slope * e.abs_diff(d) as u32).min();
@@ -106,4 +106,19 @@ pub fn belief(grid: Grid<'_>, messages: &mut [u8], parents: &[u8], smoothness: &
             sent.iter_mut().zip(values).for_each(|(sent, value)| *sent = value);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_by_hand() {
+        let messages = |slope, limit| message(&[9, 5, 30], slope, limit).collect::<Vec<_>>();
+        // Costs less the least, 5: 4 or a step from 5; 0; the limit.
+        assert_eq!(messages(3, 20), [3, 0, 3]);
+        assert_eq!(messages(100, 20), [4, 0, 20]);
+        // A difference that costs nothing leaves the least everywhere.
+        assert_eq!(messages(0, 20), [0, 0, 0]);
+    }
 }

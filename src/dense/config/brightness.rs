@@ -1,7 +1,7 @@
 //! The change that brings the views' brightness together.
 
 use crate::{
-    error::{Error, Result},
+    error::{Result, check_range},
     gpu::shader_struct,
 };
 
@@ -23,15 +23,10 @@ impl Brightness {
     /// Refuses what 32 bits do not hold.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the rule.
+    /// [`crate::Error::Parameter`] with the accepted range.
     pub fn validate(&self) -> Result<()> {
-        for (name, value) in [("the gain", self.gain), ("the offset", self.offset)] {
-            if value.unsigned_abs() > 1 << 20 {
-                let expected = "it must be -2^20 to 2^20, in 1/256".into();
-                return Err(Error::Parameter { name, value: value.to_string(), expected });
-            }
-        }
-        Ok(())
+        check_range("the gain", self.gain, -(1 << 20)..=1 << 20)?;
+        check_range("the offset", self.offset, -(1 << 20)..=1 << 20)
     }
 
     /// A luma after the change.

@@ -1,28 +1,27 @@
-//! What pixels are compared by.
+//! The matching cost of a pixel and its partner.
 
-/// The largest cost: with a penalty of as much it still fits in eight bits.
+/// The largest matching cost: together with a penalty of as much it fits in 8 bits.
 pub const MAX_COST: u32 = 127;
 
-/// The bits of a weight that stand behind the point.
+/// Fractional bits of a weight.
 pub const WEIGHT_BITS: u32 = 4;
 
-/// A difference of two numbers as part of a cost.
+/// A truncated absolute difference as part of a cost: `weight / 16 min(|a - b|, limit)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// In 1/16.
+    /// Weight in 1/16, 0 to 4096.
     pub weight: u32,
-    /// Larger ones count as this.
+    /// Larger differences count as this one, 0 to 4096 grey levels.
     pub limit: u32,
 }
 
-/// What a pixel and its partner are compared by: the sum of three parts, rounded down and at most
-/// [`MAX_COST`].
+/// The matching cost of a pixel and its partner: the sum of three parts, rounded down and at most [`MAX_COST`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// The weight of each of the 24 bits in which their census transforms differ, in 1/16.
+    /// Weight in 1/16 of each of the 24 bits in which the 5x5 census transforms differ, 0 to 4096.
     pub census: u32,
-    /// Of their lumas.
+    /// Difference of the lumas.
     pub difference: Difference,
-    /// Of their lumas' gradients along the row, each the difference of the two neighbours.
+    /// Difference of the gradients of luma along the row, each the difference of the two neighbours.
     pub gradient: Difference,
 }

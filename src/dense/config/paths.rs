@@ -1,16 +1,19 @@
 //! The paths along which costs are summed up.
 
-/// From where to where a path goes: to the next column and row, each -1, 0 or 1, not both 0.
+use crate::names::names;
+
+/// The step of a path to the next pixel: columns and rows, each -1, 0 or 1, not both 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direction {
-    /// Columns a pixel.
+    /// Columns per pixel.
     pub dx: i32,
-    /// Rows a pixel.
+    /// Rows per pixel.
     pub dy: i32,
 }
 
 impl Direction {
-    /// Along the rows and the columns first, then aslant: those of the first three, the first four or of all eight are used.
+    /// Along the rows and the columns first, then along the diagonals: the first three, the first four or all eight are
+    /// used.
     pub const ALL: [Self; 8] = {
         const fn d(dx: i32, dy: i32) -> Direction {
             Direction { dx, dy }
@@ -19,34 +22,26 @@ impl Direction {
     };
 }
 
-/// From how many sides a pixel is reached.
+/// The number of directions from which a pixel is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paths {
-    /// From none: the least cost of a pixel itself decides. With a window this is block matching.
-    None,
-    /// Along its row from both ends and along its column from above: no row has to wait for those below it.
+    /// Along the pixel's row from both ends and along its column from above: no row has to wait for those below it.
     Three,
-    /// Along its row and its column.
+    /// Along the row and the column, from both ends of each.
     Four,
-    /// From those and along both diagonals.
+    /// Along the row, the column and both diagonals, from both ends of each.
     Eight,
 }
+
+names!(Paths, "the number of paths", { Three => "3", Four => "4", Eight => "8" });
 
 impl Paths {
     /// Their directions.
     pub fn directions(self) -> &'static [Direction] {
         match self {
-            Self::None => &[],
             Self::Three => &Direction::ALL[..3],
             Self::Four => &Direction::ALL[..4],
             Self::Eight => &Direction::ALL,
         }
-    }
-
-    /// The one that is followed last, while disparities are selected, and those whose costs are stored until then. The
-    /// last is one along the rows: of it nothing has to be kept from band to band, and it sees memory in order. Where there
-    /// are none, it is to be followed with [`Penalties::NONE`].
-    pub(in crate::dense) fn last_and_stored(self) -> (Direction, &'static [Direction]) {
-        self.directions().split_first().map_or((Direction::ALL[0], &[]), |(&last, stored)| (last, stored))
     }
 }

@@ -1,19 +1,21 @@
-//! Which view a map belongs to.
+//! The two views of a pair.
+
+use crate::names::names;
 
 /// One of the two views.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
-    /// The left view: its pixel x corresponds to x - d of the right.
+    /// The left view: pixel x of it corresponds to pixel x - d of the right view.
+    #[default]
     Left,
-    /// The right view: its pixel x corresponds to x + d of the left.
+    /// The right view: pixel x of it corresponds to pixel x + d of the left view.
     Right,
 }
 
-impl View {
-    /// Left, then right.
-    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+names!(View, "the view", { Left => "left", Right => "right" });
 
-    /// The other one.
+impl View {
+    /// The other view.
     pub fn other(self) -> Self {
         match self {
             Self::Left => Self::Right,
@@ -21,7 +23,7 @@ impl View {
         }
     }
 
-    /// The sign of the way from a pixel of this view to its partner in the other.
+    /// The sign of the step from a pixel of this view to its partner in the other.
     pub(crate) fn direction(self) -> i32 {
         match self {
             Self::Left => -1,

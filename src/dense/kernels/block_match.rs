@@ -7,7 +7,7 @@ use super::{
     selection::{ResultKind, selection_constants},
 };
 use crate::{
-    dense::config::{DenseConfig, View},
+    dense::config::{DenseConfig, DenseParameters, View},
     disparity::{DisparityRange, SCALE},
     error::Result,
     gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
@@ -82,8 +82,8 @@ fn margin(radius: u32) -> u32 {
 
 impl BlockMatch {
     /// What the kernel is made of.
-    pub fn stage(config: &DenseConfig, view: View, wanted: ResultKind, tile: Tile) -> Stage {
-        let radius = config.radius();
+    pub fn stage(parameters: &DenseParameters, view: View, wanted: ResultKind, tile: Tile) -> Stage {
+        let radius = parameters.radius();
         let constant = |value: u32| i64::from(value);
         // To the left the words that a step brings come in front, to the right behind.
         let (direction, front) = match view {
@@ -98,30 +98,30 @@ impl BlockMatch {
                 ("TILES_ACROSS", constant(tile.across)),
                 ("TILES_DOWN", constant(tile.down)),
                 ("TILE_HEIGHT", constant(tile.height)),
-                ("SIDE", constant(config.window())),
+                ("SIDE", constant(parameters.window())),
                 ("ROWS", constant(tile.height + 2 * radius)),
                 ("QUADS", constant(tile.quads)),
-                ("SPAN", constant(4 * tile.quads + config.window() - 1)),
+                ("SPAN", constant(4 * tile.quads + parameters.window() - 1)),
                 ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
                 ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
-                ("HALVED", config.is_coarse_to_fine().into()),
+                ("HALVED", parameters.is_coarse_to_fine().into()),
                 ("ROW_BITS", ROW_BITS.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
             ]
             .into_iter()
-            .chain(selection_constants(config.interpolation, wanted, config.index_bits()))
+            .chain(selection_constants(parameters.interpolation, wanted, parameters.index_bits()))
             .collect(),
         }
     }
 
-    /// Compiles it for `config`'s window, interpolation and uniqueness, and `view` as the reference.
-    pub fn new(gpu: &Gpu, config: &DenseConfig, view: View, wanted: ResultKind, tile: Tile) -> Self {
-        let kernel = Kernel::new(gpu, &Self::stage(config, view, wanted, tile));
-        let grain = if config.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
-        Self { kernel, view, uniqueness: config.uniqueness, grain, tile }
+    /// Compiles it for the window, the interpolation and the uniqueness of `parameters`, and `view` as the reference.
+    pub fn new(gpu: &Gpu, parameters: &DenseParameters, view: View, wanted: ResultKind, tile: Tile) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(parameters, view, wanted, tile));
+        let grain = if parameters.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
+        Self { kernel, view, uniqueness: parameters.uniqueness, grain, tile }
     }
 
     /// Matches the padded `planes` of `layout` at the disparities that `ranges` name. The map goes to the beginning of
@@ -208,7 +208,7 @@ impl Layout {
             height,
             first_row,
             rows,
-            radius: config.radius(),
+            radius: config.parameters.radius(),
             range,
             tiled_rows: rows.next_multiple_of(tile.height),
             tiled_words: width.div_ceil(4).next_multiple_of(tile.quads),
@@ -227,7 +227,7 @@ impl Layout {
 
     /// How the left and the right picture are padded.
     pub fn padding(&self) -> [PadParams; 2] {
-        View::BOTH.map(|view| PadParams {
+        View::ALL.map(|view| PadParams {
             width: self.width,
             height: self.height,
             first_word: -((margin(self.radius) / 4 + self.reach(view)) as i32),

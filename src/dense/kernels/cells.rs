@@ -1,7 +1,7 @@
 //! The cells of a picture, each with disparities of its own to search.
 
 use crate::{
-    dense::config::DenseConfig,
+    dense::config::{DenseConfig, DenseParameters},
     disparity::{DisparityRange, SCALE},
     gpu::{Gpu, buffer_of},
 };
@@ -88,7 +88,11 @@ pub(crate) const HALF_GRAIN: u32 = SCALE as u32;
 /// How a pair of half the size is matched to find what to search: unconfirmed, since what the other view says of it
 /// confirms the matches of the whole size.
 pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> DenseConfig {
-    DenseConfig { range: halved(range), consistency: None, refinement: None, ..config.clone() }
+    let unconfirmed = |parameters: &mut DenseParameters| {
+        parameters.consistency = None;
+        parameters.refinement = None;
+    };
+    DenseConfig { range: halved(range), ..config.clone().with(unconfirmed) }
 }
 
 /// The disparities of a pair of half the size that correspond to `range`.

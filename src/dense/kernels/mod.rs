@@ -47,8 +47,10 @@ pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
 
-use super::config::{Aggregation, Cost, DenseConfig, Difference, Interpolation, Penalties, Refinement, Search, View};
-use crate::{disparity::DisparityRange, gpu::Stage};
+use super::config::{
+    Aggregation, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
+};
+use crate::gpu::Stage;
 
 /// Every stage of the dense half, for checks that need no GPU, with all constants that make another kernel of it: block
 /// matching for each window, either view and what it may be asked for, and what has tiles or rows both with those for
@@ -57,7 +59,9 @@ pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
     stages.extend([CheckedAgainst::Disparities, CheckedAgainst::Claims(0)].map(Consistency::stage));
-    let blocks = |window| DenseConfig::new(DisparityRange { min: 0, count: 1 }).with_window(window);
+    let sad =
+        |side, search| DenseParameters { aggregation: Aggregation::Sad { side, search }, ..DenseParameters::default() };
+    let blocks = |side| sad(side, Search::Whole);
     for window in (3..=31).step_by(2) {
         for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
             for view in [View::Left, View::Right] {
@@ -66,13 +70,11 @@ pub fn stages() -> Vec<Stage> {
             }
         }
     }
-    let coarse_to_fine = Aggregation::Window { side: 7, search: Search::CoarseToFine };
-    let coarse_to_fine = DenseConfig { aggregation: coarse_to_fine, ..blocks(7) };
-    stages.extend(View::BOTH.map(|view| BlockMatch::stage(&coarse_to_fine, view, ResultKind::Matches, Tile::HARDWARE)));
-    let interpolations = [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular];
-    stages.extend(interpolations.map(|interpolation| {
-        let config = DenseConfig { interpolation, ..blocks(3) };
-        BlockMatch::stage(&config, View::Left, ResultKind::Matches, Tile::HARDWARE)
+    let coarse_to_fine = sad(7, Search::CoarseToFine);
+    stages.extend(View::ALL.map(|view| BlockMatch::stage(&coarse_to_fine, view, ResultKind::Matches, Tile::HARDWARE)));
+    stages.extend(Interpolation::ALL.map(|interpolation| {
+        let parameters = DenseParameters { interpolation, ..blocks(3) };
+        BlockMatch::stage(&parameters, View::Left, ResultKind::Matches, Tile::HARDWARE)
     }));
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part };
@@ -82,7 +84,7 @@ pub fn stages() -> Vec<Stage> {
     stages.push(Path::stage(&penalties, 2));
     // Where there are no paths, no penalties are left in the code, and nothing is summed up.
     for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
-        for interpolation in interpolations {
+        for interpolation in Interpolation::ALL {
             stages.extend(
                 [(ResultKind::Matches, true), (ResultKind::Matches, false), (ResultKind::Winners, false)].map(
                     |(wanted, keys)| {

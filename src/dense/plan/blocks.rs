@@ -41,10 +41,10 @@ pub(in crate::dense) fn plan(
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
     let view = config.reference;
     let pad = Pad::new(gpu);
-    let block_match = BlockMatch::new(gpu, config, view, ResultKind::Matches, tile);
+    let block_match = BlockMatch::new(gpu, &config.parameters, view, ResultKind::Matches, tile);
 
     let mut plan = Plan::new(gpu, config, height.div_ceil(band_rows) as usize);
-    let whole = config.refinement.map(|_| plan.collect(size)).transpose()?;
+    let whole = config.parameters.refinement.map(|_| plan.collect(size)).transpose()?;
     let map = MapLayout { width, rows: band_rows };
     let planes = plan.words("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
     let matches = plan.buffer("matches", map.words())?;
@@ -62,7 +62,7 @@ pub(in crate::dense) fn plan(
             None => (&whole_range, None),
             Some(coarse) => coarse.plan(&mut plan, &pad, &block_match, (first_row, rows))?,
         };
-        for ((params, view), picture) in layout.padding().into_iter().zip(View::BOTH).zip([left, right]) {
+        for ((params, view), picture) in layout.padding().into_iter().zip(View::ALL).zip([left, right]) {
             plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
@@ -73,7 +73,7 @@ pub(in crate::dense) fn plan(
         plan.run(block_match.prepare(&layout, &planes.1, ranges, others, matches));
         plan.hand_out(matches, first_row, rows);
     }
-    if let (Some(map), Some(refinement)) = (&whole, &config.refinement) {
+    if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
         let views = Views { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
         plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
@@ -101,7 +101,7 @@ fn band_rows_within(
         let map = MapLayout { width, rows };
         let matches = 4 * map.words();
         // Those of the other view, which stand in a texture.
-        let winners = if config.consistency.is_some() { 4 * in_rows(map.pixels().into()) } else { 0 };
+        let winners = if config.parameters.consistency.is_some() { 4 * in_rows(map.pixels().into()) } else { 0 };
         let over = [(planes, limit.min(texture_limit)), (matches, limit), (winners, limit.min(texture_limit))]
             .into_iter()
             .find(|(needed, limit)| needed > limit);

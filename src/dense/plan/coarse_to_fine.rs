@@ -91,7 +91,7 @@ impl Coarse {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = (band.map_width, self.size.1.div_ceil(2));
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, self.tile)?;
-        for ((params, view), half) in layout.padding().into_iter().zip(View::BOTH).zip(&self.halves) {
+        for ((params, view), half) in layout.padding().into_iter().zip(View::ALL).zip(&self.halves) {
             plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);

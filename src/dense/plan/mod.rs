@@ -2,9 +2,9 @@
 
 pub(super) mod blocks;
 mod coarse_to_fine;
+pub(super) mod costs;
 mod other_winners;
 mod refine;
-pub(super) mod semi_global;
 mod word_copy;
 
 use super::{

@@ -21,12 +21,12 @@ pub(super) struct OtherWinners {
 impl OtherWinners {
     /// Allocates memory for the winners of the pixels of a map; none where `config` does not ask for them.
     pub(super) fn new(gpu: &Gpu, plan: &mut Plan, config: &DenseConfig, layout: MapLayout) -> Result<Option<Self>> {
-        let Some(max_difference) = config.consistency else {
+        let Some(max_difference) = config.parameters.consistency else {
             return Ok(None);
         };
         let (view, tile) = (config.reference.other(), Tile::of(gpu));
         Ok(Some(Self {
-            find_winners: BlockMatch::new(gpu, config, view, ResultKind::Winners, tile),
+            find_winners: BlockMatch::new(gpu, &config.parameters, view, ResultKind::Winners, tile),
             winners: plan.words("winners of the other view", layout.pixels().into())?,
             layout,
             max_difference,

@@ -1,6 +1,5 @@
 //! The kernels that make packed luma.
 
-#[expect(clippy::module_inception, reason = "a kernel has the name of its stage")]
 pub mod luma;
 pub mod luma_texture;
 

@@ -45,7 +45,7 @@ impl DenseTrial {
         let reference = if preset == Preset::Paper { preset.config().reference } else { view };
         let band_rows = if banded { 1 + dice.below(size.1) } else { u32::MAX };
         let (range, [left, right]) = uneven(size, dice);
-        Self { left, right, config: DenseConfig { reference, ..preset.config().dense(range, brightness) }, band_rows }
+        Self { left, right, config: DenseConfig { reference, brightness, ..preset.dense_config(range) }, band_rows }
     }
 
     fn arrays(dense: Dense) -> Vec<Array> {

@@ -44,7 +44,7 @@ fn compare_tiled(
 ) {
     for consistency in [None, Some(300)] {
         let (left, right, ranges) = (left.clone(), right.clone(), ranges.cloned());
-        let config = DenseConfig { consistency, ..config.clone() };
+        let config = config.clone().with(|parameters| parameters.consistency = consistency);
         let what = format!("{what}, {consistency:?}");
         assert_twin(&what, &BlockMatchTrial { left, right, view, config, ranges, tile });
     }
@@ -89,8 +89,8 @@ fn the_other_view_is_asked_at_half_the_size() {
         let (left, right) = pair(width, height, 71);
         for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
             for min in [0, -9] {
-                let aggregation = Aggregation::Window { side: 7, search: Search::CoarseToFine };
-                let config = DenseConfig { aggregation, ..config(7, min, 21) };
+                let aggregation = Aggregation::Sad { side: 7, search: Search::CoarseToFine };
+                let config = config(7, min, 21).with(|parameters| parameters.aggregation = aggregation);
                 let what = format!("{width}x{height} {view:?} from {min}");
                 compare_tiled(&what, (&left, &right), view, &config, None, tile);
             }
@@ -120,9 +120,12 @@ fn the_twin_matches_the_same_in_any_range() {
 #[test]
 fn the_twin_decides_the_same_with_any_check() {
     let (left, right) = pair(130, 131, 41);
-    for interpolation in [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular] {
+    for interpolation in Interpolation::ALL {
         for uniqueness in [0, 1, 15, 100] {
-            let config = DenseConfig { interpolation, uniqueness, ..config(5, -2, 23) };
+            let config = config(5, -2, 23).with(|parameters| {
+                parameters.interpolation = interpolation;
+                parameters.uniqueness = uniqueness;
+            });
             compare(&format!("{interpolation:?}, {uniqueness} %"), (&left, &right), View::Left, &config);
         }
     }
@@ -135,7 +138,7 @@ fn black_white_and_noise() {
     let noise = |seed| Luma::from_fn(40, 30, |x, y| picture(1, 1, seed + 40 * y + x).get(0, 0));
     for (left, right) in [(&black, &black), (&black, &white), (&white, &black), (&noise(1), &noise(5000))] {
         for window in [3, 15] {
-            let config = DenseConfig { uniqueness: 5, ..config(window, -8, 17) };
+            let config = config(window, -8, 17).with(|parameters| parameters.uniqueness = 5);
             compare("extremes", (left, right), View::Left, &config);
         }
     }
@@ -147,7 +150,7 @@ fn by_hand() {
     // window sees it from the columns 4, 5 and 6; no other window of the left view sees anything,
     // and a window without it costs nothing at any disparity that does not see it either.
     let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
-    let config = DenseConfig { interpolation: Interpolation::None, ..config(3, 0, 4) };
+    let config = config(3, 0, 4).with(|parameters| parameters.interpolation = Interpolation::None);
     let (left, right) = (view(5), view(3));
     let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, ranges: None, tile: Tile::HARDWARE });
     let d = |whole: i32| whole * SCALE;

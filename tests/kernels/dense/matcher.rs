@@ -6,8 +6,8 @@ use hsad::{
     config::Preset,
     cpu::dense::compute,
     dense::{
-        self, Aggregation, Brightness, Cost, CrossCheck, DenseConfig, Destination, Difference, Matcher, Paths,
-        Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
+        self, Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Destination,
+        Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
     },
     disparity::{DisparityRange, coverage},
     error::Error,
@@ -30,28 +30,25 @@ fn pair(width: u32, height: u32) -> (Luma, Luma) {
 fn config(reference: View) -> DenseConfig {
     let range = DisparityRange::new(-2, 30).unwrap();
     let brightness = Brightness { gain: 280, offset: -700 };
-    DenseConfig { uniqueness: 10, consistency: Some(256), reference, brightness, ..DenseConfig::new(range) }
+    let checked = DenseParameters { uniqueness: 10, consistency: Some(256), ..DenseParameters::default() };
+    DenseConfig { reference, brightness, range, parameters: checked }
 }
 
-fn semi_global(reference: View, window: u32, paths: Paths, cross_check: CrossCheck) -> DenseConfig {
+fn costs(reference: View, window: u32, paths: Option<Paths>, cross_check: CrossCheck) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32) };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
-    DenseConfig {
-        aggregation: Aggregation::Paths(SemiGlobal { cost, window, penalties, paths, cross_check }),
-        refinement: Some(Refinement {
-            support: 9,
-            medians_before: 1,
-            fill: true,
-            median_of_filled: true,
-            medians_after: 1,
-        }),
-        ..config(reference)
-    }
+    let semi_global = paths.map(|paths| SemiGlobal { penalties, paths });
+    config(reference).with(|parameters| {
+        parameters.aggregation = Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check });
+        parameters.refinement =
+            Some(Refinement { support: 9, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 });
+    })
 }
 
 fn coarse_to_fine(reference: View) -> DenseConfig {
-    DenseConfig { aggregation: Aggregation::Window { side: 5, search: Search::CoarseToFine }, ..config(reference) }
+    let aggregation = Aggregation::Sad { side: 5, search: Search::CoarseToFine };
+    config(reference).with(|parameters| parameters.aggregation = aggregation)
 }
 
 #[test]
@@ -63,10 +60,10 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Right, config(View::Right)),
             (View::Left, coarse_to_fine(View::Left)),
             (View::Right, coarse_to_fine(View::Right)),
-            (View::Left, semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed)),
-            (View::Right, semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched)),
-            (View::Left, semi_global(View::Left, 5, Paths::None, CrossCheck::Searched)),
-            (View::Right, semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed)),
+            (View::Left, costs(View::Left, 1, Some(Paths::Three), CrossCheck::Claimed)),
+            (View::Right, costs(View::Right, 1, Some(Paths::Four), CrossCheck::Searched)),
+            (View::Left, costs(View::Left, 5, None, CrossCheck::Searched)),
+            (View::Right, costs(View::Right, 3, Some(Paths::Three), CrossCheck::Claimed)),
         ] {
             let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
@@ -88,10 +85,10 @@ fn bands_leave_no_trace() {
     for config in [
         config(View::Left),
         coarse_to_fine(View::Left),
-        semi_global(View::Right, 1, Paths::Three, CrossCheck::Claimed),
-        semi_global(View::Left, 1, Paths::Eight, CrossCheck::Searched),
-        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
-        semi_global(View::Left, 3, Paths::Four, CrossCheck::Claimed),
+        costs(View::Right, 1, Some(Paths::Three), CrossCheck::Claimed),
+        costs(View::Left, 1, Some(Paths::Eight), CrossCheck::Searched),
+        costs(View::Left, 5, None, CrossCheck::Claimed),
+        costs(View::Left, 3, Some(Paths::Four), CrossCheck::Claimed),
     ] {
         in_bands(&left, &right, &config);
     }
@@ -173,9 +170,9 @@ fn what_cannot_be_is_refused_by_both_alike() {
     let (left, right) = pair(40, 30);
     let far = DenseConfig::new(DisparityRange::new(40, 8).unwrap());
     let even = config(View::Left).with_window(8);
-    let unsure = DenseConfig { uniqueness: 101, ..config(View::Left) };
-    let even_costs = semi_global(View::Left, 4, Paths::None, CrossCheck::Claimed);
-    let wide_costs = semi_global(View::Left, 33, Paths::Three, CrossCheck::Claimed);
+    let unsure = config(View::Left).with(|parameters| parameters.uniqueness = 101);
+    let even_costs = costs(View::Left, 4, None, CrossCheck::Claimed);
+    let wide_costs = costs(View::Left, 33, Some(Paths::Three), CrossCheck::Claimed);
     for config in [far, even, unsure, even_costs, wide_costs] {
         let device = block_on(dense::compute(gpu(), &left, &right, &config)).unwrap_err();
         let twin = compute(&left, &right, &config).unwrap_err();
@@ -209,15 +206,14 @@ fn no_buffer_needs_to_hold_a_whole_view() {
     let small = wgpu::Limits { max_storage_buffer_binding_size: 300_000, ..wgpu::Limits::downlevel_defaults() };
     let small = with_limits(small);
     for config in [
-        semi_global(View::Left, 1, Paths::Three, CrossCheck::Claimed),
-        semi_global(View::Right, 1, Paths::Four, CrossCheck::Searched),
-        semi_global(View::Left, 5, Paths::None, CrossCheck::Claimed),
-        semi_global(View::Right, 3, Paths::Three, CrossCheck::Claimed),
+        costs(View::Left, 1, Some(Paths::Three), CrossCheck::Claimed),
+        costs(View::Right, 1, Some(Paths::Four), CrossCheck::Searched),
+        costs(View::Left, 5, None, CrossCheck::Claimed),
+        costs(View::Right, 3, Some(Paths::Three), CrossCheck::Claimed),
         coarse_to_fine(View::Right),
-        DenseConfig {
-            refinement: semi_global(View::Left, 1, Paths::Four, CrossCheck::Claimed).refinement,
-            ..config(View::Left)
-        },
+        config(View::Left).with(|parameters| {
+            parameters.refinement = costs(View::Left, 1, None, CrossCheck::Claimed).parameters.refinement;
+        }),
     ] {
         let expected = block_on(dense::compute(gpu(), &left, &right, &config)).unwrap();
         let actual = block_on(dense::compute(&small, &left, &right, &config)).unwrap();
@@ -259,7 +255,7 @@ fn no_preset_trusts_pairs_that_show_nothing() {
     for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
         // One disparity, some of them negative, more than the picture has columns.
         for (min, count) in [(3, 1), (-9, 17), (0, 500)] {
-            let config = preset.config().dense(DisparityRange::new(min, count).unwrap(), Brightness::SAME);
+            let config = preset.dense_config(DisparityRange::new(min, count).unwrap());
             for (name, left, right) in &pairs {
                 let what = format!("{preset:?}, {name}, {count} from {min}");
                 let actual = block_on(dense::compute(gpu(), left, right, &config)).unwrap();

@@ -113,3 +113,18 @@ fn costs_that_are_cut_off_are_still_compared() {
     };
     assert_twin("cut off", &trial);
 }
+
+/// A slope of 1, which the weight of a link rounds down to 0: differences cost nothing, up to any distance.
+#[test]
+fn a_slope_that_links_round_to_nothing() {
+    let (size, count) = ((1, 6), 12);
+    let trial = BeliefTrial {
+        costs: noise(6 * count, 6, 255).into_iter().map(u16::from).collect(),
+        links: links(size),
+        messages: noise(4 * count * 6, 8, 100),
+        parents: noise(4 * count * 3, 7, 100),
+        smoothness: Smoothness { slope: 1, limit: 100 },
+        turn: Turn { parity: 0, from_parents: false },
+    };
+    assert_twin("weak slope", &trial);
+}

@@ -110,7 +110,7 @@ struct Results {
 impl Dense {
     /// Scores all scenes by all methods; a failure does not stop the others and is returned at the end.
     pub fn run(self) -> anyhow::Result<()> {
-        let config = self.matching.config(&self.features)?;
+        let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
         let (scenes, unread) = scenes::find(&self.scenes)?;
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
         supplied_maps::check(&self.supplied, scenes.len())?;
@@ -132,7 +132,7 @@ impl Dense {
         if let Some(file) = &self.json {
             let mut report = results.report(&methods);
             report["device"] = backend.as_ref().map(report::device).into();
-            report["parameters"] = backend.as_ref().map(|_| report::parameters(&config)).into();
+            report["parameters"] = backend.as_ref().map(|_| report::parameters(&config, strongest)).into();
             write_whole(file, |out| write_json(out, &report))?;
         }
         if !self.run.quiet {

@@ -3,7 +3,7 @@
 use crate::{
     cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
-        Aggregation, Brightness, DenseConfig, Search, View,
+        Aggregation, Brightness, DenseConfig, DenseParameters, Search, View,
         kernels::{
             BlockMatch, CELL, ConfirmingMap, Layout, MapBuffer, MapLayout, Pad, PadParams, Ranges, ResultKind, Tile,
             halved_config,
@@ -117,7 +117,7 @@ impl BlockMatchTrial {
             None => Ranges::whole(gpu, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
-        let others = match (self.config.consistency, wanted) {
+        let others = match (self.config.parameters.consistency, wanted) {
             (Some(limit), ResultKind::Matches) => Some((self.others()?, limit)),
             _ => None,
         };
@@ -131,7 +131,7 @@ impl BlockMatchTrial {
         let map = MapLayout { width, rows: height };
         let words = if wanted == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
         let matches = bench.output(words)?;
-        let kernel = BlockMatch::new(gpu, &self.config, self.view, wanted, self.tile);
+        let kernel = BlockMatch::new(gpu, &self.config.parameters, self.view, wanted, self.tile);
         let dispatch = kernel.prepare(&layout, &texture, &ranges, others, MapBuffer { buffer: &matches, layout: map });
         bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)
@@ -145,7 +145,7 @@ impl BlockMatchTrial {
     /// What the other view's winners are, over the whole range; coarse to fine those at half the size.
     fn others(&self) -> Result<Plane<i32>> {
         let (config, view) = (self.searched()?, self.view.other());
-        Ok(if config.is_coarse_to_fine() {
+        Ok(if config.parameters.is_coarse_to_fine() {
             let [left, right] = [&self.left, &self.right].map(halve);
             winners(&left, &right, view, &halved_config(&config, config.range), None)
         } else {
@@ -178,11 +178,12 @@ impl BlockMatchTrial {
         // Also ranges that none of the costs of most pixels lie in.
         let away = if size.0 > 64 { dice.between(-40, 40) } else { 0 };
         let range = DisparityRange { min: range.min + away, ..range };
-        let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) }.with_window(window);
         let [left, right] = dice.pair(size);
         let consistency = dice.pick(&[None, Some(0), Some(256)]);
         let search = dice.pick(&[Search::Whole, Search::CoarseToFine]);
-        let config = DenseConfig { consistency, aggregation: Aggregation::Window { side: window, search }, ..config };
+        let aggregation = Aggregation::Sad { side: window, search };
+        let parameters = DenseParameters { aggregation, interpolation, uniqueness, consistency, refinement: None };
+        let config = DenseConfig { parameters, ..DenseConfig::new(range) };
         let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
         let ranges = config.searched(size.0).ok().filter(|_| in_cells).map(|range| {
             Plane::from_fn(size.0.div_ceil(CELL), size.1.div_ceil(CELL), |_, _| {
@@ -215,8 +216,8 @@ impl Trial for BlockMatchTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         let (config, ranges) = (self.searched()?, self.ranges.as_ref());
         let mut dense = block_match(&self.left, &self.right, self.view, &config, ranges);
-        if let Some(max_difference) = config.consistency {
-            let check = if config.is_coarse_to_fine() { half_consistency } else { consistency };
+        if let Some(max_difference) = config.parameters.consistency {
+            let check = if config.parameters.is_coarse_to_fine() { half_consistency } else { consistency };
             check(&mut dense, self.view, &self.others()?, max_difference);
         }
         let winners = winners(&self.left, &self.right, self.view, &config, ranges).into_data();

@@ -284,7 +284,7 @@ pub struct SelectTrial {
     pub penalties: Penalties,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
-    /// See [`DenseConfig::uniqueness`].
+    /// See [`crate::dense::DenseParameters::uniqueness`].
     pub uniqueness: u32,
 }
 
@@ -359,7 +359,10 @@ impl Trial for SelectTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let Self { interpolation, uniqueness, range, .. } = *self;
-        let config = DenseConfig { interpolation, uniqueness, ..DenseConfig::new(range) };
+        let config = DenseConfig::new(range).with(|parameters| {
+            parameters.interpolation = interpolation;
+            parameters.uniqueness = uniqueness;
+        });
         let mut volumes = self.stored.clone();
         volumes.push(path(&self.reference, &self.costs, &self.penalties, self.last));
         let size = self.reference.size();

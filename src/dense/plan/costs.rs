@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     dense::{
-        config::{CrossCheck, DenseConfig, Direction, SemiGlobal, View},
+        config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
             BoxMean, Census, CheckedAgainst, Claim, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout, Pad,
             Path, PathVolumes, ResultKind, Select, Selection, Views, VolumeBand,
@@ -30,30 +30,30 @@ pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: (u32, u32),
     config: &DenseConfig,
-    semi_global: &SemiGlobal,
+    costs: &CostAggregation,
     luma: [&wgpu::Buffer; 2],
     limits: BandLimits,
 ) -> Result<Plan> {
     let width = size.0;
     let range = config.searched(width)?;
-    let bands = Bands::new(size, range, semi_global, limits)?;
+    let bands = Bands::new(size, range, costs, limits)?;
     let mut plan = Plan::new(gpu, config, bands.count());
-    let whole = config.refinement.map(|_| plan.collect(size)).transpose()?;
-    let workspace = Workspace::new(gpu, &mut plan, bands, semi_global, luma)?;
+    let whole = config.parameters.refinement.map(|_| plan.collect(size)).transpose()?;
+    let workspace = Workspace::new(gpu, &mut plan, bands, costs, luma)?;
     let layout = MapLayout { width, rows: workspace.bands.rows };
-    let is_claimed = config.consistency.is_some() && semi_global.cross_check == CrossCheck::Claimed;
+    let is_claimed = config.parameters.consistency.is_some() && costs.cross_check == CrossCheck::Claimed;
     let side = |plan: &mut Plan, view, wanted, keys| {
         let selection = Selection {
             stored: workspace.bands.directions.len() as u32,
-            interpolation: config.interpolation,
+            interpolation: config.parameters.interpolation,
             wanted,
             keys,
-            uniqueness: config.uniqueness,
+            uniqueness: config.parameters.uniqueness,
         };
-        Side::new(gpu, plan, &workspace.bands, semi_global, view, selection)
+        Side::new(gpu, plan, &workspace.bands, costs, view, selection)
     };
     let reference = side(&mut plan, config.reference, ResultKind::Matches, is_claimed)?;
-    let check = match config.consistency {
+    let check = match config.parameters.consistency {
         None => None,
         Some(max_difference) if is_claimed => {
             let claims = plan.buffer("claims", layout.pixels().into())?;
@@ -99,7 +99,7 @@ pub(in crate::dense) fn plan(
         }
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
     }
-    if let (Some(map), Some(refinement)) = (&whole, &config.refinement) {
+    if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
         let views = Views { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
         plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
     }
@@ -129,9 +129,9 @@ struct Bands {
 }
 
 impl Bands {
-    fn new(size: (u32, u32), range: DisparityRange, semi_global: &SemiGlobal, limits: BandLimits) -> Result<Self> {
-        let (last, directions) = semi_global.paths.last_and_stored();
-        let radius = semi_global.radius();
+    fn new(size: (u32, u32), range: DisparityRange, costs: &CostAggregation, limits: BandLimits) -> Result<Self> {
+        let (last, directions) = costs.last_and_stored();
+        let radius = costs.radius();
         let rows = band_rows_within(limits, size, range, (directions.len() as u64, radius))?;
         Ok(Self { size, range, rows, radius, last, directions })
     }
@@ -191,7 +191,7 @@ impl Workspace {
         gpu: &Gpu,
         plan: &mut Plan,
         bands: Bands,
-        semi_global: &SemiGlobal,
+        costs: &CostAggregation,
         [left, right]: [&wgpu::Buffer; 2],
     ) -> Result<Self> {
         let (width, height) = bands.size;
@@ -199,11 +199,11 @@ impl Workspace {
         let transformed_rows = bands.rows + 2 * bands.halo();
         let padding = Census::padding(bands.size, 0, transformed_rows);
         let transformed = u64::from(width) * u64::from(transformed_rows);
-        let box_mean = match semi_global.window {
+        let box_mean = match costs.window {
             1 => None,
             side => Some((BoxMean::new(gpu, side), plan.buffer("means of costs", cost_words)?)),
         };
-        let penalties = semi_global.followed_with();
+        let penalties = costs.followed_with();
         Ok(Self {
             pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
             pad: Pad::new(gpu),
@@ -267,7 +267,7 @@ impl Side {
         gpu: &Gpu,
         plan: &mut Plan,
         bands: &Bands,
-        semi_global: &SemiGlobal,
+        costs: &CostAggregation,
         view: View,
         selection: Selection,
     ) -> Result<Self> {
@@ -283,7 +283,7 @@ impl Side {
             ResultKind::Matches => plan.buffer("matches", layout.words() + key_words)?,
             ResultKind::Winners => plan.buffer("winners of the other view", layout.pixels().into())?,
         };
-        let (cost, penalties) = (CostVolume::new(gpu, &semi_global.cost, view), semi_global.followed_with());
+        let (cost, penalties) = (CostVolume::new(gpu, &costs.cost, view), costs.followed_with());
         let select = Select::new(gpu, &penalties, bands.band(0).words(), selection);
         Ok(Self { view, cost, select, above, below, matches })
     }
