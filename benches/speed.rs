@@ -19,7 +19,7 @@ use hsad::{
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{DeviceChoice, Gpu, block_on},
-    image::Luma,
+    image::{Luma, Size},
     io::{Picture, load},
     luma::pack,
     matching::match_features,
@@ -38,7 +38,7 @@ fn main() -> hsad::Result<()> {
     let pair = [picture(0, "left.png")?, picture(1, "right.png")?];
     let disparities = arguments.get(2).and_then(|count| count.parse().ok()).unwrap_or(64);
     let gpu = Gpu::open(&DeviceChoice::Best)?;
-    let (width, height) = pair[0].size();
+    let Size { width, height } = pair[0].size();
     println!("{} ({}), {width}x{height}, {disparities} disparities", gpu.info().name, gpu.info().driver_info);
     let luma = pair.each_ref().map(Picture::luma);
     let is_selected = |name: &str| arguments.get(3).is_none_or(|selected| selected == name);

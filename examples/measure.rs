@@ -15,8 +15,8 @@ use hsad::{
     disparity::{self, DisparityRange, SCALE},
     eval::scene::{self, SceneFiles},
     features::Feature,
-    gpu::DeviceChoice,
-    gpu::block_on,
+    gpu::{DeviceChoice, block_on},
+    image::Size,
     kamencay::KamencayParameters,
     matching::{MatchConfig, Rows, Seed, match_features, refine},
     pair::Pair,
@@ -51,7 +51,7 @@ impl Scene {
 
     /// Whether a seed lies within 1 px of the ground truth, in column and row; `None` where that is unknown.
     fn is_right(&self, seed: &Seed) -> Option<bool> {
-        let (width, height) = self.data.truth.size();
+        let Size { width, height } = self.data.truth.size();
         let (x, y) = (seed.x.round(), seed.y.round());
         if x < 0.0 || y < 0.0 || x >= width as f32 || y >= height as f32 {
             return None;
@@ -176,7 +176,8 @@ fn searched(pair: &Pair, config: &DenseConfig) -> Result<f64, AnyError> {
             *search = Search::Whole;
         }
     };
-    let half = DenseConfig { range: CellBand::new(size, (0, size.1), range).map_range, ..config.clone().with(plain) };
+    let half =
+        DenseConfig { range: CellBand::new(size, (0, size.height), range).map_range, ..config.clone().with(plain) };
     let map = block_on(async { pair.reduced(2).await?.dense(&half).await })?.disparity;
     let ranges = cpu::dense::cell_ranges(&map, size, range);
     let share = |cells: &cpu::dense::CellPlane| {

@@ -107,7 +107,7 @@ mod tests {
     fn pixels_and_fixed_point_by_hand() {
         let pixels = [0.0, -1.5, 1.0 / 512.0, -1.0 / 512.0, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN];
         assert_eq!(pixels.map(fixed_point), [0, -384, 1, -1, i32::MAX, NONE + 1, NONE, NONE]);
-        let map = DisparityMap::new(3, 1, vec![384, NONE, -1]).unwrap();
+        let map = DisparityMap::new((3, 1), vec![384, NONE, -1]).unwrap();
         assert_eq!(in_pixels(&map).data(), [1.5, f32::INFINITY, -1.0 / 256.0]);
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::size::Size;
+
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -11,23 +13,20 @@ pub type Result<T> = std::result::Result<T, Error>;
 pub enum Error {
     /// The two views do not have the same size.
     #[error(
-        "the left view is {}x{} and the right view {}x{} pixels: a rectified pair has one size, scale or crop one of them",
-        left.0, left.1, right.0, right.1
+        "the left view is {left} and the right view {right} pixels: a rectified pair has one size, scale or crop one of them"
     )]
     SizesDiffer {
-        /// Width and height of the left view.
-        left: (u32, u32),
-        /// Width and height of the right view.
-        right: (u32, u32),
+        /// Size of the left view.
+        left: Size,
+        /// Size of the right view.
+        right: Size,
     },
 
     /// The picture has no use for the work asked of it, because of its size.
-    #[error("a picture of {width}x{height} pixels is too small for {what}: {way_out}")]
+    #[error("a picture of {size} pixels is too small for {what}: {way_out}")]
     TooSmall {
-        /// Width of the picture.
-        width: u32,
-        /// Height of the picture.
-        height: u32,
+        /// Size of the picture.
+        size: Size,
         /// What was asked.
         what: String,
         /// What to do about it.

@@ -1,14 +1,14 @@
 //! Planes of values, and luma, the only picture that the kernels see.
 
 use crate::error::{Error, Result};
+pub use crate::size::Size;
 
 /// A `width` x `height` grid of values in row-major order, the origin at the top left.
 ///
 /// Never empty: both sides are at least 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plane<T> {
-    width: u32,
-    height: u32,
+    size: Size,
     data: Vec<T>,
 }
 
@@ -27,8 +27,8 @@ pub const fn luma_of([red, green, blue]: [u8; 3]) -> u8 {
 /// # Panics
 /// If `factor` is 0.
 pub fn reduced(luma: &Luma, factor: u32) -> Luma {
-    let (width, height) = luma.size();
-    Luma::from_fn(width.div_ceil(factor), height.div_ceil(factor), |x, y| {
+    let Size { width, height } = luma.size();
+    Luma::from_fn((width.div_ceil(factor), height.div_ceil(factor)), |x, y| {
         let columns = x * factor..((x + 1) * factor).min(width);
         let (mut sum, mut count) = (0, 0);
         for row in y * factor..((y + 1) * factor).min(height) {
@@ -45,40 +45,44 @@ impl<T> Plane<T> {
     ///
     /// # Errors
     /// [`Error::Parameter`] if a side is 0 or `data` does not hold `width * height` values.
-    pub fn new(width: u32, height: u32, data: Vec<T>) -> Result<Self> {
+    pub fn new(size: impl Into<Size>, data: Vec<T>) -> Result<Self> {
+        let size = size.into();
+        let Size { width, height } = size;
         if width == 0 || height == 0 || data.len() as u64 != u64::from(width) * u64::from(height) {
             return Err(Error::Parameter {
                 name: "picture",
-                value: format!("{width}x{height} with {} values", data.len()),
+                value: format!("{size} with {} values", data.len()),
                 expected: "it needs width x height values and no side of 0".into(),
             });
         }
-        Ok(Self { width, height, data })
+        Ok(Self { size, data })
     }
 
     /// The value of `f(x, y)` everywhere.
     ///
     /// # Panics
     /// If a side is 0.
-    pub fn from_fn(width: u32, height: u32, mut f: impl FnMut(u32, u32) -> T) -> Self {
+    pub fn from_fn(size: impl Into<Size>, mut f: impl FnMut(u32, u32) -> T) -> Self {
+        let size = size.into();
+        let Size { width, height } = size;
         assert!(width > 0 && height > 0, "a plane of {width}x{height} is empty");
         let data = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| f(x, y)).collect();
-        Self { width, height, data }
+        Self { size, data }
     }
 
     /// Width in pixels.
     pub fn width(&self) -> u32 {
-        self.width
+        self.size.width
     }
 
     /// Height in pixels.
     pub fn height(&self) -> u32 {
-        self.height
+        self.size.height
     }
 
     /// Width and height.
-    pub fn size(&self) -> (u32, u32) {
-        (self.width, self.height)
+    pub fn size(&self) -> Size {
+        self.size
     }
 
     /// All values, row by row.
@@ -98,13 +102,13 @@ impl<T> Plane<T> {
 
     /// Row `y`.
     pub fn row(&self, y: u32) -> &[T] {
-        let width = self.width as usize;
+        let width = self.size.width as usize;
         &self.data[y as usize * width..][..width]
     }
 
     /// A plane of the same size with `f` of each value.
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Plane<U> {
-        Plane { width: self.width, height: self.height, data: self.data.iter().map(f).collect() }
+        Plane { size: self.size, data: self.data.iter().map(f).collect() }
     }
 }
 
@@ -113,26 +117,26 @@ impl<T: Copy> Plane<T> {
     ///
     /// # Panics
     /// If a side is 0.
-    pub fn filled(width: u32, height: u32, value: T) -> Self {
-        Self::from_fn(width, height, |_, _| value)
+    pub fn filled(size: impl Into<Size>, value: T) -> Self {
+        Self::from_fn(size, |_, _| value)
     }
 
     /// The value at `(x, y)`.
     pub fn get(&self, x: u32, y: u32) -> T {
-        assert!(x < self.width, "column {x} of {}", self.width);
-        self.data[y as usize * self.width as usize + x as usize]
+        assert!(x < self.size.width, "column {x} of {}", self.size.width);
+        self.data[y as usize * self.size.width as usize + x as usize]
     }
 
     /// Sets the value at `(x, y)`.
     pub fn set(&mut self, x: u32, y: u32, value: T) {
-        assert!(x < self.width, "column {x} of {}", self.width);
-        self.data[y as usize * self.width as usize + x as usize] = value;
+        assert!(x < self.size.width, "column {x} of {}", self.size.width);
+        self.data[y as usize * self.size.width as usize + x as usize] = value;
     }
 
     /// The value at the pixel of the plane that is nearest to `(x, y)`: the edge goes on for ever.
     pub fn get_clamped(&self, x: i64, y: i64) -> T {
-        let x = x.clamp(0, i64::from(self.width) - 1) as u32;
-        let y = y.clamp(0, i64::from(self.height) - 1) as u32;
+        let x = x.clamp(0, i64::from(self.size.width) - 1) as u32;
+        let y = y.clamp(0, i64::from(self.size.height) - 1) as u32;
         self.get(x, y)
     }
 }
@@ -143,9 +147,9 @@ mod tests {
 
     #[test]
     fn a_reduced_picture_by_hand() {
-        let luma = Luma::new(3, 3, vec![1, 2, 10, 3, 5, 20, 7, 8, 9]).unwrap();
+        let luma = Luma::new((3, 3), vec![1, 2, 10, 3, 5, 20, 7, 8, 9]).unwrap();
         // 11 / 4 = 2.75; 30 / 2; 15 / 2 = 7.5, up; 9.
-        assert_eq!(reduced(&luma, 2), Luma::new(2, 2, vec![3, 15, 8, 9]).unwrap());
+        assert_eq!(reduced(&luma, 2), Luma::new((2, 2), vec![3, 15, 8, 9]).unwrap());
         assert_eq!(reduced(&luma, 1), luma);
     }
 

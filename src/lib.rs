@@ -130,6 +130,7 @@ mod names;
 pub mod pair;
 pub mod pipeline;
 pub mod seeding;
+mod size;
 #[cfg(all(feature = "verify", not(target_arch = "wasm32")))]
 pub mod verify;
 pub mod wide_baseline;

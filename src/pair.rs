@@ -7,7 +7,7 @@ use crate::{
     error::{Error, Result},
     features::{Detector, Feature, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
-    image::{Luma, reduced},
+    image::{Luma, Size, reduced},
     io::Picture,
     luma::{check_size, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
 };
@@ -73,7 +73,7 @@ impl<'b> Pair<'b> {
     }
 
     /// Width and height of both views.
-    pub fn size(&self) -> (u32, u32) {
+    pub fn size(&self) -> Size {
         self.left.size()
     }
 
@@ -107,30 +107,30 @@ impl<'b> Pair<'b> {
 /// The luma of a picture, on the device and on the host. The colours of a large picture get there in bands of rows:
 /// colours take four times the memory of luma.
 async fn luma_on(gpu: &Gpu, kernel: &RgbaToLuma, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
-    let (width, height) = picture.size();
+    let Size { width, height } = picture.size();
     let row_bytes = 4 * u64::from(width);
     let rows = (gpu.device.limits().max_storage_buffer_binding_size / row_bytes).clamp(1, height.into()) as u32;
     let (luma, readback) = guarded(gpu, "the picture", || {
-        let luma = storage_buffer(gpu, "luma", packed_bytes(width, height))?;
+        let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
         let bands =
             (0..height).step_by(rows as usize).zip(picture.rgba().chunks((row_bytes * u64::from(rows)) as usize));
         for (first_row, pixels) in bands {
             let rows = rows.min(height - first_row);
             let rgba = storage_buffer(gpu, "rows of the picture", pixels.len() as u64)?;
             gpu.queue.write_buffer(&rgba, 0, pixels);
-            let band = storage_buffer(gpu, "luma of a band", packed_bytes(width, rows))?;
+            let band = storage_buffer(gpu, "luma of a band", packed_bytes((width, rows)))?;
             let mut encoder = gpu.encoder("luma");
-            kernel.prepare((width, rows), &rgba, &band).record(&mut encoder);
-            encoder.copy_buffer_to_buffer(&band, 0, &luma, packed_bytes(width, first_row), None);
+            kernel.prepare(Size::new(width, rows), &rgba, &band).record(&mut encoder);
+            encoder.copy_buffer_to_buffer(&band, 0, &luma, packed_bytes((width, first_row)), None);
             gpu.queue.submit([encoder.finish()]);
         }
-        let readback = Readback::new(gpu, "luma", packed_bytes(width, height));
+        let readback = Readback::new(gpu, "luma", packed_bytes((width, height)));
         let mut encoder = gpu.encoder("luma");
         readback.record(&mut encoder, &luma);
         gpu.queue.submit([encoder.finish()]);
         Ok((luma, readback))
     })
     .await?;
-    let words = readback.read((packed_bytes(width, height) / 4) as usize).await?;
-    Ok((luma, unpack(width, height, &words)))
+    let words = readback.read((packed_bytes((width, height)) / 4) as usize).await?;
+    Ok((luma, unpack((width, height), &words)))
 }

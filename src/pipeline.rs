@@ -2,8 +2,6 @@
 
 use web_time::{Duration, Instant};
 
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     config::{Config, Method},
@@ -16,6 +14,8 @@ use crate::{
     pair::Pair,
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::{gpu::block_on, image::Size};
 
 /// Points are looked for in pictures of at most this many pixels; larger ones are reduced first.
 const MAX_SPARSE_PIXELS: u64 = 1 << 21;
@@ -181,8 +181,8 @@ pub fn equalising(found: &seeding::BrightnessRelation) -> Brightness {
 
 /// The whole number by which a pair is reduced before points are looked for. A few thousand points tell
 /// all there is to tell, and matching them takes time with their square.
-pub fn reduction((width, height): (u32, u32)) -> u32 {
-    let pixels = u64::from(width) * u64::from(height);
+pub fn reduction(size: impl Into<Size>) -> u32 {
+    let pixels = size.into().pixels();
     (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
 }
 
@@ -199,13 +199,12 @@ fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange
     })
 }
 
-fn check_window((width, height): (u32, u32), config: &Config) -> Result<()> {
-    if width.min(height) >= config.smallest_side() {
+fn check_window(size: Size, config: &Config) -> Result<()> {
+    if size.width.min(size.height) >= config.smallest_side() {
         return Ok(());
     }
     Err(Error::TooSmall {
-        width,
-        height,
+        size,
         what: format!("a window of {0}x{0}", config.smallest_side()),
         way_out: "use a larger picture or a smaller window".into(),
     })

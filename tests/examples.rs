@@ -5,9 +5,10 @@ use std::{path::Path, process::Command};
 
 use hsad::{
     config::Preset,
-    dense::{self},
+    dense,
     disparity::DisparityRange,
     gpu::{DeviceChoice, Gpu, block_on},
+    image::Size,
     io::{color::turbo, load},
 };
 
@@ -34,7 +35,7 @@ fn embed_draws_the_picture_and_its_disparities() {
     let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
     let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64).unwrap());
     let map = block_on(dense::compute(&gpu, &left.luma(), &right.luma(), &config)).unwrap().disparity;
-    let (width, height) = left.size();
+    let Size { width, height } = left.size();
     assert_eq!(frame.size(), (2 * width, height));
     let mut colors = 0;
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {

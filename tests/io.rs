@@ -11,7 +11,7 @@ use allocation::largest_allocation;
 use hsad::{
     Error,
     disparity::{DisparityMap, NONE},
-    image::Plane,
+    image::{Plane, Size},
     io::{Calibration, MAX_PIXELS, csv, disparity_png, homography, load, pfm, ply, png},
 };
 use image::{DynamicImage, ImageFormat};
@@ -52,7 +52,7 @@ fn photograph() -> DynamicImage {
 
 /// A 16-bit PNG of 24x16 disparities, some of them missing.
 fn disparities() -> Vec<u8> {
-    let map = DisparityMap::from_fn(24, 16, |x, y| if x == y { NONE } else { (x * 700 + y * 11 + 1) as i32 });
+    let map = DisparityMap::from_fn((24, 16), |x, y| if x == y { NONE } else { (x * 700 + y * 11 + 1) as i32 });
     let mut bytes = Vec::new();
     disparity_png::write(&mut bytes, &map).unwrap();
     bytes
@@ -64,7 +64,7 @@ fn plane<T: std::fmt::Debug + Clone>(value: impl Strategy<Value = T>) -> impl St
         let width = width.min(data.len() as u32);
         let height = data.len() as u32 / width;
         data.truncate((width * height) as usize);
-        Plane::new(width, height, data).unwrap()
+        Plane::new((width, height), data).unwrap()
     })
 }
 
@@ -137,8 +137,8 @@ proptest! {
 
     #[test]
     fn ply_has_a_record_for_each_depth(depth in plane(prop_oneof![0.1..100.0_f32, Just(f32::INFINITY)])) {
-        let (width, height) = depth.size();
-        let picture = Plane::from_fn(width, height, |x, y| [x as u8, y as u8, 1, 255]);
+        let Size { width, height } = depth.size();
+        let picture = Plane::from_fn((width, height), |x, y| [x as u8, y as u8, 1, 255]);
         let calibration = Calibration::centred(50.0, 0.1, 0.0, (width, height)).unwrap();
         let points = ply::points(&depth, &picture, &calibration).unwrap();
         prop_assert_eq!(points.len(), depth.data().iter().filter(|z| z.is_finite()).count());
@@ -158,7 +158,7 @@ proptest! {
     }
 
     #[test]
-    fn pfm_of_mutated_bytes(bytes in mutated(big_endian_pfm(&Plane::from_fn(5, 4, |x, y| (x + y) as f32)))) {
+    fn pfm_of_mutated_bytes(bytes in mutated(big_endian_pfm(&Plane::from_fn((5, 4), |x, y| (x + y) as f32)))) {
         check_pfm(&bytes)?;
     }
 
@@ -468,7 +468,7 @@ fn exif_orientation_is_applied() {
     let upright = load::decode(&bytes, path()).unwrap();
     bytes.splice(2..2, segment);
     let turned = load::decode(&bytes, path()).unwrap();
-    assert_eq!(turned, Plane::from_fn(16, 24, |x, y| upright.get(y, 15 - x)));
+    assert_eq!(turned, Plane::from_fn((16, 24), |x, y| upright.get(y, 15 - x)));
 }
 
 #[test]
@@ -489,7 +489,7 @@ fn the_file_is_named_in_errors() {
 #[test]
 fn lost_disparities_are_counted() {
     let mut bytes = Vec::new();
-    let map = DisparityMap::new(5, 1, vec![-256, 0, 256, 256 * 256, NONE]).unwrap();
+    let map = DisparityMap::new((5, 1), vec![-256, 0, 256, 256 * 256, NONE]).unwrap();
     let lost = disparity_png::write(&mut bytes, &map).unwrap();
     assert_eq!((lost.negative, lost.too_large), (1, 1));
     assert_eq!(disparity_png::decode(&bytes, path()).unwrap().data(), [NONE, 1, 256, NONE, NONE]);

@@ -14,6 +14,7 @@ use hsad::{
     dense::View,
     disparity::NONE,
     gpu::DeviceChoice,
+    image::Size,
     io::{Picture, load, pfm},
     pipeline::{self, RangeSource},
     wgpu,
@@ -25,8 +26,8 @@ fn scene(name: &str) -> std::path::PathBuf {
 
 /// Enlarges a picture: each pixel becomes a block of `factor` x `factor`.
 fn enlarged(picture: &Picture, factor: u32) -> Picture {
-    let (width, height) = picture.size();
-    Picture::from_fn(factor * width, factor * height, |x, y| picture.get(x / factor, y / factor))
+    let Size { width, height } = picture.size();
+    Picture::from_fn((factor * width, factor * height), |x, y| picture.get(x / factor, y / factor))
 }
 
 /// The async functions also work natively, with the device polled by the caller.
@@ -74,7 +75,7 @@ fn a_large_pair_is_seen_at_its_own_size() {
     let (inside, outside): (Vec<i32>, Vec<i32>) = known.partition(|&d| outcome.range.contains(d));
     assert!(outside.len() * 100 < inside.len(), "{} of the truth outside of {:?}", outside.len(), outcome.range);
     assert!(outcome.seeding.rectification.is_rectified());
-    let (width, height) = views.0.size();
+    let Size { width, height } = views.0.size();
     let far = outcome.features[0].iter().filter(|f| f.x > width as f32 / 2.0 && f.x < width as f32).count();
     assert!(far > outcome.features[0].len() / 4, "points are not where the picture is");
     assert!(outcome.features[0].iter().all(|f| f.y < height as f32));
@@ -91,7 +92,7 @@ fn the_paper_searches_from_the_right_view_to_the_right_only() {
     let truth = pfm::read(&folder.join("disp_right.pfm")).unwrap();
     let score = hsad::eval::score(&outcome.dense.disparity, &truth, None, &[1.0]).unwrap();
     // There is no consistency check: only pixels without a partner in the left view have no disparity.
-    let (width, height) = right.size();
+    let Size { width, height } = right.size();
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let has_partner = i64::from(x) + i64::from(outcome.range.min) < i64::from(width);
         assert_eq!(outcome.dense.disparity.get(x, y) != NONE, has_partner, "({x}, {y})");

@@ -37,7 +37,7 @@ fn texture(x: f32, y: f32) -> f32 {
 fn pair(far: f32, near: f32, lower: f32, grey: impl Fn(f32) -> f32) -> (Luma, Luma) {
     let (width, height) = (320, 240);
     let view = |eye: f32, lower: f32, grey: &dyn Fn(f32) -> f32| {
-        Plane::from_fn(width, height, |x, y| {
+        Plane::from_fn((width, height), |x, y| {
             let (x, y) = (x as f32, y as f32 - lower);
             let square = x + eye * near;
             let front = (110.0..210.0).contains(&square) && (70.0..170.0).contains(&y);
@@ -86,7 +86,7 @@ fn shifted_rows_are_told_and_not_trusted() {
 
 #[test]
 fn pictures_that_show_nothing_give_reasons_not_ranges() {
-    let found = find(&(Luma::filled(100, 80, 128), Luma::filled(100, 80, 128)));
+    let found = find(&(Luma::filled((100, 80), 128), Luma::filled((100, 80), 128)));
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
     assert_eq!((found.brightness, found.trust), (None, 0.0));
     let error = Error::from(found.range.unwrap_err());
@@ -96,14 +96,14 @@ fn pictures_that_show_nothing_give_reasons_not_ranges() {
 #[test]
 fn unrelated_pictures_are_not_trusted() {
     let (left, _) = pair(8.0, 30.0, 0.0, |value| value);
-    let other = Plane::from_fn(320, 240, |x, y| texture(y as f32 + 5000.0, x as f32 + 3000.0).round() as u8);
+    let other = Plane::from_fn((320, 240), |x, y| texture(y as f32 + 5000.0, x as f32 + 3000.0).round() as u8);
     let found = find(&(left, other));
     assert!(found.trust < 0.1 && !found.rectification.is_rectified(), "{found:?}");
 }
 
 #[test]
 fn sizes_are_checked() {
-    let (small, large) = (Luma::filled(4, 4, 0), Luma::filled(5, 4, 0));
+    let (small, large) = (Luma::filled((4, 4), 0), Luma::filled((5, 4), 0));
     let none: (&[Feature], &[Feature]) = (&[], &[]);
     let config = SeedingConfig::default();
     assert!(matches!(Seeding::find((&small, &large), none, &config), Err(Error::SizesDiffer { .. })));

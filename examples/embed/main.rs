@@ -17,6 +17,7 @@ use hsad::{
     dense::{Destination, Matcher},
     disparity::DisparityRange,
     gpu::Gpu,
+    image::Size,
     io::{Picture, atomic, load, png},
     luma::Source,
     wgpu::{self, TextureFormat, TextureUsages},
@@ -47,7 +48,7 @@ impl Renderer {
         Ok(Self { device, queue })
     }
 
-    fn texture(&self, (width, height): (u32, u32), format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
+    fn texture(&self, Size { width, height }: Size, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -141,7 +142,7 @@ impl Renderer {
         buffer.map_async(wgpu::MapMode::Read, .., |_| ());
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
         let bytes = buffer.get_mapped_range(..)?;
-        Ok(hsad::image::Plane::from_fn(width, height, |x, y| {
+        Ok(hsad::image::Plane::from_fn((width, height), |x, y| {
             let at = (y * row + 4 * x) as usize;
             [bytes[at], bytes[at + 1], bytes[at + 2]]
         }))
@@ -174,12 +175,14 @@ fn run() -> Result<(), AnyError> {
     let pictures = [load::load(&paths[0])?, load::load(&paths[1])?];
     let size = pictures[0].size();
     let widest = device.limits().max_texture_dimension_2d / 2;
-    if size.0.max(size.1) > widest {
-        return Err(format!("the pictures have {}x{} pixels, and a side can have {widest}", size.0, size.1).into());
+    if size.width.max(size.height) > widest {
+        return Err(
+            format!("the pictures have {}x{} pixels, and a side can have {widest}", size.width, size.height).into()
+        );
     }
     let [left, right] = pictures.each_ref().map(|picture| view(&renderer.upload(picture)));
     let target = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
-    let frame = renderer.texture((2 * size.0, size.1), TextureFormat::Rgba8UnormSrgb, target);
+    let frame = renderer.texture(Size::new(2 * size.width, size.height), TextureFormat::Rgba8UnormSrgb, target);
     let map = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
     let disparities = view(&renderer.texture(size, TextureFormat::R32Float, map));
 

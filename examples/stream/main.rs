@@ -15,6 +15,7 @@ use hsad::{
     dense::DenseConfig,
     disparity::{DisparityRange, NONE},
     gpu::Gpu,
+    image::Size,
     io::{Picture, load},
     pipeline::equalising,
     seeding::Seeding,
@@ -30,7 +31,7 @@ const SLOTS: usize = 3;
 /// Seeding runs on one frame out of this many.
 const SEEDED: usize = 8;
 /// Width and height of a frame, in pixels.
-const SIZE: (u32, u32) = (256, 192);
+const SIZE: Size = Size::new(256, 192);
 
 /// The cameras.
 struct Scene {
@@ -41,9 +42,9 @@ struct Scene {
 impl Scene {
     /// The views of both cameras at a time.
     fn frame(&self, index: usize) -> [Picture; 2] {
-        let (width, height) = self.views[0].size();
-        let (x0, y0) = ((3 * index as u32) % (width - SIZE.0), index as u32 % (height - SIZE.1));
-        let crop = |view: &Picture| Picture::from_fn(SIZE.0, SIZE.1, |x, y| view.get(x0 + x, y0 + y));
+        let Size { width, height } = self.views[0].size();
+        let (x0, y0) = ((3 * index as u32) % (width - SIZE.width), index as u32 % (height - SIZE.height));
+        let crop = |view: &Picture| Picture::from_fn(SIZE, |x, y| view.get(x0 + x, y0 + y));
         let [left, right] = [crop(&self.views[0]), crop(&self.views[1])];
         let darker = |level: u8| (u16::from(level) * 2 / 3) as u8;
         let is_dark = index >= self.frames / 2;
@@ -124,7 +125,7 @@ fn run(stream: &mut Stream, scene: &Scene, in_turn: bool, mut tell: impl FnMut(F
 fn tell(FrameResult { index, map, seeding }: FrameResult) {
     let known: Vec<i32> = map.disparity.into_data().into_iter().filter(|&disparity| disparity != NONE).collect();
     let mean = known.iter().map(|&d| f64::from(d) / 256.0).sum::<f64>() / known.len().max(1) as f64;
-    let coverage = 100.0 * known.len() as f64 / f64::from(SIZE.0 * SIZE.1);
+    let coverage = 100.0 * known.len() as f64 / f64::from(SIZE.width * SIZE.height);
     print!("frame {index:3}  coverage {coverage:5.1} %  mean disparity {mean:5.2} px");
     match seeding.and_then(|seeding| Some((seeding.seeds.len(), seeding.brightness?))) {
         Some((seeds, brightness)) => println!("  {seeds} seeds, right view {:.2} times as bright", brightness.gain),

@@ -6,6 +6,7 @@ use hsad::{
     dense::{Dense, DenseConfig, Inputs, MapReadback, Matcher},
     features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
     gpu::{Gpu, block_on},
+    image::Size,
     io::Picture,
     luma::Source,
     seeding::{Seeding, SeedingConfig},
@@ -32,7 +33,7 @@ pub struct Engine {
 }
 
 impl Engine {
-    pub fn new(gpu: &Gpu, size: (u32, u32), config: DenseConfig) -> hsad::Result<Self> {
+    pub fn new(gpu: &Gpu, size: Size, config: DenseConfig) -> hsad::Result<Self> {
         let matcher = Matcher::new(gpu, size, &config)?;
         // A small capacity, so that little has to be read back.
         let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
@@ -63,7 +64,7 @@ struct Sent {
 }
 
 impl Slot {
-    pub fn new(engine: &Rc<Engine>, (width, height): (u32, u32)) -> hsad::Result<Self> {
+    pub fn new(engine: &Rc<Engine>, Size { width, height }: Size) -> hsad::Result<Self> {
         let textures = [0; 2].map(|_| {
             engine.gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("camera"),

@@ -19,6 +19,7 @@ use hsad::{
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
+    image::Size,
     io::Calibration,
     kamencay::KamencayParameters,
     matching::MatchConfig,
@@ -333,7 +334,7 @@ impl DepthOptions {
     /// # Errors
     /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read or belongs to pictures of another size,
     /// [`Error::Parameter`] for values outside their range.
-    pub fn calibration(&self, size: (u32, u32)) -> Result<Option<Calibration>> {
+    pub fn calibration(&self, size: Size) -> Result<Option<Calibration>> {
         let calibration = match (&self.calib, self.focal, self.baseline) {
             (Some(path), ..) => {
                 let calibration = Calibration::read(path)?;

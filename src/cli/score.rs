@@ -66,12 +66,12 @@ mod tests {
 
     #[test]
     fn every_bit_comes_back() {
-        let map = Plane::from_fn(17, 3, |x, y| if x == 4 { f32::NAN } else { (x * x * 31 % 19 + y) as f32 / 3.0 });
-        let found = score_pixels(&map, &Plane::filled(17, 3, 2.2), None, &[0.5, 0.1]).unwrap();
+        let map = Plane::from_fn((17, 3), |x, y| if x == 4 { f32::NAN } else { (x * x * 31 % 19 + y) as f32 / 3.0 });
+        let found = score_pixels(&map, &Plane::filled((17, 3), 2.2), None, &[0.5, 0.1]).unwrap();
         let text = to_json(&found).to_string();
         assert_eq!(from_json(&serde_json::from_str(&text).unwrap()).unwrap(), found);
 
-        let empty = score_pixels(&Plane::filled(2, 2, f32::NAN), &Plane::filled(2, 2, 1.0), None, &[1.0]).unwrap();
+        let empty = score_pixels(&Plane::filled((2, 2), f32::NAN), &Plane::filled((2, 2), 1.0), None, &[1.0]).unwrap();
         let value = to_json(&empty);
         assert_eq!((&value["average_error_px"], &value["bad"][0]["of_all"]), (&Value::Null, &json!(1.0)));
         assert!(from_json(&value).unwrap().a50.is_nan());

@@ -1,6 +1,6 @@
 //! The summary of a run that is printed on the terminal.
 
-use hsad::{disparity::coverage, pipeline::RangeSource, seeding::Verdict};
+use hsad::{disparity::coverage, image::Size, pipeline::RangeSource, seeding::Verdict};
 
 use super::{
     job::{CompletedJob, span},
@@ -25,13 +25,13 @@ impl CompletedJob {
         let steps: Vec<String> =
             outcome.times.iter().map(|(step, time)| format!("{} {:.2}", step.name(), time.as_secs_f64())).collect();
         let [left, right] = outcome.features.each_ref().map(Vec::len);
-        let (width, height) = job.left.size();
+        let Size { width, height } = job.left.size();
         let mut text = String::new();
         line(
             &mut text,
             "device",
             match backend.api().as_str() {
-                "none" => backend.name().into(),
+                "none" => backend.name(),
                 api => format!("{} ({api})", backend.name()),
             },
         );

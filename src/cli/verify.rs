@@ -13,8 +13,9 @@ use clap::Args;
 use hsad::{
     Error,
     gpu::{DeviceChoice, Gpu},
+    image::Size,
     io::atomic,
-    verify::{Array, Bench, Case, Comparison, Extent, Outcome, SIZES, Size, Tolerance, cases},
+    verify::{Array, Bench, Case, Comparison, Extent, Outcome, SIZES, Tolerance, cases},
 };
 use serde_json::{Value, json};
 
@@ -67,7 +68,7 @@ pub struct Verify {
 fn size(text: &str) -> Result<Size, String> {
     let sides =
         text.split_once(['x', 'X']).and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    sides.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 311x239".into())
+    sides.map(Size::from).ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 311x239".into())
 }
 
 impl Verify {
@@ -165,8 +166,8 @@ impl Verify {
         };
         json!({
             "kernel": case.subject.name,
-            "width": case.size.0,
-            "height": case.size.1,
+            "width": case.size.width,
+            "height": case.size.height,
             "seed": case.seed,
             "parameters": parameters,
             "arrays": comparisons.iter().map(array).collect::<Vec<_>>(),
@@ -208,7 +209,7 @@ fn row(outcome: &Outcome) -> String {
             (largest + &off, worst.tolerance.text())
         }
     };
-    let (width, height) = case.size;
+    let Size { width, height } = case.size;
     let mut text = format!(
         "{:<17}{:<9}{:>4}  {difference:<20}{tolerance:<26}{:<7}{:>9}{:>10}\n",
         case.subject.name,
@@ -235,7 +236,7 @@ fn time(time: Duration) -> String {
 /// earlier run first.
 fn write_failure(folder: &Path, device: &str, outcome: &Outcome, command: &str) -> hsad::Result<()> {
     let Outcome { case, parameters, faults, input, expected, actual, .. } = outcome;
-    let (width, height) = case.size;
+    let Size { width, height } = case.size;
     let folder = folder.join(format!("{}-{width}x{height}-{}", case.subject.name, case.seed));
     let failed = |source| Error::Io { path: folder.clone(), source };
     fs::create_dir_all(&folder).and_then(|()| remove_old_arrays(&folder)).map_err(failed)?;
@@ -282,7 +283,7 @@ mod tests {
         let (actual, expected) = (words(&[1, 3]), words(&[1, 2]));
         let comparison = Comparison::new(&actual, &expected);
         Outcome {
-            case: Case::new("pad", (17, 13), 5).unwrap(),
+            case: Case::new("pad", Size::new(17, 13), 5).unwrap(),
             parameters: "just so".into(),
             device_time: Duration::from_millis(2),
             twin_time: Duration::from_secs(1),
@@ -324,7 +325,7 @@ mod tests {
 
     #[test]
     fn sizes_are_width_and_height() {
-        assert_eq!(size("311x239"), Ok((311, 239)));
+        assert_eq!(size("311x239"), Ok(Size::new(311, 239)));
         for text in ["311", "311x", "x9", "1x2x3", "-1x2", "axb", ""] {
             assert!(size(text).is_err(), "{text}");
         }

@@ -10,8 +10,6 @@ use super::{
     plan::{BandLimits, Plan, WordCopy, blocks, costs},
     readback::MapReadback,
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::gpu::block_on;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
@@ -22,6 +20,8 @@ use crate::{
     image::{Luma, Plane},
     luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::{gpu::block_on, image::Size};
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl Dense {
 #[derive(Debug)]
 pub struct Matcher {
     gpu: Gpu,
-    size: (u32, u32),
+    size: Size,
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
     plan: Plan,
@@ -73,7 +73,7 @@ impl Matcher {
     /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
     /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(gpu: &Gpu, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+    pub fn new(gpu: &Gpu, size: impl Into<Size>, config: &DenseConfig) -> Result<Self> {
         block_on(Self::new_async(gpu, size, config))
     }
 
@@ -81,7 +81,7 @@ impl Matcher {
     ///
     /// # Errors
     /// As [`Matcher::new`].
-    pub async fn new_async(gpu: &Gpu, size: (u32, u32), config: &DenseConfig) -> Result<Self> {
+    pub async fn new_async(gpu: &Gpu, size: impl Into<Size>, config: &DenseConfig) -> Result<Self> {
         Self::with_band_rows(gpu, size, config, u32::MAX).await
     }
 
@@ -89,14 +89,19 @@ impl Matcher {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub async fn with_band_rows(gpu: &Gpu, size: (u32, u32), config: &DenseConfig, band_rows: u32) -> Result<Self> {
-        Self::build(gpu, size, config, None, band_rows).await
+    pub async fn with_band_rows(
+        gpu: &Gpu,
+        size: impl Into<Size>,
+        config: &DenseConfig,
+        band_rows: u32,
+    ) -> Result<Self> {
+        Self::build(gpu, size.into(), config, None, band_rows).await
     }
 
     /// As [`Self::new`], of packed luma that is on the device already.
     pub(crate) async fn with_luma(
         gpu: &Gpu,
-        size: (u32, u32),
+        size: Size,
         config: &DenseConfig,
         luma: [wgpu::Buffer; 2],
     ) -> Result<Self> {
@@ -105,7 +110,7 @@ impl Matcher {
 
     async fn build(
         gpu: &Gpu,
-        size: (u32, u32),
+        size: Size,
         config: &DenseConfig,
         luma: Option<[wgpu::Buffer; 2]>,
         band_rows: u32,
@@ -114,7 +119,7 @@ impl Matcher {
         check_size(size)?;
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
-            let buffer = |label| storage_buffer(gpu, label, packed_bytes(size.0, size.1));
+            let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
             let luma = match luma {
                 Some(luma) => luma,
                 None => [buffer("left luma")?, buffer("right luma")?],
@@ -189,9 +194,9 @@ impl Matcher {
         disparities: Destination<'_>,
         confidences: Option<&wgpu::Buffer>,
     ) -> Result<Outputs> {
-        let (width, height) = self.size;
+        let Size { width, height } = self.size;
         if let Some(buffer) = confidences {
-            check_buffer("the confidences", buffer, packed_bytes(width, height), wgpu::BufferUsages::COPY_DST)?;
+            check_buffer("the confidences", buffer, packed_bytes((width, height)), wgpu::BufferUsages::COPY_DST)?;
         }
         let disparities = match disparities {
             Destination::Buffer(buffer) => {
@@ -229,7 +234,7 @@ impl Matcher {
         let stored = &self.map_textures[texel as usize];
         let (kernel, dispatches) = guarded(&self.gpu, name, || {
             let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(&self.gpu, texel));
-            let width = self.size.0;
+            let width = self.size.width;
             let dispatch = |answer: &WordCopy| {
                 let row = |word: u64| (word / u64::from(width)) as u32;
                 let (rows, first_row) = (row(answer.words), row(answer.to_word));
@@ -303,7 +308,7 @@ impl Matcher {
     pub async fn readback(&self) -> Result<MapReadback> {
         let (gpu, size) = (&self.gpu, self.size);
         let [disparities, confidences] = guarded(gpu, "the disparity map", || {
-            let bytes = [4 * u64::from(size.0) * u64::from(size.1), packed_bytes(size.0, size.1)];
+            let bytes = [4 * u64::from(size.width) * u64::from(size.height), packed_bytes(size)];
             Ok([Readback::new(gpu, "disparities", bytes[0]), Readback::new(gpu, "confidences", bytes[1])])
         })
         .await?;

@@ -1,12 +1,17 @@
 //! A map on its way back to the host.
 
 use super::{Dense, Outputs};
-use crate::{error::Result, gpu::Readback, image::Plane, luma::unpack};
+use crate::{
+    error::Result,
+    gpu::Readback,
+    image::{Plane, Size},
+    luma::unpack,
+};
 
 /// Memory of the host for a matcher's map: see [`super::Matcher::readback`].
 #[derive(Debug)]
 pub struct MapReadback {
-    pub(super) size: (u32, u32),
+    pub(super) size: Size,
     pub(super) outputs: Outputs,
     pub(super) disparities: Readback,
     pub(super) confidences: Readback,
@@ -24,9 +29,9 @@ impl MapReadback {
     /// # Errors
     /// [`crate::Error::DeviceLost`].
     pub async fn read(&self) -> Result<Dense> {
-        let (width, height) = self.size;
-        let disparity = Plane::new(width, height, self.disparities.read(width as usize * height as usize).await?)?;
+        let Size { width, height } = self.size;
+        let disparity = Plane::new((width, height), self.disparities.read(width as usize * height as usize).await?)?;
         let words: Vec<u32> = self.confidences.read(width.div_ceil(4) as usize * height as usize).await?;
-        Ok(Dense { disparity, confidence: unpack(width, height, &words) })
+        Ok(Dense { disparity, confidence: unpack((width, height), &words) })
     }
 }

@@ -181,8 +181,8 @@ mod tests {
     use crate::image::Plane;
 
     fn truth() -> Truth {
-        let disparities = Plane::from_fn(100, 80, |_, y| if y == 79 { f32::INFINITY } else { 10.0 });
-        let nonocc = Plane::from_fn(100, 80, |_, y| if y == 78 { 0 } else { 255 });
+        let disparities = Plane::from_fn((100, 80), |_, y| if y == 79 { f32::INFINITY } else { 10.0 });
+        let nonocc = Plane::from_fn((100, 80), |_, y| if y == 78 { 0 } else { 255 });
         Truth::stereo(disparities, Some(&nonocc)).unwrap()
     }
 

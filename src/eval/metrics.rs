@@ -5,7 +5,7 @@
 use crate::{
     disparity::{self, DisparityMap},
     error::{Error, Result},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// Mask value of scored pixels.
@@ -148,14 +148,14 @@ fn quantile(sorted: &[f64], percent: usize) -> f64 {
     rank.checked_sub(1).map_or(f64::NAN, |index| sorted[index])
 }
 
-fn same_size(name: &'static str, size: (u32, u32), map_size: (u32, u32)) -> Result<()> {
+fn same_size(name: &'static str, size: Size, map_size: Size) -> Result<()> {
     if size == map_size {
         return Ok(());
     }
     Err(Error::Parameter {
         name,
-        value: format!("{}x{} pixels", size.0, size.1),
-        expected: format!("the disparity map has {}x{}", map_size.0, map_size.1),
+        value: format!("{}x{} pixels", size.width, size.height),
+        expected: format!("the disparity map has {}x{}", map_size.width, map_size.height),
     })
 }
 
@@ -165,11 +165,11 @@ mod tests {
     use crate::disparity::NONE;
 
     fn truth() -> Plane<f32> {
-        Plane::new(3, 2, vec![1.0, 2.0, f32::INFINITY, 4.0, 0.0, -3.5]).unwrap()
+        Plane::new((3, 2), vec![1.0, 2.0, f32::INFINITY, 4.0, 0.0, -3.5]).unwrap()
     }
 
     fn map(values: [i32; 6]) -> DisparityMap {
-        Plane::new(3, 2, values.to_vec()).unwrap()
+        Plane::new((3, 2), values.to_vec()).unwrap()
     }
 
     #[test]
@@ -217,7 +217,7 @@ mod tests {
         assert_eq!(all.d1, Outliers { of_known: 2.0 / 5.0, of_estimated: 1.0 / 4.0 });
 
         // 128 is not 255: only pixels 0, 3 and 4 are scored.
-        let mask = Plane::new(3, 2, vec![255, 128, 255, 255, 255, 0]).unwrap();
+        let mask = Plane::new((3, 2), vec![255, 128, 255, 255, 255, 0]).unwrap();
         let masked = score(&map, &truth(), Some(&mask), &[1.0]).unwrap();
         assert_eq!((masked.known, masked.estimated), (3, 2));
         assert_eq!(masked.bad[0], Bad { threshold: 1.0, of_known: 2.0 / 3.0, of_estimated: 0.5 });
@@ -228,8 +228,8 @@ mod tests {
     #[test]
     fn quantiles_by_hand() {
         // Errors 1 to 200: half of them are at most 100, 90 % at most 180, 99 % at most 198.
-        let map = Plane::from_fn(200, 1, |x, _| (x * 77 % 200 + 1) as f32);
-        let score = score_pixels(&map, &Plane::filled(200, 1, 0.0), None, &[]).unwrap();
+        let map = Plane::from_fn((200, 1), |x, _| (x * 77 % 200 + 1) as f32);
+        let score = score_pixels(&map, &Plane::filled((200, 1), 0.0), None, &[]).unwrap();
         assert_eq!((score.a50, score.a90, score.a99), (100.0, 180.0, 198.0));
         // Half of three values are at most the second one.
         assert_eq!([1, 50, 67, 100].map(|percent| quantile(&[1.0, 2.0, 5.0], percent)), [1.0, 2.0, 5.0, 5.0]);
@@ -246,12 +246,12 @@ mod tests {
         for round in 0..50 {
             let (width, height) = (1 + random(20), 1 + random(20));
             let mut sparse = |scale: f32| {
-                Plane::from_fn(width, height, |_, _| {
+                Plane::from_fn((width, height), |_, _| {
                     if random(5) == 0 { f32::INFINITY } else { random(4000) as f32 / scale - 9.0 }
                 })
             };
             let (map, truth) = (sparse(256.0), sparse(250.0));
-            let mask = Plane::from_fn(width, height, |_, _| [0, 128, 255, 255][random(4) as usize]);
+            let mask = Plane::from_fn((width, height), |_, _| [0, 128, 255, 255][random(4) as usize]);
             let found = score_pixels(&map, &truth, Some(&mask), &[0.5, 4.0]).unwrap();
 
             let pixels = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -285,15 +285,15 @@ mod tests {
     /// 5 % of 100 px are 5 px; 5 % of 40 px are 2 px, and the limit of 3 px decides.
     #[test]
     fn outliers_by_hand() {
-        let truth = Plane::new(7, 1, vec![100.0, 100.0, 40.0, 40.0, -100.0, 0.0, f32::INFINITY]).unwrap();
-        let map = Plane::new(7, 1, vec![104.9, 105.1, 42.9, 43.1, -105.1, f32::INFINITY, 9.0]).unwrap();
+        let truth = Plane::new((7, 1), vec![100.0, 100.0, 40.0, 40.0, -100.0, 0.0, f32::INFINITY]).unwrap();
+        let map = Plane::new((7, 1), vec![104.9, 105.1, 42.9, 43.1, -105.1, f32::INFINITY, 9.0]).unwrap();
         let score = score_pixels(&map, &truth, None, &[]).unwrap();
         assert_eq!(score.d1, Outliers { of_known: 4.0 / 6.0, of_estimated: 3.0 / 5.0 });
     }
 
     #[test]
     fn a_map_in_pixels_is_not_rounded() {
-        let map = Plane::new(3, 2, vec![1.001, 2.0, f32::NAN, f32::INFINITY, 0.0, -3.5]).unwrap();
+        let map = Plane::new((3, 2), vec![1.001, 2.0, f32::NAN, f32::INFINITY, 0.0, -3.5]).unwrap();
         let score = score_pixels(&map, &truth(), None, &[0.0005]).unwrap();
         assert_eq!((score.known, score.estimated), (5, 4));
         assert_eq!(score.bad[0].of_estimated, 0.25);
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn nothing_known_gives_no_figures() {
-        let unknown = Plane::filled(3, 2, f32::NAN);
+        let unknown = Plane::filled((3, 2), f32::NAN);
         let score = score(&map([0; 6]), &unknown, None, &[1.0]).unwrap();
         assert_eq!(score.known, 0);
         assert!(score.bad[0].of_known.is_nan() && score.coverage().is_nan());
@@ -312,8 +312,8 @@ mod tests {
     fn sizes_and_thresholds_are_checked() {
         let map = map([0; 6]);
         let message = |result: Result<Score>| result.unwrap_err().to_string();
-        assert!(message(score(&map, &Plane::filled(2, 3, 0.0), None, &[])).contains("the truth is 2x3"));
-        assert!(message(score(&map, &truth(), Some(&Plane::filled(1, 1, 0)), &[])).contains("the mask is 1x1"));
+        assert!(message(score(&map, &Plane::filled((2, 3), 0.0), None, &[])).contains("the truth is 2x3"));
+        assert!(message(score(&map, &truth(), Some(&Plane::filled((1, 1), 0)), &[])).contains("the mask is 1x1"));
         assert!(message(score(&map, &truth(), None, &[f32::NAN])).contains("threshold"));
     }
 }

@@ -117,7 +117,7 @@ mod tests {
     }
 
     fn shift(disparity: f32) -> Truth {
-        Truth::stereo(Plane::filled(100, 80, disparity), None).unwrap()
+        Truth::stereo(Plane::filled((100, 80), disparity), None).unwrap()
     }
 
     #[test]
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn sizes_and_distances_are_those_of_the_first_view() {
-        let larger = "scale=2".parse::<Condition>().unwrap().apply(&Picture::filled(100, 80, [0; 4]), 1);
+        let larger = "scale=2".parse::<Condition>().unwrap().apply(&Picture::filled((100, 80), [0; 4]), 1);
         let truth = shift(0.0).changed(&larger);
         let first = [point(50.0, 40.0, 2.0)];
         let place = truth.locate(first[0].at).unwrap();

@@ -14,7 +14,7 @@ use super::{Score, score_pixels};
 use crate::{
     dense::View,
     error::{Error, Result},
-    image::Plane,
+    image::{Plane, Size},
     io::{Picture, disparities, load},
 };
 
@@ -270,15 +270,15 @@ fn no_scene(path: &Path, what: &str) -> Error {
     }
 }
 
-fn same_size(path: &Path, (width, height): (u32, u32), views: (u32, u32)) -> Result<()> {
-    if (width, height) == views {
+fn same_size(path: &Path, Size { width, height }: Size, views: Size) -> Result<()> {
+    if Size::new(width, height) == views {
         return Ok(());
     }
     Err(Error::Format {
         path: path.into(),
         reason: format!(
             "its size is {width}x{height} and that of the views {}x{}: it belongs to other pictures",
-            views.0, views.1
+            views.width, views.height
         ),
     })
 }
@@ -297,7 +297,7 @@ mod tests {
             let path = folder.join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             let mut bytes = Vec::new();
-            png::write_grey8(&mut bytes, &Plane::filled(3, 2, grey)).unwrap();
+            png::write_grey8(&mut bytes, &Plane::filled((3, 2), grey)).unwrap();
             std::fs::write(path, bytes).unwrap();
         }
     }
@@ -305,7 +305,7 @@ mod tests {
     /// Writes a map of 3x2 disparities as PNG or PFM, by the file extension.
     fn map(path: &Path, disparities: [i32; 6]) {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        let (map, mut bytes) = (DisparityMap::new(3, 2, disparities.to_vec()).unwrap(), Vec::new());
+        let (map, mut bytes) = (DisparityMap::new((3, 2), disparities.to_vec()).unwrap(), Vec::new());
         if path.extension().unwrap() == "png" {
             disparity_png::write(&mut bytes, &map).unwrap();
         } else {
@@ -341,7 +341,7 @@ mod tests {
         assert_eq!((right.truth.get(0, 0), right.non_occluded.as_ref().unwrap().get(0, 0)), (1.0, 0));
         assert_eq!(right.reference_view().rgb(0, 0), [2; 3]);
 
-        let scores = scene.score(&Plane::filled(3, 2, 1.0)).unwrap();
+        let scores = scene.score(&Plane::filled((3, 2), 1.0)).unwrap();
         assert_eq!((scores.all.known, scores.all.average), (5, 6.5 / 5.0));
         assert_eq!(scores.non_occluded, Some(scores.all));
         std::fs::remove_file(path.join("nonocc.png")).unwrap();
@@ -402,7 +402,7 @@ mod tests {
         assert!(message(path).contains("disp_left.pfm: its size is 1x1 and that of the views 3x2"));
         map(&path.join("disp_left.pfm"), KNOWN);
         let mut bytes = Vec::new();
-        png::write_grey8(&mut bytes, &Plane::filled(2, 2, 255)).unwrap();
+        png::write_grey8(&mut bytes, &Plane::filled((2, 2), 255)).unwrap();
         std::fs::write(path.join("nonocc.png"), &bytes).unwrap();
         assert!(message(path).contains("nonocc.png: its size is 2x2"));
         std::fs::write(path.join("right.png"), &bytes).unwrap();

@@ -6,15 +6,15 @@ use glam::{DAffine2, DMat2, DMat3, DVec2, DVec3};
 use super::conditions::{Changed, VISIBLE, value_at};
 use crate::{
     error::{Error, Result},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// Ground truth of a pair of views.
 #[derive(Clone, Debug)]
 pub struct Truth {
     model: Model,
-    first_size: (u32, u32),
-    second_size: (u32, u32),
+    first_size: Size,
+    second_size: Size,
     /// Change of the second view: map from its original to its changed pixels, and mask of what is [`VISIBLE`].
     change: Option<(DAffine2, Plane<u8>)>,
 }
@@ -45,7 +45,7 @@ impl Truth {
     /// # Errors
     /// [`Error::Parameter`] if the sizes differ.
     pub fn stereo(disparities: Plane<f32>, nonocc: Option<&Plane<u8>>) -> Result<Self> {
-        let (width, height) = disparities.size();
+        let Size { width, height } = disparities.size();
         if let Some(mask) = nonocc.filter(|mask| mask.size() != (width, height)) {
             return Err(Error::Parameter {
                 name: "the mask",
@@ -55,10 +55,10 @@ impl Truth {
         }
         let partner = |x: u32, y: u32| f64::from(x) - f64::from(disparities.get(x, y));
         let in_picture = |x: f64| (-0.5..f64::from(width) - 0.5).contains(&x);
-        let shown = Plane::from_fn(width, height, |x, y| {
+        let shown = Plane::from_fn((width, height), |x, y| {
             in_picture(partner(x, y)) && nonocc.is_none_or(|mask| mask.get(x, y) == 255)
         });
-        let mut claimed = Plane::filled(width, height, false);
+        let mut claimed = Plane::filled((width, height), false);
         for y in 0..height {
             for x in (0..width).filter(|&x| shown.get(x, y)) {
                 // Both neighbouring columns, so that a surface which is larger in the second view has no gaps.
@@ -68,7 +68,7 @@ impl Truth {
             }
         }
         let model = Model::Stereo { disparities, shown, claimed };
-        Ok(Self { model, first_size: (width, height), second_size: (width, height), change: None })
+        Ok(Self { model, first_size: Size::new(width, height), second_size: Size::new(width, height), change: None })
     }
 
     /// Ground truth of two views of a plane, or of two views from one position: the homography `matrix` maps `(x, y,
@@ -76,7 +76,8 @@ impl Truth {
     ///
     /// # Errors
     /// [`Error::Parameter`] if the matrix has no inverse.
-    pub fn homography(matrix: DMat3, first_size: (u32, u32), second_size: (u32, u32)) -> Result<Self> {
+    pub fn homography(matrix: DMat3, first_size: impl Into<Size>, second_size: impl Into<Size>) -> Result<Self> {
+        let (first_size, second_size) = (first_size.into(), second_size.into());
         let inverse = matrix.inverse();
         if !matrix.is_finite() || !inverse.is_finite() {
             return Err(Error::Parameter {
@@ -99,7 +100,7 @@ impl Truth {
     }
 
     /// Width and height of the first and the second view, in pixels.
-    pub fn sizes(&self) -> [(u32, u32); 2] {
+    pub fn sizes(&self) -> [Size; 2] {
         [self.first_size, self.second_size]
     }
 
@@ -164,7 +165,7 @@ impl Truth {
 }
 
 /// Whether the position lies in a pixel of a picture of this size.
-fn lies_in(place: DVec2, (width, height): (u32, u32)) -> bool {
+fn lies_in(place: DVec2, Size { width, height }: Size) -> bool {
     let inside = |at: f64, side: u32| at >= -0.5 && at < f64::from(side) - 0.5;
     inside(place.x, width) && inside(place.y, height)
 }
@@ -184,8 +185,8 @@ mod tests {
 
     fn stereo() -> Truth {
         // Columns 0 and 1 leave the picture, column 4 is unknown, column 5 is occluded.
-        let disparities = Plane::from_fn(9, 3, |x, _| if x == 4 { f32::INFINITY } else { 2.0 });
-        let nonocc = Plane::from_fn(9, 3, |x, _| if x == 5 { 0 } else { 255 });
+        let disparities = Plane::from_fn((9, 3), |x, _| if x == 4 { f32::INFINITY } else { 2.0 });
+        let nonocc = Plane::from_fn((9, 3), |x, _| if x == 5 { 0 } else { 255 });
         Truth::stereo(disparities, Some(&nonocc)).unwrap()
     }
 
@@ -203,7 +204,7 @@ mod tests {
 
     #[test]
     fn a_change_of_the_second_view_moves_and_hides() {
-        let picture = Picture::filled(9, 3, [0; 4]);
+        let picture = Picture::filled((9, 3), [0; 4]);
         let turned = "rotation=90".parse::<Condition>().unwrap().apply(&picture, 1);
         let truth = stereo().changed(&turned);
         // (6, 1) corresponds to (4, 1) of the second view, its centre; (8, 1) to (6, 1), which rotates to two rows
@@ -248,6 +249,8 @@ mod tests {
     fn what_is_no_truth_is_refused() {
         let message = |truth: Result<Truth>| truth.unwrap_err().to_string();
         assert!(message(Truth::homography(DMat3::ZERO, (9, 9), (9, 9))).contains("have an inverse"));
-        assert!(message(Truth::stereo(Plane::filled(3, 3, 0.0), Some(&Plane::filled(2, 3, 0)))).contains("2x3 pixels"));
+        assert!(
+            message(Truth::stereo(Plane::filled((3, 3), 0.0), Some(&Plane::filled((2, 3), 0)))).contains("2x3 pixels")
+        );
     }
 }

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer, try_recording},
-    image::Luma,
+    image::{Luma, Size},
     luma::{check_packed, check_size, upload},
 };
 
@@ -35,7 +35,7 @@ pub struct Detector {
     list: KeypointList,
     groups: wgpu::Buffer,
     descriptors: wgpu::Buffer,
-    size: (u32, u32),
+    size: Size,
     integral_rows: IntegralRows,
     /// From the sums along the rows to the descriptors, in order.
     dispatches: Vec<Dispatch>,
@@ -56,7 +56,8 @@ impl Detector {
     /// # Errors
     /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
     /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
-    pub async fn new(gpu: &Gpu, size: (u32, u32), config: &FeatureConfig) -> Result<Self> {
+    pub async fn new(gpu: &Gpu, size: impl Into<Size>, config: &FeatureConfig) -> Result<Self> {
+        let size = size.into();
         config.validate()?;
         check_size(size)?;
         check_limits(gpu)?;

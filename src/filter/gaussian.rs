@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::grey;
-use crate::image::Plane;
+use crate::image::{Plane, Size};
 
 /// Smooths by a Gaussian of standard deviation `sigma` in pixels (0: none), truncated at 3 `sigma`; border pixels are
 /// repeated beyond the edge.
@@ -16,8 +16,8 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
     let total: f64 = (-reach..=reach).map(weight).sum();
     let weights: Vec<(i64, f64)> = (-reach..=reach).map(|i| (i, weight(i) / total)).collect();
 
-    let (width, height) = plane.size();
-    let along_rows: Plane<[f64; N]> = in_parallel(width, height, |x, y| {
+    let Size { width, height } = plane.size();
+    let along_rows: Plane<[f64; N]> = in_parallel(Size { width, height }, |x, y| {
         let mut sum = [0.0; N];
         for &(i, weight) in &weights {
             let pixel = plane.get_clamped(i64::from(x) + i, y.into());
@@ -25,7 +25,7 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
         }
         sum
     });
-    in_parallel(width, height, |x, y| {
+    in_parallel(Size { width, height }, |x, y| {
         let mut sum = [0.0; N];
         for &(i, weight) in &weights {
             let pixel = along_rows.get_clamped(x.into(), i64::from(y) + i);
@@ -36,10 +36,11 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
 }
 
 /// As [`Plane::from_fn`], with rows computed in parallel.
-fn in_parallel<T: Clone + Send>(width: u32, height: u32, value: impl Fn(u32, u32) -> T + Sync) -> Plane<T> {
+fn in_parallel<T: Clone + Send>(size: Size, value: impl Fn(u32, u32) -> T + Sync) -> Plane<T> {
+    let Size { width, height } = size;
     let row = |y| (0..width).map(|x| value(x, y)).collect::<Vec<T>>();
     let rows: Vec<Vec<T>> = (0..height).into_par_iter().map(row).collect();
-    Plane::from_fn(width, height, |x, y| rows[y as usize][x as usize].clone())
+    Plane::from_fn((width, height), |x, y| rows[y as usize][x as usize].clone())
 }
 
 #[cfg(test)]
@@ -48,7 +49,7 @@ mod tests {
 
     #[test]
     fn a_point_becomes_a_gaussian() {
-        let mut point = Plane::filled(41, 41, [0, 255]);
+        let mut point = Plane::filled((41, 41), [0, 255]);
         point.set(20, 20, [255, 255]);
         let smooth = gaussian(&point, 1.0);
         // 255 / (2 pi) = 40.6 in the middle, exp(-1/2) of that beside it and exp(-1) diagonally.

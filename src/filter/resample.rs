@@ -3,13 +3,14 @@
 use glam::{DAffine2, DVec2};
 
 use super::grey;
-use crate::image::Plane;
+use crate::image::{Plane, Size};
 
 /// Similarity about the centre of a picture of `size` (width and height in pixels): rotates by `angle` degrees,
 /// clockwise on the screen, and enlarges by `scale`.
 ///
 /// Multiples of 90 degrees are exact; other angles are exact up to the rounding of `f64`.
-pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAffine2 {
+pub fn about_centre(size: impl Into<Size>, angle: f64, scale: f64) -> DAffine2 {
+    let Size { width, height } = size.into();
     let quarters = (angle / 90.0).round();
     let rest = (angle - 90.0 * quarters).to_radians();
     let (sin, cos) = (libm::sin(rest), libm::cos(rest));
@@ -32,18 +33,23 @@ pub fn about_centre((width, height): (u32, u32), angle: f64, scale: f64) -> DAff
 pub fn resample<const N: usize>(
     plane: &Plane<[u8; N]>,
     map: DAffine2,
-    size: (u32, u32),
+    size: impl Into<Size>,
     fill: [u8; N],
 ) -> (Plane<[u8; N]>, Plane<u8>) {
-    let (width, height) = plane.size();
+    let size = size.into();
+    let Size { width, height } = plane.size();
     let back = map.inverse();
     let samples = ((1.0 / map.matrix2.determinant().abs().sqrt() - 1e-9).ceil() as u32).clamp(1, 8);
     let offsets: Vec<f64> = (0..samples).map(|i| (f64::from(i) + 0.5) / f64::from(samples) - 0.5).collect();
     let inside = |p: DVec2| p.x >= -0.5 && p.y >= -0.5 && p.x < f64::from(width) - 0.5 && p.y < f64::from(height) - 0.5;
-    let visible = Plane::from_fn(size.0, size.1, |x, y| {
-        if inside(back.transform_point2(DVec2::new(x.into(), y.into()))) { 255 } else { 0 }
-    });
-    let changed = Plane::from_fn(size.0, size.1, |x, y| {
+    let visible =
+        Plane::from_fn(
+            size,
+            |x, y| {
+                if inside(back.transform_point2(DVec2::new(x.into(), y.into()))) { 255 } else { 0 }
+            },
+        );
+    let changed = Plane::from_fn(size, |x, y| {
         if visible.get(x, y) == 0 {
             return fill;
         }
@@ -94,12 +100,12 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_moves_whole_pixels() {
-        let picture = Plane::from_fn(5, 5, |x, y| [(10 * x + y) as u8, 0, 0, 255]);
+        let picture = Plane::from_fn((5, 5), |x, y| [(10 * x + y) as u8, 0, 0, 255]);
         let map = about_centre((5, 5), 90.0, 1.0);
         let (turned, visible) = resample(&picture, map, (5, 5), [0; 4]);
         // Clockwise: the top left corner goes to the top right.
         assert_eq!(map.transform_point2(DVec2::ZERO), DVec2::new(4.0, 0.0));
-        assert_eq!(turned, Plane::from_fn(5, 5, |x, y| picture.get(y, 4 - x)));
+        assert_eq!(turned, Plane::from_fn((5, 5), |x, y| picture.get(y, 4 - x)));
         assert!(visible.data().iter().all(|&v| v == 255));
     }
 
@@ -115,7 +121,7 @@ mod tests {
 
     #[test]
     fn half_the_size_is_the_mean_of_blocks_of_a_ramp() {
-        let picture = Plane::from_fn(20, 20, |x, _| [10 * x as u8, 0, 0, 255]);
+        let picture = Plane::from_fn((20, 20), |x, _| [10 * x as u8, 0, 0, 255]);
         let map = about_centre((20, 20), 0.0, 0.5);
         let (small, visible) = resample(&picture, map, (20, 20), [9; 4]);
         // Column 7 shows the original columns 4 and 5: 9.5 + 2 (7 - 9.5) = 4.5.

@@ -1,6 +1,9 @@
 //! The buffers and textures of an application: refused where they do not fit their use.
 
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    image::Size,
+};
 
 /// Refuses a buffer that is too small or may not be used so.
 pub(crate) fn check_buffer(
@@ -26,7 +29,7 @@ pub(crate) fn check_buffer(
 pub(crate) fn check_texture(
     name: &'static str,
     texture: &wgpu::Texture,
-    (width, height): (u32, u32),
+    Size { width, height }: Size,
     usage: wgpu::TextureUsages,
 ) -> Result<()> {
     let refuse = |value, expected| Err(Error::Parameter { name, value, expected });

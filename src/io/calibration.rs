@@ -18,7 +18,7 @@ use super::{malformed, read_whole};
 use crate::{
     disparity::{self, DisparityMap},
     error::{Error, Result},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// Longest calibration file that is read, in bytes: a few lines, with room for many comments.
@@ -40,7 +40,7 @@ pub struct Calibration {
     /// Row of both principal points, in pixels.
     pub cy: f64,
     /// Width and height of the calibrated pictures, in pixels; `None` if unknown.
-    pub size: Option<(u32, u32)>,
+    pub size: Option<Size>,
 }
 
 impl Calibration {
@@ -49,9 +49,11 @@ impl Calibration {
     ///
     /// # Errors
     /// As [`Self::validate`].
-    pub fn centred(focal: f64, baseline: f64, doffs: f64, size: (u32, u32)) -> Result<Self> {
+    pub fn centred(focal: f64, baseline: f64, doffs: f64, size: impl Into<Size>) -> Result<Self> {
+        let size = size.into();
         let middle = |side: u32| (f64::from(side) - 1.0) / 2.0;
-        let calibration = Self { focal, baseline, doffs, cx: middle(size.0), cy: middle(size.1), size: Some(size) };
+        let calibration =
+            Self { focal, baseline, doffs, cx: middle(size.width), cy: middle(size.height), size: Some(size) };
         calibration.validate()?;
         Ok(calibration)
     }
@@ -79,7 +81,7 @@ impl Calibration {
             }
         }
         let size = match (entries.get("width"), entries.get("height")) {
-            (Some(width), Some(height)) => Some((width.side()?, height.side()?)),
+            (Some(width), Some(height)) => Some(Size::new(width.side()?, height.side()?)),
             (None, None) => None,
             (Some(alone), None) | (None, Some(alone)) => return Err(alone.wrong("there with both width and height")),
         };
@@ -118,12 +120,13 @@ impl Calibration {
     ///
     /// # Errors
     /// [`Error::Parameter`] with both sizes, if they differ.
-    pub fn check_size(&self, (width, height): (u32, u32)) -> Result<()> {
+    pub fn check_size(&self, size: impl Into<Size>) -> Result<()> {
+        let size = size.into();
         match self.size {
-            Some((w, h)) if (w, h) != (width, height) => Err(Error::Parameter {
+            Some(own) if own != size => Err(Error::Parameter {
                 name: "the calibration",
-                value: format!("for pictures of {w}x{h} pixels"),
-                expected: format!("these are {width}x{height}: use the calibration that belongs to the pictures"),
+                value: format!("for pictures of {own} pixels"),
+                expected: format!("these are {size}: use the calibration that belongs to the pictures"),
             }),
             _ => Ok(()),
         }
@@ -261,7 +264,7 @@ mod tests {
         let calibration = parse(MOTORCYCLE).unwrap();
         assert!((calibration.baseline - 0.193001).abs() < 1e-12);
         let rest = (calibration.focal, calibration.doffs, calibration.cx, calibration.cy, calibration.size);
-        assert_eq!(rest, (999.421, 32.778, 294.182, 252.932, Some((741, 497))));
+        assert_eq!(rest, (999.421, 32.778, 294.182, 252.932, Some(Size::new(741, 497))));
         // cam1 has its principal point in column 326.96.
         assert!((calibration.seen_from_right().cx - 326.96).abs() < 1e-9);
         assert_eq!(parse(&MOTORCYCLE.replace('\n', "\r\n")).unwrap(), calibration);
@@ -275,7 +278,7 @@ mod tests {
         assert_eq!(calibration.depth(10.0), Some(5.0));
         assert_eq!(calibration.depth(-30.0), None);
         assert_eq!(calibration.depth(-31.0), None);
-        let map = DisparityMap::new(3, 1, vec![10 * 256, -30 * 256, NONE]).unwrap();
+        let map = DisparityMap::new((3, 1), vec![10 * 256, -30 * 256, NONE]).unwrap();
         assert_eq!(depth_map(&map, &calibration).data(), [5.0, f32::INFINITY, f32::INFINITY]);
     }
 

@@ -49,7 +49,7 @@ pub const NO_ESTIMATE: [u8; 3] = [255; 3];
 /// If the sizes differ.
 pub fn error_colors(map: &Plane<f32>, truth: &Plane<f32>, mask: Option<&Plane<u8>>) -> Plane<[u8; 3]> {
     assert!(map.size() == truth.size() && mask.is_none_or(|mask| mask.size() == truth.size()), "the sizes differ");
-    Plane::from_fn(truth.width(), truth.height(), |x, y| {
+    Plane::from_fn(truth.size(), |x, y| {
         let (found, expected) = (map.get(x, y), truth.get(x, y));
         if !expected.is_finite() {
             return [0; 3];
@@ -97,22 +97,22 @@ mod tests {
 
     #[test]
     fn no_disparity_is_nearly_black() {
-        let map = DisparityMap::from_fn(1001, 1, |x, _| x as i32);
+        let map = DisparityMap::from_fn((1001, 1), |x, _| x as i32);
         assert!(disparity_colors(&map, (0, 1000)).data().iter().all(|rgb| rgb.iter().any(|&channel| channel > 100)));
     }
 
     #[test]
     fn colors_span_the_range_and_none_is_black() {
-        let map = DisparityMap::new(6, 1, vec![NONE, -256, 0, 256, i32::MAX, i32::MIN + 1]).unwrap();
+        let map = DisparityMap::new((6, 1), vec![NONE, -256, 0, 256, i32::MAX, i32::MIN + 1]).unwrap();
         let expected = [[0; 3], turbo(0.05), turbo(0.525), turbo(1.0), turbo(1.0), turbo(0.05)];
         assert_eq!(disparity_colors(&map, (-256, 256)).data(), expected);
     }
 
     #[test]
     fn errors_by_hand() {
-        let truth = Plane::new(9, 1, vec![5.0, 5.0, 5.0, 5.0, 5.0, 5.0, f32::INFINITY, 5.0, 5.0]).unwrap();
-        let map = Plane::new(9, 1, vec![5.5, 4.0, 7.0, 1.0, 9.5, f32::NAN, 5.0, 5.0, f32::INFINITY]).unwrap();
-        let mask = Plane::from_fn(9, 1, |x, _| if x < 7 { 255 } else { 128 });
+        let truth = Plane::new((9, 1), vec![5.0, 5.0, 5.0, 5.0, 5.0, 5.0, f32::INFINITY, 5.0, 5.0]).unwrap();
+        let map = Plane::new((9, 1), vec![5.5, 4.0, 7.0, 1.0, 9.5, f32::NAN, 5.0, 5.0, f32::INFINITY]).unwrap();
+        let mask = Plane::from_fn((9, 1), |x, _| if x < 7 { 255 } else { 128 });
         let [blue, light, yellow, orange, red] = ERROR_COLORS.map(|(_, color)| color);
         let expected = [blue, light, yellow, orange, red, NO_ESTIMATE, [0; 3], [14, 41, 60], [85; 3]];
         assert_eq!(error_colors(&map, &truth, Some(&mask)).data(), expected);
@@ -123,16 +123,16 @@ mod tests {
 
     #[test]
     fn a_flat_map_has_one_colour() {
-        let map = DisparityMap::filled(2, 2, 512);
+        let map = DisparityMap::filled((2, 2), 512);
         assert_eq!(disparity_colors(&map, disparity_range(&map).unwrap()).data(), [turbo(0.525); 4]);
     }
 
     #[test]
     fn range_is_the_first_and_last_percentile() {
         // The disparities 0 to 200 in mixed order, and as many pixels without a disparity.
-        let map = DisparityMap::from_fn(201, 2, |x, y| if y == 0 { (x * 77 % 201) as i32 } else { NONE });
+        let map = DisparityMap::from_fn((201, 2), |x, y| if y == 0 { (x * 77 % 201) as i32 } else { NONE });
         assert_eq!(disparity_range(&map), Some((2, 198)));
-        assert_eq!(disparity_range(&DisparityMap::new(3, 1, vec![5, -7, 6]).unwrap()), Some((-7, 6)));
-        assert_eq!(disparity_range(&DisparityMap::filled(3, 1, NONE)), None);
+        assert_eq!(disparity_range(&DisparityMap::new((3, 1), vec![5, -7, 6]).unwrap()), Some((-7, 6)));
+        assert_eq!(disparity_range(&DisparityMap::filled((3, 1), NONE)), None);
     }
 }

@@ -30,7 +30,7 @@ mod tests {
     fn the_content_tells_the_kind() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.any");
-        let map = DisparityMap::new(2, 1, vec![384, NONE]).unwrap();
+        let map = DisparityMap::new((2, 1), vec![384, NONE]).unwrap();
         let expected = [1.5, f32::INFINITY];
         let mut bytes = Vec::new();
         disparity_png::write(&mut bytes, &map).unwrap();

@@ -66,7 +66,7 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<DisparityMap> {
     match load::decode_image(bytes, path)? {
         DynamicImage::ImageLuma16(image) => {
             let (width, height) = image.dimensions();
-            Ok(Plane::new(width, height, image.into_raw())?.map(|&value| from_value(value)))
+            Ok(Plane::new((width, height), image.into_raw())?.map(|&value| from_value(value)))
         }
         other => {
             let found = load::describe(other.color());
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn values_by_hand() {
-        let map = DisparityMap::new(8, 1, vec![NONE, 0, 1, 256, 65535, 65536, -1, i32::MAX]).unwrap();
+        let map = DisparityMap::new((8, 1), vec![NONE, 0, 1, 256, 65535, 65536, -1, i32::MAX]).unwrap();
         let (values, lost) = to_values(&map);
         assert_eq!(values.data(), [0, 1, 1, 256, 65535, 0, 0, 0]);
         assert_eq!(lost, Lost { negative: 1, too_large: 2 });
@@ -112,7 +112,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("grey.png");
         let mut grey = Vec::new();
-        png::write_grey8(&mut grey, &Plane::filled(3, 2, 9)).unwrap();
+        png::write_grey8(&mut grey, &Plane::filled((3, 2), 9)).unwrap();
         std::fs::write(&path, grey).unwrap();
         let error = read(&path).unwrap_err().to_string();
         assert!(error.contains("a PNG of 8-bit grey: disparities are 16-bit grey"), "{error}");

@@ -66,7 +66,7 @@ fn grey(picture: &Picture) -> Plane<[u8; 3]> {
 pub fn side_by_side(pictures: &[&Plane<[u8; 3]>]) -> Plane<[u8; 3]> {
     let width = pictures.iter().map(|picture| picture.width() + GAP).sum::<u32>() - GAP;
     let height = pictures.iter().map(|picture| picture.height()).max().unwrap_or(0);
-    let mut canvas = Canvas(Plane::filled(width, height, [0; 3]));
+    let mut canvas = Canvas(Plane::filled((width, height), [0; 3]));
     let mut start = 0;
     for picture in pictures {
         canvas.paste(picture, start);
@@ -167,7 +167,7 @@ mod tests {
     const WHITE: [u8; 3] = [255; 3];
 
     fn canvas(width: u32, height: u32) -> Canvas {
-        Canvas(Plane::filled(width, height, [0; 3]))
+        Canvas(Plane::filled((width, height), [0; 3]))
     }
 
     fn feature(x: f32, y: f32, scale: f32, orientation: f32) -> Feature {
@@ -197,7 +197,7 @@ mod tests {
         let line = draw([3.0, 2.0], [15.0, 7.0]);
         assert_eq!(line, draw([15.0, 7.0], [3.0, 2.0]));
         let turned = draw([2.0, 3.0], [7.0, 15.0]);
-        assert_eq!(line, Plane::from_fn(20, 20, |x, y| turned.get(y, x)));
+        assert_eq!(line, Plane::from_fn((20, 20), |x, y| turned.get(y, x)));
     }
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn nothing_is_drawn_outside_and_nothing_panics() {
         let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e9, 1e9, -3.5, 2.5];
-        let picture = Picture::filled(5, 4, [10, 10, 10, 255]);
+        let picture = Picture::filled((5, 4), [10, 10, 10, 255]);
         for a in strange {
             for b in strange {
                 keypoints(&picture, &[feature(a, b, a, b), feature(1.0, 1.0, a, b), feature(a, b, 2.0, 1.0)]);
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn keypoints_show_scale_and_orientation() {
-        let picture = Picture::filled(41, 41, [0, 0, 0, 255]);
+        let picture = Picture::filled((41, 41), [0, 0, 0, 255]);
         let down = keypoints(&picture, &[feature(20.0, 20.0, 4.0, std::f32::consts::FRAC_PI_2)]);
         assert_eq!(down.get(30, 20), DARK_BLOB, "on the circle of 2.5 * 4 px");
         assert_eq!(down.get(20, 25), DARK_BLOB, "on the line");
@@ -240,7 +240,8 @@ mod tests {
 
     #[test]
     fn matches_join_the_two_pictures() {
-        let (left, right) = (Picture::filled(20, 10, [50, 50, 50, 255]), Picture::filled(12, 14, [90, 90, 90, 255]));
+        let (left, right) =
+            (Picture::filled((20, 10), [50, 50, 50, 255]), Picture::filled((12, 14), [90, 90, 90, 255]));
         let figure = matches(&left, &right, &[([5.0, 5.0], [6.0, 5.0])]);
         assert_eq!(figure.size(), (20 + GAP + 12, 14));
         assert_eq!((figure.get(0, 0), figure.get(0, 13), figure.get(39, 13)), ([50; 3], [0; 3], [90; 3]));
@@ -250,7 +251,7 @@ mod tests {
 
     #[test]
     fn pictures_stand_side_by_side() {
-        let (a, b) = (Plane::filled(2, 1, [1; 3]), Plane::filled(1, 2, [2; 3]));
+        let (a, b) = (Plane::filled((2, 1), [1; 3]), Plane::filled((1, 2), [2; 3]));
         let row = side_by_side(&[&a, &b, &a]);
         assert_eq!(row.size(), (2 + GAP + 1 + GAP + 2, 2));
         let level = |y: u32| [0, 1, 2, 2 + GAP, 2 + GAP + 1, 2 + GAP + 1 + GAP].map(|x| row.get(x, y)[0]);

@@ -51,7 +51,7 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
         Image::ImageRgba16(image) => opaque(image.as_raw(), |&[r, g, b, _]: &[u16; 4]| [r, g, b].map(high)),
         other => return Err(unsupported(describe(other.color()), path)),
     };
-    Picture::new(width, height, pixels)
+    Picture::new((width, height), pixels)
 }
 
 /// Converts pixels of `N` samples to opaque RGBA.
@@ -94,7 +94,7 @@ pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
 
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
-    check_pixels(width, height, path)?;
+    check_pixels((width, height), path)?;
     // Whatever else the header claims, no more memory is needed than for the pixels and the file itself.
     let pixels = u64::from(width) * u64::from(height);
     let mut limits = Limits::default();

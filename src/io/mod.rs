@@ -36,6 +36,7 @@ use std::{fs::File, io::Read, path::Path};
 
 use crate::{
     error::{Error, Result},
+    image::Size,
     luma::MAX_SIDE,
 };
 
@@ -61,7 +62,8 @@ fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
 
 /// Refuses an empty size, a size above [`MAX_PIXELS`], and a side above [`MAX_SIDE`], the limit of the kernels'
 /// workgroups.
-fn check_pixels(width: u32, height: u32, path: &Path) -> Result<()> {
+fn check_pixels(size: impl Into<Size>, path: &Path) -> Result<()> {
+    let Size { width, height } = size.into();
     if width == 0 || height == 0 {
         return Err(malformed(path, format!("its size is {width}x{height}: there is nothing in it")));
     }
@@ -100,7 +102,7 @@ mod tests {
 
     #[test]
     fn sizes_that_nothing_can_work_on_are_refused() {
-        let reason = |width, height| match check_pixels(width, height, Path::new("a.png")) {
+        let reason = |width, height| match check_pixels((width, height), Path::new("a.png")) {
             Err(Error::Format { reason, .. }) => reason,
             other => format!("{other:?}"),
         };

@@ -14,7 +14,7 @@ use super::{MAX_PIXELS, check_pixels, malformed, read_whole};
 use crate::{
     disparity::{self, DisparityMap, DisparityRange},
     error::Result,
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// Longest word of a header, in bytes: no useful number is longer.
@@ -58,14 +58,14 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let width = header.size("width")?;
     let height = header.size("height")?;
     let scale = header.scale()?;
-    check_pixels(width, height, path)?;
+    check_pixels((width, height), path)?;
 
-    let values = header.values(4 * width as usize * height as usize, (width, height))?;
+    let values = header.values(4 * width as usize * height as usize, Size::new(width, height))?;
     let decode = if scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
     let rows = values.chunks_exact(4 * width as usize).rev();
     let data = rows.flat_map(|row| row.as_chunks().0).map(|&value| decode(value));
     let known = |value: f32| if value.is_finite() { value } else { f32::INFINITY };
-    Plane::new(width, height, data.map(known).collect())
+    Plane::new((width, height), data.map(known).collect())
 }
 
 /// Writes `plane` as a little-endian PFM.
@@ -148,7 +148,7 @@ impl Header<'_> {
     }
 
     /// The `needed` bytes of values, after the single white-space character that ends the header.
-    fn values(&self, needed: usize, (width, height): (u32, u32)) -> Result<&[u8]> {
+    fn values(&self, needed: usize, Size { width, height }: Size) -> Result<&[u8]> {
         let values = match self.bytes {
             // A header with CRLF ends in two characters; the length decides whether a line feed belongs to the first
             // value.
@@ -199,13 +199,13 @@ mod tests {
     #[test]
     fn writes_exactly_these_bytes() {
         let mut out = Vec::new();
-        write(&mut out, &Plane::new(2, 2, vec![1.0, 2.0, 3.0, f32::INFINITY]).unwrap()).unwrap();
+        write(&mut out, &Plane::new((2, 2), vec![1.0, 2.0, 3.0, f32::INFINITY]).unwrap()).unwrap();
         assert_eq!(out, LITTLE);
     }
 
     #[test]
     fn disparities_are_pixels_and_none_is_infinite() {
-        let map = DisparityMap::new(2, 2, vec![256, 512, 768, disparity::NONE]).unwrap();
+        let map = DisparityMap::new((2, 2), vec![256, 512, 768, disparity::NONE]).unwrap();
         let mut out = Vec::new();
         write_disparities(&mut out, &map).unwrap();
         assert_eq!(out, LITTLE);
@@ -214,13 +214,13 @@ mod tests {
 
     #[test]
     fn disparities_are_rounded_to_the_nearest_step() {
-        let pixels = Plane::new(4, 1, vec![0.5 / 256.0, -0.5 / 256.0, 0.49 / 256.0, -3.0]).unwrap();
+        let pixels = Plane::new((4, 1), vec![0.5 / 256.0, -0.5 / 256.0, 0.49 / 256.0, -3.0]).unwrap();
         assert_eq!(fixed_point(&pixels, path()).unwrap().data(), [1, -1, 0, -768]);
     }
 
     #[test]
     fn a_disparity_beyond_the_limit_is_refused() {
-        let pixels = Plane::new(2, 1, vec![1_048_576.0, -1_048_577.0]).unwrap();
+        let pixels = Plane::new((2, 1), vec![1_048_576.0, -1_048_577.0]).unwrap();
         let error = fixed_point(&pixels, path()).unwrap_err().to_string();
         assert!(error.contains("column 1, row 0 is -1048577"), "{error}");
     }

@@ -29,7 +29,7 @@ mod tests {
 
     #[test]
     fn luma_ignores_alpha() {
-        let picture = Picture::new(2, 1, vec![[10, 20, 30, 0], [255, 0, 0, 255]]).unwrap();
+        let picture = Picture::new((2, 1), vec![[10, 20, 30, 0], [255, 0, 0, 255]]).unwrap();
         assert_eq!(picture.luma().data(), [18, 77]);
         assert_eq!(picture.rgba(), [10, 20, 30, 0, 255, 0, 0, 255]);
         assert_eq!(picture.rgb(0, 0), [10, 20, 30]);

@@ -76,8 +76,8 @@ mod tests {
 
     #[test]
     fn points_by_hand() {
-        let depth = Plane::new(2, 2, vec![f32::INFINITY, 4.0, 2.0, f32::NAN]).unwrap();
-        let picture = Picture::from_fn(2, 2, |x, y| [x as u8, y as u8, 7, 255]);
+        let depth = Plane::new((2, 2), vec![f32::INFINITY, 4.0, 2.0, f32::NAN]).unwrap();
+        let picture = Picture::from_fn((2, 2), |x, y| [x as u8, y as u8, 7, 255]);
         let calibration = Calibration { focal: 8.0, baseline: 1.0, doffs: 0.0, cx: 0.0, cy: 0.5, size: None };
         assert_eq!(
             points(&depth, &picture, &calibration).unwrap(),
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn sizes_must_agree() {
         let calibration = Calibration::centred(1.0, 1.0, 0.0, (2, 1)).unwrap();
-        let error = points(&Plane::filled(2, 1, 1.0), &Picture::filled(1, 2, [0; 4]), &calibration).unwrap_err();
+        let error = points(&Plane::filled((2, 1), 1.0), &Picture::filled((1, 2), [0; 4]), &calibration).unwrap_err();
         assert_eq!(error.to_string(), "the depth map is 2x1, but its picture is 1x2: both need one size");
     }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use ::image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
 
-use crate::image::{Luma, Plane};
+use crate::image::{Luma, Plane, Size};
 
 /// Writes an 8-bit RGB PNG.
 ///
@@ -30,7 +30,12 @@ pub fn write_grey16(out: &mut impl Write, picture: &Plane<u16>) -> io::Result<()
     encode(out, bytemuck::cast_slice(picture.data()), picture.size(), ExtendedColorType::L16)
 }
 
-fn encode(out: &mut impl Write, bytes: &[u8], (width, height): (u32, u32), color: ExtendedColorType) -> io::Result<()> {
+fn encode(
+    out: &mut impl Write,
+    bytes: &[u8],
+    Size { width, height }: Size,
+    color: ExtendedColorType,
+) -> io::Result<()> {
     PngEncoder::new(out).write_image(bytes, width, height, color).map_err(|error| match error {
         ImageError::IoError(error) => error,
         other => io::Error::other(other),

@@ -1,6 +1,6 @@
 //! How alike two views look around a pixel and its partner, on the host.
 
-use crate::image::Plane;
+use crate::image::{Plane, Size};
 
 /// Windows reach so far in every direction.
 const RADIUS: i64 = 4;
@@ -9,7 +9,7 @@ const RADIUS: i64 = 4;
 /// to its left: 127 times the normalised cross-correlation of their levels without the means, rounded down. It is 0 where
 /// that is negative, or a window is constant. Windows end at the pictures' borders; what has no partner does not count.
 pub(super) fn alikeness([left, right]: [&Plane<u8>; 2], (x, y): (u32, u32), disparity: i32) -> u8 {
-    let (width, height) = left.size();
+    let Size { width, height } = left.size();
     let (x, y, disparity) = (i64::from(x), i64::from(y), i64::from(disparity));
     let rows = (y - RADIUS).max(0)..=(y + RADIUS).min(i64::from(height) - 1);
     // Where both the pixel and its partner are inside.
@@ -44,8 +44,8 @@ mod tests {
 
     #[test]
     fn a_change_of_brightness_is_none_of_the_look() {
-        let left = Plane::from_fn(20, 12, |x, y| ((7 * x + 13 * y * y) % 90) as u8);
-        let right = Plane::from_fn(20, 12, |x, y| 2 * left.get((x + 3).min(19), y) + 40);
+        let left = Plane::from_fn((20, 12), |x, y| ((7 * x + 13 * y * y) % 90) as u8);
+        let right = Plane::from_fn((20, 12), |x, y| 2 * left.get((x + 3).min(19), y) + 40);
         for place in [(0, 0), (5, 5), (10, 11), (19, 0)] {
             assert_eq!(alikeness([&left, &right], place, 3), 127, "{place:?}");
         }
@@ -54,10 +54,10 @@ mod tests {
 
     #[test]
     fn opposites_and_flat_windows_are_not_alike() {
-        let left = Plane::from_fn(9, 9, |x, y| (20 * x + y) as u8);
+        let left = Plane::from_fn((9, 9), |x, y| (20 * x + y) as u8);
         let right = left.map(|&level| 255 - level);
         assert_eq!(alikeness([&left, &right], (4, 4), 0), 0);
-        assert_eq!(alikeness([&left, &Plane::filled(9, 9, 7)], (4, 4), 0), 0);
+        assert_eq!(alikeness([&left, &Plane::filled((9, 9), 7)], (4, 4), 0), 0);
         // No partner at all.
         assert_eq!(alikeness([&left, &left], (1, 1), 9), 0);
     }
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn half_of_the_look() {
         // Windows of three pixels in a row: 0 0 3 against 0 3 3 correlate by a half.
-        let row = |levels: [u8; 3]| Plane::new(3, 1, levels.to_vec()).unwrap();
+        let row = |levels: [u8; 3]| Plane::new((3, 1), levels.to_vec()).unwrap();
         assert_eq!(alikeness([&row([0, 0, 3]), &row([0, 3, 3])], (1, 0), 0), 63);
     }
 }

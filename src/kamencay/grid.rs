@@ -1,6 +1,9 @@
 //! The grids of belief propagation: strips of the picture, each halved again and again.
 
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    image::Size,
+};
 
 /// More than any belief: the data cost of a disparity beyond the last, which only fills a word.
 pub const FAR: u32 = 0xffff;
@@ -26,7 +29,7 @@ pub struct Strip {
 ///
 /// # Errors
 /// [`Error::TooLarge`] where not even as many rows as two strips share fit.
-pub fn strips((width, height): (u32, u32), disparities: u32, bytes: u64) -> Result<Vec<(Strip, Strip)>> {
+pub fn strips(Size { width, height }: Size, disparities: u32, bytes: u64) -> Result<Vec<(Strip, Strip)>> {
     let row_bytes = 16 * u64::from(width) * u64::from(disparities.div_ceil(4));
     let most = bytes / row_bytes;
     if most >= height.into() {
@@ -55,8 +58,10 @@ pub fn strips((width, height): (u32, u32), disparities: u32, bytes: u64) -> Resu
 }
 
 /// The sizes of the grids of a strip, from the finest on: each half the last, rounded up.
-pub fn levels(size: (u32, u32), count: u32) -> Vec<(u32, u32)> {
-    let sizes = std::iter::successors(Some(size), |&(w, h)| (w.max(h) > 1).then_some((w.div_ceil(2), h.div_ceil(2))));
+pub fn levels(size: Size, count: u32) -> Vec<Size> {
+    let sizes = std::iter::successors(Some(size), |&Size { width, height }| {
+        (width.max(height) > 1).then_some(Size::new(width.div_ceil(2), height.div_ceil(2)))
+    });
     sizes.take(count as usize).collect()
 }
 
@@ -67,10 +72,10 @@ mod tests {
     #[test]
     fn strips_decide_each_row_once_and_see_beyond() {
         let row = 16 * 10 * 2;
-        assert_eq!(strips((10, 200), 7, 200 * row).unwrap().len(), 1);
+        assert_eq!(strips(Size::new(10, 200), 7, 200 * row).unwrap().len(), 1);
         for most in [48, 50, 120, 199] {
             let mut next = 0;
-            for (seen, decided) in strips((10, 200), 7, most * row).unwrap() {
+            for (seen, decided) in strips(Size::new(10, 200), 7, most * row).unwrap() {
                 assert_eq!(decided.first_row, next);
                 next += decided.rows;
                 assert!(u64::from(seen.rows) <= most && decided.rows > 0);
@@ -79,14 +84,14 @@ mod tests {
             }
             assert_eq!(next, 200);
         }
-        let error = strips((10, 200), 7, 47 * row).unwrap_err().to_string();
+        let error = strips(Size::new(10, 200), 7, 47 * row).unwrap_err().to_string();
         assert!(error.contains("48 rows") && error.contains("search fewer disparities"), "{error}");
     }
 
     #[test]
     fn grids_are_halved_down_to_one_node() {
-        assert_eq!(levels((5, 3), 9), [(5, 3), (3, 2), (2, 1), (1, 1)]);
-        assert_eq!(levels((5, 3), 2), [(5, 3), (3, 2)]);
-        assert_eq!(levels((1, 1), 5), [(1, 1)]);
+        assert_eq!(levels(Size::new(5, 3), 9), [Size::new(5, 3), Size::new(3, 2), Size::new(2, 1), Size::new(1, 1)]);
+        assert_eq!(levels(Size::new(5, 3), 2), [Size::new(5, 3), Size::new(3, 2)]);
+        assert_eq!(levels(Size::new(1, 1), 5), [Size::new(1, 1)]);
     }
 }

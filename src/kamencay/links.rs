@@ -1,7 +1,7 @@
 //! How strongly neighbours hold together, on the host.
 
 use super::{Segments, Strip};
-use crate::image::Plane;
+use crate::image::{Plane, Size};
 
 /// How the weight of a link, 16 at most, depends on the picture: `16 halving / (halving + change)`, rounded down,
 /// where the mean of the three channels changes by so much.
@@ -43,14 +43,14 @@ impl Links {
             let below = if y + 1 < strip.rows { weight((x, row), (x, row + 1)) } else { 0 };
             right | below << 8
         };
-        Self(Plane::from_fn(view.width(), strip.rows, link))
+        Self(Plane::from_fn((view.width(), strip.rows), link))
     }
 
     /// The links of the grid of half the size: the rounded mean of those that lead from one block of 2x2 nodes to
     /// the next.
     #[must_use]
     pub fn reduced(&self) -> Self {
-        let (width, height) = self.0.size();
+        let Size { width, height } = self.0.size();
         let mean = |nodes: &mut dyn Iterator<Item = (u32, u32)>, shift: u32| {
             let (mut sum, mut count) = (0, 0);
             for (x, y) in nodes {
@@ -65,7 +65,7 @@ impl Links {
             let below = if 2 * y + 2 < height { mean(&mut columns.map(|x| (x, 2 * y + 1)), 8) } else { 0 };
             right | below << 8
         };
-        Self(Plane::from_fn(width.div_ceil(2), height.div_ceil(2), link))
+        Self(Plane::from_fn((width.div_ceil(2), height.div_ceil(2)), link))
     }
 
     /// A word a node.
@@ -92,9 +92,9 @@ mod tests {
     #[test]
     fn by_hand() {
         let grey = |level: u32| level | level << 8 | level << 16;
-        let view = Plane::new(3, 3, [0, 4, 4, 0, 8, 60, 0, 0, 4].map(grey).to_vec()).unwrap();
+        let view = Plane::new((3, 3), [0, 4, 4, 0, 8, 60, 0, 0, 4].map(grey).to_vec()).unwrap();
         // The segments are the three columns: only the colours of the segmentation say so.
-        let columns = Plane::from_fn(3, 3, |x, _| grey(100 * x));
+        let columns = Plane::from_fn((3, 3), |x, _| grey(100 * x));
         let segments = Segments::new(&columns, Segmentation { join: 0, least: 0 });
         let weights = LinkWeights { halving: 4, least: 2, inside: 6, across: 10 };
         let whole = Strip { first_row: 0, rows: 3 };

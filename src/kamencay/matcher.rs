@@ -9,7 +9,7 @@ use crate::{
     dense::Dense,
     error::Result,
     gpu::{Dispatch, Gpu, Readback, guarded, storage_buffer},
-    image::Plane,
+    image::{Plane, Size},
     io::Picture,
 };
 
@@ -88,10 +88,10 @@ impl Solver for OnDevice<'_> {
             Ok(readback)
         })
         .await?;
-        Plane::new(size.0, size.1, readback.read(pixels).await?)
+        Plane::new(size, readback.read(pixels).await?)
     }
 
-    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[(Size, Links)]) -> Result<Vec<Winner>> {
         let gpu = self.gpu;
         let prepared = match &mut self.prepared {
             Some(prepared) => prepared,
@@ -101,7 +101,7 @@ impl Solver for OnDevice<'_> {
         let pixels = problem.left.width() as usize * strip.rows as usize;
         let readback = guarded(gpu, "belief propagation", || {
             let mut dispatches = Vec::new();
-            let nodes = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
+            let nodes = |Size { width, height }: Size| u64::from(width) * u64::from(height);
             let costs = grids
                 .iter()
                 .map(|&(size, _)| storage_buffer(gpu, "data costs", 8 * u64::from(fours) * nodes(size)))

@@ -10,7 +10,7 @@ use crate::{
     dense::{Brightness, Dense, View},
     disparity::DisparityRange,
     error::{Error, Result},
-    image::{Plane, luma_of},
+    image::{Plane, Size, luma_of},
     io::Picture,
 };
 
@@ -31,7 +31,7 @@ pub(crate) trait Solver {
 
     /// The winners of a strip's pixels after belief propagation on grids of these sizes and with these links, the
     /// finest first.
-    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>>;
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[(Size, Links)]) -> Result<Vec<Winner>>;
 }
 
 /// Red, green, blue and the gradient of each pixel after a change of brightness, from the lowest byte of a word on.
@@ -39,7 +39,7 @@ pub(crate) trait Solver {
 pub fn described(picture: &Picture, brightness: Brightness) -> Plane<u32> {
     let picture = picture.map(|&[red, green, blue, _]| [red, green, blue].map(|level| brightness.apply(level)));
     let last = picture.width() - 1;
-    Plane::from_fn(picture.width(), picture.height(), |x, y| {
+    Plane::from_fn(picture.size(), |x, y| {
         let grey = |x: u32| i32::from(luma_of(picture.get(x, y)));
         let gradient = (grey((x + 1).min(last)) - grey(x.saturating_sub(1))).clamp(-127, 127) + 128;
         let [red, green, blue] = picture.get(x, y);
@@ -57,7 +57,7 @@ fn luma_plane(view: &Plane<u32>) -> Plane<u8> {
 
 fn mirrored<T: Copy>(plane: &Plane<T>) -> Plane<T> {
     let last = plane.width() - 1;
-    Plane::from_fn(plane.width(), plane.height(), |x, y| plane.get(last - x, y))
+    Plane::from_fn(plane.size(), |x, y| plane.get(last - x, y))
 }
 
 /// The disparities of a pair.
@@ -75,9 +75,9 @@ pub(crate) async fn solve(
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
     config.validate()?;
-    let (width, height) = left.size();
+    let Size { width, height } = left.size();
     let range = config.searched(width)?;
-    let strips = strips((width, height), range.count, message_bytes.min(MAX_MESSAGE_BYTES))?;
+    let strips = strips(Size::new(width, height), range.count, message_bytes.min(MAX_MESSAGE_BYTES))?;
     let parameters = config.parameters;
     let (left, right) = (described(left, Brightness::SAME), described(right, config.brightness));
     let problem = match config.reference {
@@ -93,12 +93,12 @@ pub(crate) async fn solve(
     for (strip, decided) in strips {
         let links = Links::new(&problem.left, &segments, strip, parameters.links);
         let links = std::iter::successors(Some(links), |links| Some(links.reduced()));
-        let grids: Vec<_> = levels((width, strip.rows), parameters.levels).into_iter().zip(links).collect();
+        let grids: Vec<_> = levels(Size::new(width, strip.rows), parameters.levels).into_iter().zip(links).collect();
         let found = solver.winners(&problem, strip, &grids).await?;
         let first = ((decided.first_row - strip.first_row) * width) as usize;
         winners.extend_from_slice(&found[first..][..(decided.rows * width) as usize]);
     }
-    let winners = Plane::new(width, height, winners)?;
+    let winners = Plane::new((width, height), winners)?;
     let views = [&problem.left, &problem.right].map(luma_plane);
     let dense = conclude(&winners, &segments, range, &parameters.conclusion, [&views[0], &views[1]]);
     Ok(match config.reference {
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_pixel_is_described_by_its_colour_and_gradient() {
-        let picture = Picture::new(3, 1, vec![[10, 20, 30, 7], [0, 0, 0, 0], [200, 200, 200, 0]]).unwrap();
+        let picture = Picture::new((3, 1), vec![[10, 20, 30, 7], [0, 0, 0, 0], [200, 200, 200, 0]]).unwrap();
         // Lumas 18, 0 and 200: gradients 0 - 18, 200 - 18 and 200 - 0, the last two beyond 127.
         let expected = [[10, 20, 30, 110], [0, 0, 0, 255], [200, 200, 200, 255]].map(u32::from_le_bytes);
         assert_eq!(described(&picture, Brightness::SAME).data(), expected);

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     dense::Dense,
     disparity::{DisparityRange, NONE, SCALE},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// How the segments' disparities are found, and what they do to those of their pixels.
@@ -45,7 +45,7 @@ pub(super) fn conclude(
     conclusion: &Conclusion,
     views: [&Plane<u8>; 2],
 ) -> Dense {
-    let (width, height) = winners.size();
+    let Size { width, height } = winners.size();
     let own = winners.map(|winner| range.min + winner.index() as i32);
     let confirmed = confirmed(winners, &own, conclusion.confirmation);
     let confirmed_at = |x: u32, y: u32| confirmed.get(x, y).then(|| own.get(x, y));
@@ -55,7 +55,7 @@ pub(super) fn conclude(
     let found = segment_surfaces(labels, confirmed_at, conclusion.least_confirmed, tolerance);
     let span = i64::from(range.min * SCALE)..=i64::from(range.last() * SCALE);
     let mut dense =
-        Dense { disparity: Plane::filled(width, height, NONE), confidence: Plane::filled(width, height, 0) };
+        Dense { disparity: Plane::filled((width, height), NONE), confidence: Plane::filled((width, height), 0) };
     for y in 0..height {
         let row: Vec<Option<i32>> = (0..width).map(|x| confirmed_at(x, y)).collect();
         let beside = nearest(&row);
@@ -85,9 +85,9 @@ pub(super) fn conclude(
 /// belief claims the partner (ties go to the smaller disparity), and the disparities of the two differ by at most
 /// `most` px.
 fn confirmed(winners: &Plane<Winner>, own: &Plane<i32>, most: u32) -> Plane<bool> {
-    let (width, height) = own.size();
+    let Size { width, height } = own.size();
     let partner = |x: u32, y: u32| x.checked_add_signed(-own.get(x, y)).filter(|&partner| partner < width);
-    let mut claims: Plane<Option<(u32, i32)>> = Plane::filled(width, height, None);
+    let mut claims: Plane<Option<(u32, i32)>> = Plane::filled((width, height), None);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let Some(partner) = partner(x, y) else { continue };
         let claim = (winners.get(x, y).belief(), own.get(x, y));
@@ -95,7 +95,7 @@ fn confirmed(winners: &Plane<Winner>, own: &Plane<i32>, most: u32) -> Plane<bool
             claims.set(partner, y, Some(claim));
         }
     }
-    Plane::from_fn(width, height, |x, y| {
+    Plane::from_fn((width, height), |x, y| {
         let claim = partner(x, y).and_then(|partner| claims.get(partner, y));
         claim.is_some_and(|(_, disparity)| own.get(x, y).abs_diff(disparity) <= most)
     })
@@ -171,12 +171,12 @@ mod tests {
         // One segment of seven pixels; the fifth claims the partner of the first with a worse belief.
         let winner = |disparity, belief| Winner::new(disparity, belief, Some(belief + 50));
         let row = [(0, 5), (0, 5), (1, 5), (0, 5), (4, 9), (0, 5), (3, 5)].map(|(d, b)| winner(d, b)).to_vec();
-        let winners = Plane::new(7, 1, row).unwrap();
-        let segments = Segments::new(&Plane::filled(7, 1, 0), Segmentation { join: 0, least: 0 });
+        let winners = Plane::new((7, 1), row).unwrap();
+        let segments = Segments::new(&Plane::filled((7, 1), 0), Segmentation { join: 0, least: 0 });
         let range = DisparityRange::new(0, 8).unwrap();
         // Of all windows only those with the partner at no distance are alike.
-        let view = Plane::from_fn(7, 1, |x, _| (9 * x * x) as u8);
-        let flat = Plane::filled(7, 1, 0);
+        let view = Plane::from_fn((7, 1), |x, _| (9 * x * x) as u8);
+        let flat = Plane::filled((7, 1), 0);
         let conclude = |tolerance, other| {
             let conclusion = Conclusion { confirmation: 0, least_confirmed: 2, tolerance };
             conclude(&winners, &segments, range, &conclusion, [&view, other])
@@ -198,9 +198,9 @@ mod tests {
     fn what_is_as_good_elsewhere_is_not_measured() {
         // Three confirmed pixels; another disparity is as good for the second.
         let winners = [Some(7), Some(5), None].map(|rival| Winner::new(0, 5, rival)).to_vec();
-        let segments = Segments::new(&Plane::filled(3, 1, 0), Segmentation { join: 0, least: 0 });
+        let segments = Segments::new(&Plane::filled((3, 1), 0), Segmentation { join: 0, least: 0 });
         let conclusion = Conclusion { confirmation: 0, least_confirmed: 2, tolerance: 0 };
-        let (winners, flat) = (Plane::new(3, 1, winners).unwrap(), Plane::filled(3, 1, 0));
+        let (winners, flat) = (Plane::new((3, 1), winners).unwrap(), Plane::filled((3, 1), 0));
         let dense = conclude(&winners, &segments, DisparityRange::new(0, 8).unwrap(), &conclusion, [&flat, &flat]);
         assert_eq!(dense.disparity.data(), [0; 3]);
         assert_eq!(dense.confidence.map(|&confidence| confidence > 0).data(), [true, false, true]);
@@ -209,10 +209,10 @@ mod tests {
     #[test]
     fn without_enough_confirmed_pixels_a_segment_has_no_disparity() {
         // Both claim pixels outside: nothing is confirmed, and all stay with what they believe.
-        let winners = Plane::filled(2, 1, Winner::new(3, 0, None));
-        let segments = Segments::new(&Plane::filled(2, 1, 0), Segmentation { join: 0, least: 0 });
+        let winners = Plane::filled((2, 1), Winner::new(3, 0, None));
+        let segments = Segments::new(&Plane::filled((2, 1), 0), Segmentation { join: 0, least: 0 });
         let conclusion = Conclusion { confirmation: 1, least_confirmed: 1, tolerance: 0 };
-        let (range, flat) = (DisparityRange::new(-1, 8).unwrap(), Plane::filled(2, 1, 0));
+        let (range, flat) = (DisparityRange::new(-1, 8).unwrap(), Plane::filled((2, 1), 0));
         let dense = conclude(&winners, &segments, range, &conclusion, [&flat, &flat]);
         // A disparity of -1 + 3.
         assert_eq!((dense.disparity.data(), dense.confidence.data()), (&[512, 512][..], &[0, 0][..]));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::image::Plane;
+use crate::image::{Plane, Size};
 
 /// Which pixels make a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Regions {
 }
 
 /// All pairs of pixels side by side or one above the other.
-fn neighbours((width, height): (u32, u32)) -> impl Iterator<Item = (u32, u32)> {
+fn neighbours(Size { width, height }: Size) -> impl Iterator<Item = (u32, u32)> {
     (0..width * height).flat_map(move |pixel| {
         let right = (pixel % width + 1 < width).then_some((pixel, pixel + 1));
         let below = (pixel / width + 1 < height).then_some((pixel, pixel + width));
@@ -86,8 +86,8 @@ impl Segments {
             }
         }
         while merge_small(&mut regions, size, segmentation.least) {}
-        let (width, height) = size;
-        Self { labels: Plane::from_fn(width, height, |x, y| regions.find(y * width + x)) }
+        let Size { width, height } = size;
+        Self { labels: Plane::from_fn((width, height), |x, y| regions.find(y * width + x)) }
     }
 
     /// The label of each pixel.
@@ -103,7 +103,7 @@ impl Segments {
 
 /// Merges each region of fewer than `least` pixels, in the order of their labels, into the most similar of its
 /// neighbours, ties to the smaller label. Whether any was merged.
-fn merge_small(regions: &mut Regions, size: (u32, u32), least: u32) -> bool {
+fn merge_small(regions: &mut Regions, size: Size, least: u32) -> bool {
     let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (a, b) in neighbours(size) {
         let (a, b) = (regions.find(a), regions.find(b));
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn neighbours_of_like_colours_are_joined() {
         // 10 and 12 differ by 2 in each channel: 3.46 in all. 10 and 40 are another thing.
-        let modes = Plane::new(4, 2, [10, 12, 40, 40, 10, 14, 40, 10].map(grey).to_vec()).unwrap();
+        let modes = Plane::new((4, 2), [10, 12, 40, 40, 10, 14, 40, 10].map(grey).to_vec()).unwrap();
         let segments = |join, least| Segments::new(&modes, Segmentation { join, least });
         assert_eq!(segments(4, 0).labels().data(), [0, 0, 2, 2, 0, 0, 2, 7]);
         assert_eq!(segments(4, 0).count(), 3);
@@ -151,12 +151,12 @@ mod tests {
 
     #[test]
     fn small_ones_join_the_most_similar_neighbour() {
-        let modes = Plane::new(5, 1, [10, 10, 30, 40, 40].map(grey).to_vec()).unwrap();
+        let modes = Plane::new((5, 1), [10, 10, 30, 40, 40].map(grey).to_vec()).unwrap();
         let segments = Segments::new(&modes, Segmentation { join: 0, least: 2 });
         assert_eq!(segments.labels().data(), [0, 0, 2, 2, 2]);
         // All are too small: one is left.
         assert_eq!(Segments::new(&modes, Segmentation { join: 0, least: 9 }).labels().data(), [0; 5]);
-        let alone = Segments::new(&Plane::filled(1, 1, 0), Segmentation { join: 0, least: 9 });
+        let alone = Segments::new(&Plane::filled((1, 1), 0), Segmentation { join: 0, least: 9 });
         assert_eq!((alone.labels().data(), alone.count()), (&[0][..], 1));
     }
 }

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, try_recording},
+    image::Size,
 };
 
 /// Where a picture is.
@@ -44,7 +45,8 @@ impl Input {
     /// # Errors
     /// [`Error::Parameter`] for an invalid size, format or usage; [`Error::Unsupported`] with what else the device has
     /// against it.
-    pub async fn new(gpu: &Gpu, size: (u32, u32), source: Source<'_>, luma: &wgpu::Buffer) -> Result<Self> {
+    pub async fn new(gpu: &Gpu, size: impl Into<Size>, source: Source<'_>, luma: &wgpu::Buffer) -> Result<Self> {
+        let size = size.into();
         check_packed(luma, size)?;
         check_limits(gpu)?;
         Self::with_kernel(gpu, "the picture", size, source, luma, &OnceLock::new()).await
@@ -54,15 +56,15 @@ impl Input {
     pub(crate) async fn with_kernel(
         gpu: &Gpu,
         name: &'static str,
-        size: (u32, u32),
+        size: Size,
         source: Source<'_>,
         luma: &wgpu::Buffer,
         kernel: &OnceLock<LumaTexture>,
     ) -> Result<Self> {
         let (view, format) = match source {
             Source::Luma(from) => {
-                check_buffer(name, from, packed_bytes(size.0, size.1), wgpu::BufferUsages::COPY_SRC)?;
-                let (from, to, bytes) = (from.clone(), luma.clone(), packed_bytes(size.0, size.1));
+                check_buffer(name, from, packed_bytes(size), wgpu::BufferUsages::COPY_SRC)?;
+                let (from, to, bytes) = (from.clone(), luma.clone(), packed_bytes(size));
                 return Self(Conversion::Copy { from, to, bytes }).tried(gpu, name).await;
             }
             Source::Texture(view) => (view, view.texture().format()),

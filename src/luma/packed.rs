@@ -3,37 +3,39 @@
 use crate::{
     error::{Error, Result},
     gpu::{Gpu, guarded, storage_buffer},
-    image::Luma,
+    image::{Luma, Size},
 };
 
 /// Bytes of a packed picture.
-pub fn packed_bytes(width: u32, height: u32) -> u64 {
+pub fn packed_bytes(size: impl Into<Size>) -> u64 {
+    let Size { width, height } = size.into();
     4 * u64::from(width.div_ceil(4)) * u64::from(height)
 }
 
 /// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
 pub const MAX_SIDE: u32 = 1 << 19;
 
-fn refuse(width: u32, height: u32, expected: String) -> Result<()> {
-    Err(Error::Parameter { name: "the picture", value: format!("{width}x{height} pixels"), expected })
+fn refuse(size: Size, expected: String) -> Result<()> {
+    Err(Error::Parameter { name: "the picture", value: format!("{size} pixels"), expected })
 }
 
 /// Refuses sizes that no kernel could work on.
-pub(crate) fn check_size((width, height): (u32, u32)) -> Result<()> {
+pub(crate) fn check_size(size: Size) -> Result<()> {
+    let Size { width, height } = size;
     if width.min(height) == 0 || width.max(height) > MAX_SIDE {
-        return refuse(width, height, format!("its sides must be 1 to {MAX_SIDE}"));
+        return refuse(size, format!("its sides must be 1 to {MAX_SIDE}"));
     }
     Ok(())
 }
 
 /// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
 /// may read.
-pub(crate) fn check_packed(luma: &wgpu::Buffer, (width, height): (u32, u32)) -> Result<()> {
-    check_size((width, height))?;
-    let bytes = packed_bytes(width, height);
+pub(crate) fn check_packed(luma: &wgpu::Buffer, size: Size) -> Result<()> {
+    check_size(size)?;
+    let bytes = packed_bytes(size);
     if luma.size() < bytes {
         let given = luma.size();
-        return refuse(width, height, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
+        return refuse(size, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
     }
     if !luma.usage().contains(wgpu::BufferUsages::STORAGE) {
         let value = format!("a buffer with the usages {:?}", luma.usage());
@@ -53,8 +55,8 @@ pub fn pack(luma: &Luma) -> Vec<u32> {
 /// # Errors
 /// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
 pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
-    let (width, height) = luma.size();
-    let allocate = || storage_buffer(gpu, "luma", packed_bytes(width, height));
+    let Size { width, height } = luma.size();
+    let allocate = || storage_buffer(gpu, "luma", packed_bytes((width, height)));
     let buffer = guarded(gpu, "the picture", allocate).await?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
     Ok(buffer)
@@ -64,9 +66,10 @@ pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
 ///
 /// # Panics
 /// If a side is 0 or there are too few words.
-pub fn unpack(width: u32, height: u32, words: &[u32]) -> Luma {
-    let stride = width.div_ceil(4) as usize;
-    Luma::from_fn(width, height, |x, y| words[y as usize * stride + x as usize / 4].to_le_bytes()[x as usize % 4])
+pub fn unpack(size: impl Into<Size>, words: &[u32]) -> Luma {
+    let size = size.into();
+    let stride = size.width.div_ceil(4) as usize;
+    Luma::from_fn(size, |x, y| words[y as usize * stride + x as usize / 4].to_le_bytes()[x as usize % 4])
 }
 
 #[cfg(test)]
@@ -75,9 +78,9 @@ mod tests {
 
     #[test]
     fn pixels_fill_words_from_the_lowest_byte_and_rows_start_new_ones() {
-        let luma = Luma::new(5, 2, vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
+        let luma = Luma::new((5, 2), vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10]).unwrap();
         assert_eq!(pack(&luma), [0x0403_0201, 0x05, 0x0908_0706, 0x0a]);
-        assert_eq!(packed_bytes(5, 2), 16);
-        assert_eq!(unpack(5, 2, &pack(&luma)), luma);
+        assert_eq!(packed_bytes((5, 2)), 16);
+        assert_eq!(unpack((5, 2), &pack(&luma)), luma);
     }
 }

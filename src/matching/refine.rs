@@ -147,8 +147,8 @@ mod tests {
     }
 
     fn refined(right: impl Fn(f32, f32) -> f32, rows: Rows, from: (f32, f32)) -> Option<Seed> {
-        let left = Luma::from_fn(60, 40, |x, y| pattern(x as f32, y as f32).round() as u8);
-        let right = Luma::from_fn(60, 40, |x, y| right(x as f32, y as f32).round() as u8);
+        let left = Luma::from_fn((60, 40), |x, y| pattern(x as f32, y as f32).round() as u8);
+        let right = Luma::from_fn((60, 40), |x, y| right(x as f32, y as f32).round() as u8);
         let found = Match { left: 0, right: 0, distance: 0.1, confidence: 0.5 };
         let features = ([feature(30.3, 19.8)], [feature(from.0, from.1)]);
         refine((&left, &right), (&features.0, &features.1), &[found], rows).first().copied()

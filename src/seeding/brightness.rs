@@ -74,8 +74,8 @@ mod tests {
 
     #[test]
     fn finds_gain_and_offset_despite_a_quarter_of_wrong_seeds() {
-        let left = Luma::from_fn(100, 100, |x, y| (40 + x + y / 2) as u8);
-        let right = Luma::from_fn(100, 100, |x, y| (0.5 * (40.0 + (x + 4) as f32 + (y / 2) as f32) + 20.0) as u8);
+        let left = Luma::from_fn((100, 100), |x, y| (40 + x + y / 2) as u8);
+        let right = Luma::from_fn((100, 100), |x, y| (0.5 * (40.0 + (x + 4) as f32 + (y / 2) as f32) + 20.0) as u8);
         let seeds: Vec<Seed> = (0..80)
             .map(|i| {
                 let disparity = if i % 4 == 0 { 40.0 } else { 4.0 };
@@ -88,11 +88,11 @@ mod tests {
 
     #[test]
     fn nothing_is_claimed_without_contrast_or_seeds() {
-        let grey = Luma::filled(50, 50, 90);
+        let grey = Luma::filled((50, 50), 90);
         let seeds = [Seed { x: 20.0, y: 20.0, disparity: 1.0, dy: 0.0, confidence: 1.0 }; 20];
         assert_eq!(BrightnessRelation::new(&grey, &grey, &seeds), None);
         assert_eq!(BrightnessRelation::new(&grey, &grey, &[]), None);
-        let white = Luma::filled(50, 50, 255);
+        let white = Luma::filled((50, 50), 255);
         assert_eq!(BrightnessRelation::new(&white, &grey, &seeds), None);
     }
 

@@ -6,7 +6,7 @@ use std::fmt;
 use glam::{DMat3, DVec3};
 
 use super::brightness::median;
-use crate::matching::Seed;
+use crate::{image::Size, matching::Seed};
 
 /// Number of seeds on which candidate fits are tested, the most confident ones.
 const TRIED: usize = 1000;
@@ -63,7 +63,8 @@ impl Rectification {
     ///
     /// Random sample consensus (Fischler and Bolles 1981) with a fixed random sequence, then reweighted least squares
     /// (Tukey's biweight); the same seeds give the same figures.
-    pub fn new(seeds: &[Seed], size: (u32, u32)) -> Self {
+    pub fn new(seeds: &[Seed], size: impl Into<Size>) -> Self {
+        let size = size.into();
         let points: Vec<Point> = seeds.iter().map(|seed| Point::new(seed, size)).collect();
         let fit = consensus(&points[..points.len().min(TRIED)]).and_then(|fit| refined(fit, &points));
         let agreeing = fit.map_or(0, |fit| fit.agreeing(&points).count());
@@ -141,7 +142,7 @@ struct Point {
 }
 
 impl Point {
-    fn new(seed: &Seed, (width, height): (u32, u32)) -> Self {
+    fn new(seed: &Seed, Size { width, height }: Size) -> Self {
         let x = f64::from(seed.x - seed.disparity / 2.0) - f64::from(width - 1) / 2.0;
         let y = f64::from(seed.y + seed.dy / 2.0) - f64::from(height - 1) / 2.0;
         Self { at: DVec3::new(1.0, x, y), dy: f64::from(seed.dy) }
@@ -173,7 +174,7 @@ impl Fit {
         points.iter().filter(|point| self.error(point).abs() <= AGREEMENT)
     }
 
-    fn largest(&self, (width, height): (u32, u32)) -> f64 {
+    fn largest(&self, Size { width, height }: Size) -> f64 {
         let (x, y) = (f64::from(width - 1) / 2.0, f64::from(height - 1) / 2.0);
         self.0.x.abs() + self.0.y.abs() * x + self.0.z.abs() * y
     }
@@ -225,7 +226,7 @@ fn refined(mut fit: Fit, points: &[Point]) -> Option<Fit> {
 mod tests {
     use super::*;
 
-    const SIZE: (u32, u32) = (641, 481);
+    const SIZE: Size = Size::new(641, 481);
 
     /// Seeds of a scene of many depths whose right view is rotated, scaled and shifted about the picture's centre;
     /// every third seed is wrong.

@@ -1,10 +1,9 @@
 //! A device on which single kernels run: buffers on their way there and back.
 
-use super::dice::Size;
 use crate::{
     error::Result,
     gpu::{Gpu, Readback, WordTexture, block_on, guarded, in_rows, storage_buffer},
-    image::Luma,
+    image::{Luma, Size},
     luma::pack,
 };
 
@@ -63,19 +62,22 @@ impl<'g> Bench<'g> {
     }
 
     /// A view of a texture that holds `texels`, row by row.
-    pub fn texture(&self, format: wgpu::TextureFormat, (width, height): Size, texels: &[u8]) -> wgpu::TextureView {
-        let texture = self.plain_texture(format, (width, height), wgpu::TextureUsages::TEXTURE_BINDING);
-        let bytes_per_row = Some(texels.len() as u32 / height);
+    pub fn texture(&self, format: wgpu::TextureFormat, size: impl Into<Size>, texels: &[u8]) -> wgpu::TextureView {
+        let size = size.into();
+        let texture = self.plain_texture(format, size, wgpu::TextureUsages::TEXTURE_BINDING);
+        let bytes_per_row = Some(texels.len() as u32 / size.height);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
         self.gpu.queue.write_texture(texture.as_image_copy(), texels, layout, texture.size());
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
     /// A texture of four bytes a texel for a kernel to write, full of ones.
-    pub fn output_texture(&self, format: wgpu::TextureFormat, (width, height): Size) -> wgpu::Texture {
-        let texture = self.plain_texture(format, (width, height), wgpu::TextureUsages::STORAGE_BINDING);
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-        let ones = vec![0xff; 4 * width as usize * height as usize];
+    pub fn output_texture(&self, format: wgpu::TextureFormat, size: impl Into<Size>) -> wgpu::Texture {
+        let size = size.into();
+        let texture = self.plain_texture(format, size, wgpu::TextureUsages::STORAGE_BINDING);
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.width), rows_per_image: None };
+        let ones = vec![0xff; 4 * size.pixels() as usize];
         self.gpu.queue.write_texture(texture.as_image_copy(), &ones, layout, texture.size());
         texture
     }
@@ -83,7 +85,7 @@ impl<'g> Bench<'g> {
     fn plain_texture(
         &self,
         format: wgpu::TextureFormat,
-        (width, height): Size,
+        Size { width, height }: Size,
         usage: wgpu::TextureUsages,
     ) -> wgpu::Texture {
         self.gpu.device.create_texture(&wgpu::TextureDescriptor {

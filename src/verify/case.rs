@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::{
     array::{Array, Comparison},
     bench::Bench,
-    dice::{Dice, Size},
+    dice::Dice,
     golden_hash,
     trial::{Subject, Trial},
     trials::subjects,
@@ -13,6 +13,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     gpu::DeviceChoice,
+    image::Size,
 };
 
 /// Compares what a device leaves with what the twins leave.
@@ -49,11 +50,12 @@ impl Case {
     ///
     /// # Errors
     /// [`Error::Parameter`] with the names that there are, and for a size out of range.
-    pub fn new(name: &str, size: Size, seed: u32) -> Result<Self> {
-        if size.0.min(size.1) == 0 || size.0.max(size.1) > MAX_SIDE {
+    pub fn new(name: &str, size: impl Into<Size>, seed: u32) -> Result<Self> {
+        let size = size.into();
+        if size.width.min(size.height) == 0 || size.width.max(size.height) > MAX_SIDE {
             return Err(Error::Parameter {
                 name: "size",
-                value: format!("{}x{}", size.0, size.1),
+                value: format!("{}x{}", size.width, size.height),
                 expected: format!("each side must be 1 to {MAX_SIDE} px"),
             });
         }
@@ -75,7 +77,7 @@ impl Case {
 
     /// The command that repeats this case alone, on `device`.
     pub fn command(&self, device: &DeviceChoice) -> String {
-        let (width, height) = self.size;
+        let Size { width, height } = self.size;
         let command = format!("hsad verify --only {} --size {width}x{height} --seed {}", self.subject.name, self.seed);
         match device {
             DeviceChoice::Named(name) => format!("{command} --device {}", quoted(name)),

@@ -3,11 +3,8 @@
 use crate::{
     dense::{Interpolation, View},
     disparity::DisparityRange,
-    image::Luma,
+    image::{Luma, Size},
 };
-
-/// Width and height of a picture in pixels.
-pub type Size = (u32, u32);
 
 /// A row of numbers that follow from a seed. SplitMix64: Steele, Lea, Flood: 'Fast splittable pseudorandom number
 /// generators', OOPSLA 2014.
@@ -65,30 +62,32 @@ impl Dice {
     }
 
     /// A picture: mostly smooth noise, sometimes something harder.
-    pub fn picture(&mut self, (width, height): Size) -> Luma {
+    pub fn picture(&mut self, size: impl Into<Size>) -> Luma {
+        let Size { width, height } = size.into();
         let seed = self.word();
         match self.below(16) {
-            0 => Luma::from_fn(width, height, |_, _| self.word() as u8),
+            0 => Luma::from_fn((width, height), |_, _| self.word() as u8),
             // Black and white in blocks.
-            1 => Luma::from_fn(width, height, |x, y| ((x / 5 + y / 3) % 2 * 255) as u8),
+            1 => Luma::from_fn((width, height), |x, y| ((x / 5 + y / 3) % 2 * 255) as u8),
             // Hardly any texture.
-            2 => smooth_noise(width, height, seed).map(|&value| 100 + value / 64),
+            2 => smooth_noise((width, height), seed).map(|&value| 100 + value / 64),
             // One grey value.
-            3 => Luma::filled(width, height, self.pick(&[0, 77, 255])),
-            _ => smooth_noise(width, height, seed),
+            3 => Luma::filled((width, height), self.pick(&[0, 77, 255])),
+            _ => smooth_noise((width, height), seed),
         }
     }
 
     /// Left and right view of two planes with a step between them, with some noise in the left one; sometimes of
     /// nothing that both see.
-    pub fn pair(&mut self, (width, height): Size) -> [Luma; 2] {
+    pub fn pair(&mut self, size: impl Into<Size>) -> [Luma; 2] {
+        let Size { width, height } = size.into();
         let right = self.picture((width, height));
         if self.below(8) == 0 {
             return [self.picture((width, height)), right];
         }
         let (upper, lower) = (i64::from(self.between(-4, 12)), i64::from(self.between(0, 24)));
         let noise = self.pick(&[1, 4, 16]);
-        let left = Luma::from_fn(width, height, |x, y| {
+        let left = Luma::from_fn((width, height), |x, y| {
             let disparity = if y < height / 2 { upper } else { lower };
             right.get_clamped(i64::from(x) - disparity, i64::from(y)).saturating_add(self.below(noise) as u8)
         });
@@ -97,7 +96,8 @@ impl Dice {
 }
 
 /// A picture of smooth noise and some grain, different for each `seed`.
-pub fn smooth_noise(width: u32, height: u32, seed: u32) -> Luma {
+pub fn smooth_noise(size: impl Into<Size>, seed: u32) -> Luma {
+    let Size { width, height } = size.into();
     // A value for every corner of a grid of 8 px, blended between the corners.
     let corner = |x: u32, y: u32| {
         let mut hash = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
@@ -105,7 +105,7 @@ pub fn smooth_noise(width: u32, height: u32, seed: u32) -> Luma {
         hash = (hash ^ hash >> 12).wrapping_mul(0x297A_2D39);
         (hash ^ hash >> 15) >> 24
     };
-    Luma::from_fn(width, height, |x, y| {
+    Luma::from_fn((width, height), |x, y| {
         let (i, j, fx, fy) = (x / 8, y / 8, x % 8, y % 8);
         let top = (8 - fx) * corner(i, j) + fx * corner(i + 1, j);
         let bottom = (8 - fx) * corner(i, j + 1) + fx * corner(i + 1, j + 1);

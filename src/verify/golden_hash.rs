@@ -4,6 +4,7 @@
 //! `powf`) that differ in their last digits from platform to platform.
 
 use super::array::{Array, Tolerance};
+use crate::image::Size;
 
 /// The hashes of all cases, one line each.
 pub(super) const STORED: &str = include_str!("goldens.txt");
@@ -25,7 +26,7 @@ fn fnv1a(bytes: impl Iterator<Item = u8>) -> u64 {
 }
 
 /// A case's line in the file, without the hash.
-pub(super) fn key(name: &str, (width, height): (u32, u32), seed: u32) -> String {
+pub(super) fn key(name: &str, Size { width, height }: Size, seed: u32) -> String {
     format!("{name} {width}x{height} {seed}")
 }
 

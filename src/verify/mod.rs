@@ -16,23 +16,33 @@ pub mod trials;
 pub use array::{Array, Comparison, Outliers, Tolerance, Values};
 pub use bench::Bench;
 pub use case::{Case, MAX_SIDE, Outcome, compare};
-pub use dice::{Dice, Size, smooth_noise};
+pub use dice::{Dice, smooth_noise};
 pub use trial::{Subject, Trial};
 pub use trials::subjects;
 
 use crate::{
     error::{Error, Result},
     gpu::{DeviceChoice, Gpu},
+    image::Size,
 };
 
 /// Sizes that divide by nothing, that are smaller than any filter, that are all edge.
-pub const SIZES: [Size; 8] = [(1, 1), (1, 67), (70, 1), (17, 13), (5, 700), (64, 48), (130, 131), (311, 239)];
+pub const SIZES: [Size; 8] = [
+    Size::new(1, 1),
+    Size::new(1, 67),
+    Size::new(70, 1),
+    Size::new(17, 13),
+    Size::new(5, 700),
+    Size::new(64, 48),
+    Size::new(130, 131),
+    Size::new(311, 239),
+];
 
 /// Those of them for what compiles many kernels for each, which software drivers take seconds for.
-const PIPELINE_SIZES: [Size; 4] = [(1, 1), (17, 13), (130, 131), (311, 239)];
+const PIPELINE_SIZES: [Size; 4] = [Size::new(1, 1), Size::new(17, 13), Size::new(130, 131), Size::new(311, 239)];
 
 /// Large enough for every kernel to have something to do.
-const QUICK_SIZE: Size = (131, 67);
+const QUICK_SIZE: Size = Size::new(131, 67);
 
 /// How much is verified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,12 +2,8 @@
 
 use std::fmt;
 
-use super::{
-    array::Array,
-    bench::Bench,
-    dice::{Dice, Size},
-};
-use crate::error::Result;
+use super::{array::Array, bench::Bench, dice::Dice};
+use crate::{error::Result, image::Size};
 
 /// A kernel, or several in a row, with everything they are given.
 pub trait Trial {

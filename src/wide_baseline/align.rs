@@ -10,7 +10,7 @@ use crate::{
     error::Result,
     features::{Feature, FeatureConfig},
     filter::resample,
-    image::Luma,
+    image::{Luma, Size},
     matching::{Match, MatchConfig, Seed, match_features},
     seeding::{Rectification, Verdict},
 };
@@ -119,7 +119,7 @@ async fn turned(
     let left = columns.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-reach, reach);
     let right = columns.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().clamp(left, 2.0 * reach);
     let map = DAffine2::from_translation(DVec2::new(-left, 0.0)) * map;
-    let size = ((right - left) as u32 + 1, first.height());
+    let size = Size::new((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
     Ok(Aligned { view: View::new(detectors, luma, features).await?, map, rectified: false })

@@ -6,7 +6,7 @@ use crate::{
     error::Result,
     features::{Detector, Feature, FeatureConfig},
     gpu::Gpu,
-    image::Luma,
+    image::{Luma, Size},
     luma::{pack, upload},
 };
 
@@ -19,7 +19,7 @@ pub(super) struct DetectorCache<'b> {
 
 /// A detector, the picture size (width and height in pixels) and configuration it was built for, and its luma buffer.
 struct SizedDetector {
-    size: (u32, u32),
+    size: Size,
     config: FeatureConfig,
     luma: wgpu::Buffer,
     detector: Detector,

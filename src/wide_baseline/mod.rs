@@ -294,7 +294,7 @@ mod tests {
                 }
             }
         }
-        Picture::new(200, 160, grey.iter().map(|v| [(128.0 + v).clamp(0.0, 255.0) as u8; 4]).collect()).unwrap()
+        Picture::new((200, 160), grey.iter().map(|v| [(128.0 + v).clamp(0.0, 255.0) as u8; 4]).collect()).unwrap()
     }
 
     /// Matches of the picture with its changed copy, and their precision at 1.5 px.
@@ -305,7 +305,7 @@ mod tests {
         let config = WideBaselineConfig { adapt, ..WideBaselineConfig::default() };
         let found =
             pollster::block_on(match_views(&backend, &picture.luma(), &changed.picture.luma(), &config)).unwrap();
-        let truth = Truth::stereo(Plane::filled(200, 160, 0.0), None).unwrap().changed(&changed);
+        let truth = Truth::stereo(Plane::filled((200, 160), 0.0), None).unwrap().changed(&changed);
         let matches: Vec<PointMatch> = found.matches.iter().map(PointMatch::from).collect();
         let judged = Judged::new(&matches, &truth, 1.5).unwrap();
         (found, judged.precision())
@@ -343,7 +343,7 @@ mod tests {
     #[test]
     fn nothing_is_found_in_nothing() {
         let backend = Backend::open(&DeviceChoice::Cpu).unwrap();
-        let (flat, tiny) = (Luma::filled(60, 50, 7), Luma::filled(1, 1, 0));
+        let (flat, tiny) = (Luma::filled((60, 50), 7), Luma::filled((1, 1), 0));
         for (first, second) in [(&flat, &flat), (&flat, &tiny), (&tiny, &flat)] {
             assert!(
                 pollster::block_on(match_views(&backend, first, second, &WideBaselineConfig::default()))

@@ -2,18 +2,18 @@
 
 use std::io::Cursor;
 
-use hsad::io::Picture;
+use hsad::{image::Size, io::Picture};
 use image::{
     DynamicImage, GrayAlphaImage, ImageBuffer, ImageFormat, LumaA, Rgb, RgbImage, Rgba, RgbaImage,
     codecs::jpeg::JpegEncoder,
 };
 
-const SIZE: (u32, u32) = (24, 16);
+const SIZE: Size = Size::new(24, 16);
 
 /// All files, with their names.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
-    let (width, height) = SIZE;
-    let picture = Picture::from_fn(width, height, |x, y| [(x * 10) as u8, (y * 15) as u8, (200 - 3 * x) as u8, 255]);
+    let Size { width, height } = SIZE;
+    let picture = Picture::from_fn((width, height), |x, y| [(x * 10) as u8, (y * 15) as u8, (200 - 3 * x) as u8, 255]);
     let grey = GrayAlphaImage::from_fn(width, height, |x, y| LumaA([(7 * x + 3 * y) as u8, (9 * x) as u8]));
     // Values whose upper bytes rounding to 8 bits would change.
     let deep = ImageBuffer::from_fn(width, height, |x, y| Rgb([x, y, x + y].map(|v| (v * 1500 + 255) as u16)));
@@ -45,12 +45,12 @@ pub fn jpeg(picture: &Picture) -> Vec<u8> {
 /// A palette with transparency, and a gamma that is not a screen's.
 fn palette_png() -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, SIZE.0, SIZE.1);
+    let mut encoder = png::Encoder::new(&mut bytes, SIZE.width, SIZE.height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette((0..=255).flat_map(|index: u8| [index, 255 - index, index / 2]).collect::<Vec<_>>());
     encoder.set_trns((0..=255).rev().collect::<Vec<u8>>());
     encoder.set_source_gamma(png::ScaledFloat::new(1.0));
-    let indices: Vec<u8> = (0..SIZE.0 * SIZE.1).map(|index| (index * 5) as u8).collect();
+    let indices: Vec<u8> = (0..SIZE.width * SIZE.height).map(|index| (index * 5) as u8).collect();
     encoder.write_header().unwrap().write_image_data(&indices).unwrap();
     bytes
 }

@@ -49,7 +49,7 @@ fn sizes_that_do_not_fit() {
     let temporary = folder();
     let [small, tiny] = ["small.png", "tiny.png"].map(|name| temporary.path().join(name));
     grey_png(&small, &noise(40, 9, 1));
-    grey_png(&tiny, &Plane::filled(1, 1, 7));
+    grey_png(&tiny, &Plane::filled((1, 1), 7));
     pair_fails(&scene("planes", "left.png"), &small, &[], 1, "340x255 and the right view 40x9");
     pair_fails(&tiny, &tiny, &[], 1, "1x1 pixels is too small for a window of 5x5");
     pair_fails(&small, &small, &["--window", "11"], 1, "40x9 pixels is too small for a window of 11x11");
@@ -156,13 +156,13 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
     let picture = hsad::io::load::load(&scene("planes", "left.png")).unwrap().luma();
     let [left, lower] = ["left.png", "lower.png"].map(|name| temporary.path().join(name));
     grey_png(&left, &picture);
-    grey_png(&lower, &Plane::from_fn(340, 255, |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 6)));
+    grey_png(&lower, &Plane::from_fn((340, 255), |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 6)));
     pair_fails(&left, &lower, &[], 3, "rectify it first, or search along rows all the same with --force");
 
     // A rotation by 90 degrees, which only features with orientations match.
     let [square, turned] = ["square.png", "turned.png"].map(|name| temporary.path().join(name));
-    grey_png(&square, &Plane::from_fn(255, 255, |x, y| picture.get(x, y)));
-    grey_png(&turned, &Plane::from_fn(255, 255, |x, y| picture.get(y, 254 - x)));
+    grey_png(&square, &Plane::from_fn((255, 255), |x, y| picture.get(x, y)));
+    grey_png(&turned, &Plane::from_fn((255, 255), |x, y| picture.get(y, 254 - x)));
     pair_fails(&square, &turned, &[], 3, "is turned 90.0");
 
     let out = temporary.path().join("out");

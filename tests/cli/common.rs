@@ -56,7 +56,7 @@ pub fn grey_png(path: &Path, picture: &Plane<u8>) {
 /// Random grey values, different for each `seed`.
 pub fn noise(width: u32, height: u32, seed: u32) -> Plane<u8> {
     let mut state = seed;
-    Plane::from_fn(width, height, |_, _| {
+    Plane::from_fn((width, height), |_, _| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (state >> 24) as u8
     })

@@ -8,7 +8,7 @@ use std::{
 use assert_cmd::Command;
 use hsad::{
     disparity::{DisparityMap, NONE},
-    image::Plane,
+    image::{Plane, Size},
     io::{disparity_png, load, pfm},
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
@@ -18,7 +18,7 @@ use crate::common::{fails, folder, grey_png, hsad, names, noise, scene as shippe
 #[cfg(unix)]
 use crate::interruption::Run;
 
-const SIZE: (u32, u32) = (64, 48);
+const SIZE: Size = Size::new(64, 48);
 
 /// Shift of a scene's right view, in pixels.
 const SHIFT: u32 = 4;
@@ -33,8 +33,8 @@ fn eval(scenes: &[&Path]) -> Command {
 
 /// Writes two views of noise, shifted by [`SHIFT`].
 fn views(left: &Path, right: &Path, seed: u32) {
-    let picture = noise(SIZE.0 + SHIFT, SIZE.1, seed);
-    let part = |start: u32| Plane::from_fn(SIZE.0, SIZE.1, |x, y| picture.get(x + start, y));
+    let picture = noise(SIZE.width + SHIFT, SIZE.height, seed);
+    let part = |start: u32| Plane::from_fn(SIZE, |x, y| picture.get(x + start, y));
     for path in [left, right] {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
     }
@@ -44,7 +44,7 @@ fn views(left: &Path, right: &Path, seed: u32) {
 
 /// The true map: [`SHIFT`] everywhere.
 fn truth() -> DisparityMap {
-    Plane::filled(SIZE.0, SIZE.1, 256 * SHIFT as i32)
+    Plane::filled(SIZE, 256 * SHIFT as i32)
 }
 
 fn write_pfm(path: &Path, map: &DisparityMap) {
@@ -66,7 +66,7 @@ fn scene(parent: &Path, name: &str) -> PathBuf {
     let path = parent.join(name);
     views(&path.join("left.png"), &path.join("right.png"), name.len() as u32);
     write_pfm(&path.join("disp_left.pfm"), &truth());
-    grey_png(&path.join("nonocc.png"), &Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < SHIFT { 0 } else { 255 }));
+    grey_png(&path.join("nonocc.png"), &Plane::from_fn(SIZE, |x, _| if x < SHIFT { 0 } else { 255 }));
     path
 }
 
@@ -115,11 +115,11 @@ fn scores_a_folder_of_scenes_in_every_form() {
     let map = pfm::read_disparities(&out.join("b/disparity.pfm")).unwrap();
     let found = map.data().iter().filter(|&&d| d != NONE).count();
     assert_eq!(report["results"][1]["all"]["estimated"], found);
-    assert_eq!(load::load(&out.join("b/figure.png")).unwrap().size(), (4 * SIZE.0 + 3 * 8, SIZE.1));
+    assert_eq!(load::load(&out.join("b/figure.png")).unwrap().size(), (4 * SIZE.width + 3 * 8, SIZE.height));
     // Occluded pixels without an estimate are a third of white.
     let errors = load::load(&out.join("b/error.png")).unwrap();
     assert_eq!((map.get(0, 0), errors.rgb(0, 0)), (NONE, [85; 3]));
-    assert_eq!(errors.rgb(SIZE.0 / 2, SIZE.1 / 2), [44, 123, 182]);
+    assert_eq!(errors.rgb(SIZE.width / 2, SIZE.height / 2), [44, 123, 182]);
 }
 
 #[test]
@@ -128,11 +128,11 @@ fn knows_the_layouts_of_middlebury_and_kitti() {
     let path = |name: &str| temporary.path().join(name);
     views(&path("Piano/im0.png"), &path("Piano/im1.png"), 1);
     write_pfm(&path("Piano/disp0GT.pfm"), &truth());
-    grey_png(&path("Piano/mask0nocc.png"), &Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < 8 { 128 } else { 255 }));
+    grey_png(&path("Piano/mask0nocc.png"), &Plane::from_fn(SIZE, |x, _| if x < 8 { 128 } else { 255 }));
     for frame in ["000000_10", "000001_10", "000002_10"] {
         let file = |folder: &str| path("training").join(folder).join(frame).with_extension("png");
         views(&file("image_2"), &file("image_3"), 2);
-        let known = |from: u32| Plane::from_fn(SIZE.0, SIZE.1, |x, _| if x < from { NONE } else { 1024 });
+        let known = |from: u32| Plane::from_fn(SIZE, |x, _| if x < from { NONE } else { 1024 });
         write_png(&file("disp_occ_0"), &known(1));
         write_png(&file("disp_noc_0"), &known(16));
     }
@@ -140,7 +140,7 @@ fn knows_the_layouts_of_middlebury_and_kitti() {
     let frame = path("training/image_2/000002_10.png");
     eval(&[&path("Piano"), &frame]).arg("--csv").arg(&csv).assert().success();
     assert_eq!(column(&csv, "scene"), ["Piano", "Piano", "000002_10", "000002_10"]);
-    let pixels = [56, 64, 48, 63].map(|columns| (columns * SIZE.1).to_string());
+    let pixels = [56, 64, 48, 63].map(|columns| (columns * SIZE.height).to_string());
     assert_eq!(column(&csv, "pixels"), pixels);
     assert!(column(&csv, "d1_est").iter().all(|share| share.parse::<f64>().unwrap() < 0.01));
     eval(&[&path("training")]).arg("--csv").arg(&csv).assert().success();
@@ -172,9 +172,9 @@ fn maps_of_other_programs_are_scored_beside_ours() {
     for name in ["a", "bb"] {
         write_pfm(&path("maps").join(name).join("perfect.pfm"), &truth());
         // Off by 5 px on the left half, and empty in one row.
-        let off = |x: u32, y: u32| if y == 0 { NONE } else { 1024 + if x < SIZE.0 / 2 { 1280 } else { 0 } };
-        write_png(&path("maps").join(name).join("off.png"), &Plane::from_fn(SIZE.0, SIZE.1, off));
-        write_pfm(&path("maps").join(name).join("empty.pfm"), &Plane::filled(SIZE.0, SIZE.1, NONE));
+        let off = |x: u32, y: u32| if y == 0 { NONE } else { 1024 + if x < SIZE.width / 2 { 1280 } else { 0 } };
+        write_png(&path("maps").join(name).join("off.png"), &Plane::from_fn(SIZE, off));
+        write_pfm(&path("maps").join(name).join("empty.pfm"), &Plane::filled(SIZE, NONE));
     }
     let option = |name: &str, file: &str| format!("--disparity={name}={}/{{scene}}/{file}", path("maps").display());
     let others = [option("perfect", "perfect.pfm"), option("off", "off.png"), option("empty", "empty.pfm")];
@@ -186,7 +186,7 @@ fn maps_of_other_programs_are_scored_beside_ours() {
     let methods: Vec<_> = column(&csv, "method").into_iter().skip(1).step_by(2).collect();
     assert_eq!(methods, ["hsad", "perfect", "off", "empty", "hsad", "perfect", "off", "empty"]);
     let all = |name: &str| column(&csv, name).into_iter().skip(1).step_by(2).skip(1).take(3).collect::<Vec<_>>();
-    let rows = f64::from(SIZE.1);
+    let rows = f64::from(SIZE.height);
     assert_eq!(all("bad_4"), ["0".into(), (0.5 + 0.5 / rows).to_string(), "1".to_owned()]);
     assert_eq!(all("bad_4_est"), ["0", "0.5", ""]);
     assert_eq!(all("d1_est"), ["0", "0.5", ""]);
@@ -208,7 +208,7 @@ fn what_fails_is_told_and_loses_nothing_else() {
     let path = |name: &str| temporary.path().join(name);
     let [good, cut, small, nothing] = ["good", "cut", "small", "nothing"].map(|name| scene(&path(""), name));
     fs::write(cut.join("right.png"), b"no picture").unwrap();
-    write_pfm(&small.join("disp_left.pfm"), &Plane::filled(3, 2, 0));
+    write_pfm(&small.join("disp_left.pfm"), &Plane::filled((3, 2), 0));
     for file in names(&nothing) {
         fs::remove_file(nothing.join(file)).unwrap();
     }
@@ -251,7 +251,7 @@ fn bad_input_is_one_line_and_a_code() {
     let path = |name: &str| temporary.path().join(name);
     let good = scene(&path(""), "good");
     fs::create_dir(path("empty")).unwrap();
-    write_pfm(&path("small.pfm"), &Plane::filled(3, 2, 0));
+    write_pfm(&path("small.pfm"), &Plane::filled((3, 2), 0));
     fs::write(path("text.pfm"), "this is text").unwrap();
 
     let bad = |scenes: &[&Path], args: &[&str], code: i32, expected: &str| {
@@ -312,7 +312,7 @@ fn finished_scenes_are_kept_until_something_changes() {
     // A changed picture invalidates all methods of its scene.
     views(&scenes[0].join("left.png"), &path("unused.png"), 77);
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
-    write_pfm(&path("maps/bb.pfm"), &Plane::filled(SIZE.0, SIZE.1, 0));
+    write_pfm(&path("maps/bb.pfm"), &Plane::filled(SIZE, 0));
     assert_eq!(run(&[]).0, Some("3 of 4".into()));
     // A saved result with a missing file, and one changed by hand.
     fs::remove_file(out.join("a/error.png")).unwrap();
@@ -347,7 +347,7 @@ fn an_interruption_keeps_what_is_finished() {
     for name in ["left.png", "right.png"] {
         grey_png(&large.join(name), &noise(1500, 1300, 3));
     }
-    write_pfm(&large.join("disp_left.pfm"), &Plane::filled(1500, 1300, 0));
+    write_pfm(&large.join("disp_left.pfm"), &Plane::filled((1500, 1300), 0));
     let out = path("out");
     let options = ["eval", "dense", "-q", "--device", "cpu", "--disparities", "1000", "--force", "-o"];
     let arguments = options.iter().map(std::ffi::OsStr::new).chain([&out, &small, &large].map(|path| path.as_os_str()));

@@ -296,14 +296,14 @@ fn scenes_whose_files_do_not_fit_are_named() {
         fs::copy(scene("weak").join(file), copy.join(file)).unwrap();
     }
     evaluate(&[copy]).assert().success();
-    grey_png(&copy.join("nonocc.png"), &Plane::filled(9, 9, 255));
+    grey_png(&copy.join("nonocc.png"), &Plane::filled((9, 9), 255));
     fails(evaluate(&[copy]), 1, "its size is 9x9 and that of the views 287x215");
-    grey_png(&copy.join("right.png"), &Plane::filled(9, 9, 255));
+    grey_png(&copy.join("right.png"), &Plane::filled((9, 9), 255));
     let mut twice = evaluate(&[copy]);
     twice.args(["--condition", "none", "--condition", "gain"]);
     fails(twice, 1, "287x215 and the right view 9x9");
     for file in ["left.png", "right.png"] {
-        grey_png(&copy.join(file), &Plane::filled(9, 9, 255));
+        grey_png(&copy.join(file), &Plane::filled((9, 9), 255));
     }
     fails(evaluate(&[copy]), 1, "its size is 287x215 and that of the views 9x9");
 }
@@ -324,7 +324,8 @@ fn scenes_have_any_layout_that_maps_are_scored_in() {
         copy(from, kitti.join(to).join("000007_10.png"));
     }
     let truth = pfm::read(&scene("planes").join("disp_left.pfm")).unwrap();
-    let truth = DisparityMap::new(340, 255, truth.data().iter().map(|&pixels| fixed_point(pixels)).collect()).unwrap();
+    let truth =
+        DisparityMap::new((340, 255), truth.data().iter().map(|&pixels| fixed_point(pixels)).collect()).unwrap();
     let mut png = Vec::new();
     disparity_png::write(&mut png, &truth).unwrap();
     fs::create_dir(kitti.join("disp_occ_0")).unwrap();

@@ -20,12 +20,12 @@ use crate::common::{fails, folder, grey_png, hsad, names, report, scene as shipp
 fn part(parent: &Path, name: &str) -> PathBuf {
     let path = parent.join(name);
     fs::create_dir_all(&path).unwrap();
-    let part_of = |plane: &Plane<u8>| Plane::from_fn(200, 120, |x, y| plane.get(x + 120, y + 60));
+    let part_of = |plane: &Plane<u8>| Plane::from_fn((200, 120), |x, y| plane.get(x + 120, y + 60));
     for file in ["left.png", "right.png", "nonocc.png"] {
         grey_png(&path.join(file), &part_of(&load::load(&shipped("planes", file)).unwrap().luma()));
     }
     let truth = pfm::read(&shipped("planes", "disp_left.pfm")).unwrap();
-    let truth = Plane::from_fn(200, 120, |x, y| fixed_point(truth.get(x + 120, y + 60)));
+    let truth = Plane::from_fn((200, 120), |x, y| fixed_point(truth.get(x + 120, y + 60)));
     let mut bytes = Vec::new();
     pfm::write_disparities(&mut bytes, &truth).unwrap();
     fs::write(path.join("disp_left.pfm"), bytes).unwrap();

@@ -74,7 +74,7 @@ fn large_pictures_are_reduced_unless_told_otherwise() {
     let path = folder.path().join("large.png");
     // Blobs of 16 px, which are detected at full and at reduced size.
     let blobs = noise(125, 75, 5);
-    grey_png(&path, &Plane::from_fn(2000, 1200, |x, y| blobs.get(x / 16, y / 16)));
+    grey_png(&path, &Plane::from_fn((2000, 1200), |x, y| blobs.get(x / 16, y / 16)));
     let run = |option: &[&str]| {
         let mut command = hsad();
         command.arg("features").arg(&path).args(option).args(["--device", "cpu", "--upright"]);

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use hsad::{
     disparity::{NONE, coverage},
-    image::Plane,
+    image::{Plane, Size},
     io::{disparity_png, load, pfm},
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
@@ -150,7 +150,7 @@ fn the_hybrid_method_takes_any_picture() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);
     for (width, height) in [(1, 1), (3, 1), (1, 40), (50, 30)] {
-        grey_png(&path("black.png"), &Plane::filled(width, height, 0));
+        grey_png(&path("black.png"), &Plane::filled((width, height), 0));
         grey_png(&path("noise.png"), &noise(width, height, 3));
         for (left, right) in [("black.png", "black.png"), ("black.png", "noise.png"), ("noise.png", "noise.png")] {
             let mut command = match_on_cpu(&path(left), &path(right), &path("out"));
@@ -273,7 +273,7 @@ fn a_range_that_misses_the_matches_is_told() {
 fn pictures_without_depth_give_results_without_measured_disparities() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);
-    grey_png(&path("black.png"), &Plane::filled(90, 70, 0));
+    grey_png(&path("black.png"), &Plane::filled((90, 70), 0));
     for seed in [1, 2] {
         grey_png(&path(&format!("noise{seed}.png")), &noise(90, 70, seed));
     }
@@ -322,7 +322,7 @@ fn without_a_driver_the_cpu_works_and_says_so() {
 fn other_kinds_of_pictures_are_read() {
     let temporary = folder();
     let luma = load::load(&scene("weak", "left.png")).unwrap().luma();
-    let (width, height) = luma.size();
+    let Size { width, height } = luma.size();
     let deep = image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([u16::from(luma.get(x, y)) * 257]));
     let alpha = image::ImageBuffer::from_fn(width, height, |x, y| image::LumaA([luma.get(x, y), x as u8]));
     let [deep_path, alpha_path] = ["deep.png", "alpha.png"].map(|name| temporary.path().join(name));

@@ -6,7 +6,7 @@ use hsad::{
     dense::DenseConfig,
     disparity::DisparityRange,
     gpu::Gpu,
-    image::Luma,
+    image::{Luma, Size},
     verify::{Bench, smooth_noise},
     wgpu::{self, Features, Limits, TextureFormat, TextureUsages},
 };
@@ -52,7 +52,7 @@ impl Application {
     pub fn texture(
         &self,
         format: TextureFormat,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         usage: TextureUsages,
         view_formats: &[TextureFormat],
     ) -> wgpu::TextureView {
@@ -77,10 +77,10 @@ impl Application {
 }
 
 /// A left and a right view, shifted by 5 px at the top and by more further down.
-pub fn pair((width, height): (u32, u32), seed: u32) -> [Luma; 2] {
-    let right = smooth_noise(width, height, seed);
+pub fn pair(Size { width, height }: Size, seed: u32) -> [Luma; 2] {
+    let right = smooth_noise((width, height), seed);
     let left =
-        Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
+        Luma::from_fn((width, height), |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
     [left, right]
 }
 

@@ -7,13 +7,14 @@ use hsad::{
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::{REQUIRED_LIMITS, block_on},
+    image::Size,
     luma::{Input, Source},
     wgpu::{Buffer, BufferUsages, Features, Limits, TextureFormat, TextureUsages},
 };
 
 use crate::application::{Application, config, pair};
 
-const SIZE: (u32, u32) = (40, 30);
+const SIZE: Size = Size::new(40, 30);
 const BYTES: u64 = 4 * 40 * 30;
 
 #[test]
@@ -37,7 +38,7 @@ fn resources_that_will_not_do() {
             }
         }
     };
-    let texture = |format, size, usage| application.texture(format, size, usage, &[]);
+    let texture = |format, size: Size, usage| application.texture(format, size, usage, &[]);
     let small = application.buffer(BYTES / 4 - 4, BufferUsages::COPY_SRC);
     input(Source::Luma(&small), &["buffer of 1196 bytes", "1200 bytes are needed"]);
     input(
@@ -48,7 +49,7 @@ fn resources_that_will_not_do() {
     input(Source::Texture(&texture(TextureFormat::Rg8Unorm, SIZE, readable)), &["format Rg8Unorm", "R16Float"]);
     input(Source::Texture(&texture(TextureFormat::R32Float, SIZE, readable)), &["format R32Float", "Bgra8UnormSrgb"]);
     input(Source::TextureAs(&good, TextureFormat::R16Float), &["format R16Float", "the texture has Rgba8Unorm"]);
-    input(Source::Texture(&texture(rgba, (30, 40), readable)), &["30x40 pixels", "the pair has 40x30"]);
+    input(Source::Texture(&texture(rgba, Size::new(30, 40), readable)), &["30x40 pixels", "the pair has 40x30"]);
     let written = TextureUsages::STORAGE_BINDING;
     input(Source::Texture(&texture(rgba, SIZE, written)), &["STORAGE_BINDING", "needs TextureUsages(TEXTURE_BINDING)"]);
     input(Source::Texture(&elsewhere.texture(rgba, SIZE, readable, &[])), &["device"]);
@@ -74,7 +75,7 @@ fn resources_that_will_not_do() {
     let map = TextureFormat::R32Float;
     let unsigned = texture(TextureFormat::R32Uint, SIZE, written);
     output(Destination::Texture(&unsigned), None, &["format R32Uint", "R32Sint", "R32Float"]);
-    let size = texture(map, (40, 31), written);
+    let size = texture(map, Size::new(40, 31), written);
     output(Destination::Texture(&size), None, &["40x31 pixels", "the pair has 40x30"]);
     let usage = texture(map, SIZE, TextureUsages::COPY_DST);
     output(Destination::Texture(&usage), None, &["needs TextureUsages(STORAGE_BINDING)"]);

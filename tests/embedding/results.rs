@@ -7,14 +7,14 @@ use hsad::{
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::block_on,
-    image::Luma,
+    image::{Luma, Size},
     luma::{Source, pack},
     wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
 };
 
 use crate::application::{Application, config, pair};
 
-const SIZE: (u32, u32) = (131, 67);
+const SIZE: Size = Size::new(131, 67);
 
 /// The texels of a grey picture.
 fn texels(luma: &Luma, format: TextureFormat) -> Vec<u8> {
@@ -52,7 +52,7 @@ fn textures_in_and_out_in_bands_and_not() {
             for texel in MapTexel::ALL {
                 let map = bench.output_texture(texel.format(), SIZE);
                 let view = map.create_view(&wgpu::TextureViewDescriptor::default());
-                let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
+                let confidences = bench.output(SIZE.width.div_ceil(4) * SIZE.height).unwrap();
                 let outputs = matcher.outputs(Destination::Texture(&view), Some(&confidences)).unwrap();
                 bench.run(|encoder| {
                     inputs.record(encoder);
@@ -87,8 +87,8 @@ fn frames_take_turns_in_one_encoder() {
         let right = bench.texture(TextureFormat::Rgba8Unorm, SIZE, &texels(right, TextureFormat::Rgba8Unorm));
         let inputs = matcher.inputs(Source::Luma(&left), Source::Texture(&right)).unwrap();
         // The buffer has one word more than needed, which must not change.
-        let map = bench.output(SIZE.0 * SIZE.1 + 1).unwrap();
-        let confidences = bench.output(SIZE.0.div_ceil(4) * SIZE.1).unwrap();
+        let map = bench.output(SIZE.width * SIZE.height + 1).unwrap();
+        let confidences = bench.output(SIZE.width.div_ceil(4) * SIZE.height).unwrap();
         let outputs = matcher.outputs(Destination::Buffer(&map), Some(&confidences)).unwrap();
         (inputs, outputs, map, confidences)
     });
@@ -101,7 +101,7 @@ fn frames_take_turns_in_one_encoder() {
     for ([left, right], (.., map, confidences)) in frames.iter().zip(&prepared) {
         let expected = compute(left, right, &config()).unwrap();
         let disparities = bench.download::<i32>(map).unwrap();
-        let (disparities, rest) = disparities.split_at((SIZE.0 * SIZE.1) as usize);
+        let (disparities, rest) = disparities.split_at((SIZE.width * SIZE.height) as usize);
         assert_answers("a frame", disparities, &bench.download::<u32>(confidences).unwrap(), &expected);
         assert_eq!(rest, [-1]);
     }
@@ -119,7 +119,7 @@ fn a_view_may_have_another_format_than_its_texture() {
     let srgb = TextureFormat::Rgba8UnormSrgb;
     let textures = views.each_ref().map(|view| {
         let plain = application.texture(TextureFormat::Rgba8Unorm, SIZE, usage, &[srgb]);
-        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * SIZE.0), ..Default::default() };
+        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * SIZE.width), ..Default::default() };
         let texture = plain.texture();
         application.gpu.queue.write_texture(texture.as_image_copy(), &texels(view, srgb), layout, texture.size());
         texture.create_view(&wgpu::TextureViewDescriptor { format: Some(srgb), ..Default::default() })
@@ -265,7 +265,7 @@ fn a_map_goes_to_a_buffer_that_can_be_mapped() {
     for (view, luma) in [&left, &right].into_iter().zip(matcher.luma()) {
         application.bench().write(luma, &pack(view));
     }
-    let bytes = 4 * u64::from(SIZE.0) * u64::from(SIZE.1);
+    let bytes = 4 * u64::from(SIZE.width) * u64::from(SIZE.height);
     let map = application.buffer(bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
     let outputs = matcher.outputs(Destination::Buffer(&map), None).unwrap();
     application.bench().run(|encoder| matcher.record(encoder, &outputs));

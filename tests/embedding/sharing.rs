@@ -9,14 +9,14 @@ use hsad::{
     disparity::DisparityRange,
     features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
     gpu::{Gpu, block_on},
-    image::Luma,
+    image::{Luma, Size},
     luma::{Input, Source},
     wgpu::{Features, Limits, PipelineCacheDescriptor, TextureFormat, TextureUsages},
 };
 
 use crate::application::{Application, config, pair};
 
-const SIZE: (u32, u32) = (131, 67);
+const SIZE: Size = Size::new(131, 67);
 
 #[test]
 fn everything_goes_to_other_threads() {
@@ -84,7 +84,7 @@ fn the_pipeline_cache_of_the_application_is_used() {
     });
     let [own, foreign] = caches.map(|cache| applications[0].gpu.clone().with_cache(cache));
     let matcher = Matcher::new(&own, SIZE, &config()).unwrap();
-    let black = Luma::filled(SIZE.0, SIZE.1, 0);
+    let black = Luma::filled(SIZE, 0);
     assert_eq!(matcher.run().unwrap(), compute(&black, &black, &config()).unwrap());
 
     let picture = applications[0].texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);

@@ -18,7 +18,7 @@ fn features_of_a_texture_are_read_from_their_buffers() {
     let application = Application::new();
     let (gpu, bench) = (&application.gpu, application.bench());
     let size = (311, 239);
-    let luma = smooth_noise(size.0, size.1, 7);
+    let luma = smooth_noise(size, 7);
     let view = bench.texture(TextureFormat::R8Unorm, size, luma.data());
     let matcher = Matcher::new(gpu, size, &config()).unwrap();
     let inputs = matcher.inputs(Source::Texture(&view), Source::Texture(&view)).unwrap();

@@ -75,7 +75,7 @@ pub fn keypoints_of(picture: &Luma, threshold: f32) -> Vec<Keypoint> {
 
 /// Pictures of all [`SIZES`] and [`photographs`], each with a name.
 pub fn pictures() -> Vec<(String, Luma)> {
-    let noise = SIZES.map(|(width, height)| (format!("{width}x{height}"), picture(width, height, 1)));
+    let noise = SIZES.map(|size| (size.to_string(), picture(size, 1)));
     let real = photographs().into_iter().map(|(name, picture)| (name, picture.luma()));
     noise.into_iter().chain(real).collect()
 }

@@ -3,6 +3,7 @@
 use hsad::{
     Result,
     error::Error,
+    image::Size,
     verify::{Array, Bench, Case, Subject, Trial},
 };
 
@@ -57,7 +58,7 @@ fn wrong_results_and_errors_are_faults() {
     let expected =
         ["words: value 2 is 4, not 3", "2 words u32, not 3", "cannot run this: command: ", "fell off the bus"];
     for (subject, expected) in SUBJECTS.iter().zip(expected) {
-        let outcome = Case { subject, size: (1, 1), seed: 1 }.run(&bench());
+        let outcome = Case { subject, size: Size::new(1, 1), seed: 1 }.run(&bench());
         assert!(!outcome.passes() && outcome.faults[0].contains(expected), "{}: {:?}", subject.name, outcome.faults);
         assert_eq!(outcome.lost, subject.name == "error");
     }

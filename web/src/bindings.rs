@@ -30,7 +30,7 @@ impl View {
     #[wasm_bindgen(constructor)]
     pub fn new(width: u32, height: u32, rgba: &[u8]) -> Result<Self, JsValue> {
         let (pixels, _) = rgba.as_chunks();
-        Picture::new(width, height, pixels.to_vec()).map(Self).map_err(thrown)
+        Picture::new((width, height), pixels.to_vec()).map(Self).map_err(thrown)
     }
 
     /// Decodes the picture in a file's bytes as the command line does; the browser's own decoder changes the colours of

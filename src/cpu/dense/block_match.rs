@@ -6,13 +6,13 @@ use super::CellPlane;
 use crate::{
     dense::{Dense, DenseConfig, Interpolation, View, kernels::CELL},
     disparity::{DisparityMap, NONE, SCALE},
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
 };
 
 /// For each pixel of `view` the disparity of least cost, unless its best rival is too close. Ties go to the smaller
 /// disparity. Where there are `ranges`, only those of the pixel's cell are searched.
 pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, ranges: Option<&CellPlane>) -> Dense {
-    let (width, height) = left.size();
+    let Size { width, height } = left.size();
     let rows: Vec<Vec<(i32, u8)>> = (0..height)
         .into_par_iter()
         .map(|y| {
@@ -32,8 +32,8 @@ pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, 
         .collect();
     let pixels = |x: u32, y: u32| rows[y as usize][x as usize];
     Dense {
-        disparity: Plane::from_fn(width, height, |x, y| pixels(x, y).0),
-        confidence: Plane::from_fn(width, height, |x, y| pixels(x, y).1),
+        disparity: Plane::from_fn((width, height), |x, y| pixels(x, y).0),
+        confidence: Plane::from_fn((width, height), |x, y| pixels(x, y).1),
     }
 }
 
@@ -130,14 +130,14 @@ mod tests {
     fn a_cost_by_hand() {
         // Windows of 3x3 around (0, 0) and (1, 0) of a single row, continued beyond the edges:
         // 5 5 9 against 5 9 2, three times.
-        let row = Luma::new(3, 1, vec![5, 9, 2]).unwrap();
+        let row = Luma::new((3, 1), vec![5, 9, 2]).unwrap();
         let costs = row_costs(&row, &row, View::Left, 0, &config(-1, 1).with_window(3));
         assert_eq!(costs[0], [Some(3 * (4 + 7))]);
     }
 
     #[test]
     fn ties_go_to_the_smaller_disparity() {
-        let flat = Luma::filled(5, 3, 7);
+        let flat = Luma::filled((5, 3), 7);
         let dense = block_match(&flat, &flat, View::Left, &config(-1, 3), None);
         // The first column has no partner at disparity 1, the last none at -1.
         assert_eq!(dense.disparity.row(1), [-SCALE, -SCALE, -SCALE, -SCALE, 0]);
@@ -166,8 +166,8 @@ mod tests {
 
     #[test]
     fn both_views_see_one_shift() {
-        let left = Luma::from_fn(24, 8, |x, y| ((x * 37 + y * 91).wrapping_mul(2_654_435_761) >> 13) as u8);
-        let right = Luma::from_fn(24, 8, |x, y| left.get_clamped(i64::from(x) + 3, i64::from(y)));
+        let left = Luma::from_fn((24, 8), |x, y| ((x * 37 + y * 91).wrapping_mul(2_654_435_761) >> 13) as u8);
+        let right = Luma::from_fn((24, 8), |x, y| left.get_clamped(i64::from(x) + 3, i64::from(y)));
         let of_left = winners(&left, &right, View::Left, &config(0, 8), None);
         let of_right = winners(&left, &right, View::Right, &config(0, 8), None);
         assert!((6..20).all(|x| of_left.get(x, 4) == 3 * SCALE), "{:?}", of_left.row(4));

@@ -1,15 +1,16 @@
 //! The mean cost over a square window, from the definition.
 
+use crate::image::Size;
 use rayon::prelude::*;
 
 /// For each pixel of a picture of `size` and each disparity, the mean of `costs` over the pixel's window of this side, laid
 /// out as they are: the mean along the columns of the means along the rows, both rounded to the nearest. Beyond an edge,
 /// the picture goes on with its last pixel.
-pub fn box_mean(costs: &[u8], size: (u32, u32), side: u32) -> Vec<u8> {
+pub fn box_mean(costs: &[u8], size: Size, side: u32) -> Vec<u8> {
     mean_along(&mean_along(costs, size, side, (1, 0)), size, side, (0, 1))
 }
 
-fn mean_along(costs: &[u8], (width, height): (u32, u32), side: u32, (dx, dy): (i64, i64)) -> Vec<u8> {
+fn mean_along(costs: &[u8], Size { width, height }: Size, side: u32, (dx, dy): (i64, i64)) -> Vec<u8> {
     let (width, height, side, radius) = (i64::from(width), i64::from(height), i64::from(side), i64::from(side / 2));
     let count = costs.len() / (width * height) as usize;
     let row = |y: i64| {

@@ -3,20 +3,20 @@
 use crate::{
     dense::kernels::{BLOCK, CELL, CellBand, LEAST, MARGIN, REACH},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// For each cell of a picture what is to be searched of `range`: the index of the first disparity, and how many.
 pub type CellPlane = Plane<(u32, u32)>;
 
 /// The ranges of the cells of a picture of `size`, from the whole `map` of half the size.
-pub fn cell_ranges(map: &DisparityMap, size: (u32, u32), range: DisparityRange) -> CellPlane {
-    let band = CellBand::new(size, (0, size.1), range);
+pub fn cell_ranges(map: &DisparityMap, size: Size, range: DisparityRange) -> CellPlane {
+    let band = CellBand::new(size, (0, size.height), range);
     let around = |cell: u32, end: u32| {
         let first = (cell * CELL / 2).saturating_sub(REACH / 2);
         first..((cell + 1) * CELL / 2 + REACH / 2).min(end)
     };
-    Plane::from_fn(band.columns, band.rows, |column, row| {
+    Plane::from_fn((band.columns, band.rows), |column, row| {
         let (columns, rows) = (around(column, map.width()), around(row, map.height()));
         let pixels = columns.len() * rows.len();
         let blocks =

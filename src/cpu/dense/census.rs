@@ -1,12 +1,12 @@
 //! The census transform, from the definition.
 
-use crate::image::{Luma, Plane};
+use crate::image::{Luma, Plane, Size};
 
 /// For each pixel 24 bits that say which of the others in its 5x5 window are darker, row by row, the first the highest,
 /// above the eight of its luma; beyond an edge, the picture goes on with its last pixel.
 pub fn census(luma: &Luma) -> Plane<u32> {
-    let (width, height) = luma.size();
-    Plane::from_fn(width, height, |x, y| {
+    let Size { width, height } = luma.size();
+    Plane::from_fn((width, height), |x, y| {
         let centre = luma.get(x, y);
         let mut bits = 0;
         for (j, i) in (-2..=2).flat_map(|j| (-2..=2).map(move |i| (j, i))) {

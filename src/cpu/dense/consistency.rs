@@ -3,6 +3,7 @@
 use crate::{
     dense::{Dense, View, kernels::HALF_GRAIN},
     disparity::{DisparityMap, NONE, SCALE},
+    image::Size,
 };
 
 /// Takes away what the other view contradicts: the partner of a pixel, at the nearest whole
@@ -27,7 +28,7 @@ pub fn half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, ma
 
 /// Takes away what is not confirmed: a disparity, the column of the partner in the other view, and the row.
 fn keep_confirmed(dense: &mut Dense, view: View, is_confirmed: impl Fn(i32, u32, u32) -> bool) {
-    let (width, height) = dense.disparity.size();
+    let Size { width, height } = dense.disparity.size();
     for y in 0..height {
         for x in 0..width {
             let disparity = dense.disparity.get(x, y);
@@ -55,7 +56,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let plane = |values: &[i32]| Plane::new(values.len() as u32, 1, values.to_vec()).unwrap();
+        let plane = |values: &[i32]| Plane::new((values.len() as u32, 1), values.to_vec()).unwrap();
         let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
         let mut dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
         // Partners: 0 of 0; 0 of 1; 1 of 2 (300 is nearest to one pixel); 1 of 3; outside.
@@ -67,11 +68,11 @@ mod tests {
         // At half the size. The partner of 3 is 2, there 1: an odd disparity lies between even ones. That of 4 is 1, there 0,
         // and its neighbour has another disparity. That of 5 is 3, there 1, and its neighbour has half the disparity.
         let mut dense =
-            Dense { disparity: plane(&[NONE, NONE, NONE, 256, 800, 512]), confidence: Plane::filled(6, 1, 9) };
+            Dense { disparity: plane(&[NONE, NONE, NONE, 256, 800, 512]), confidence: Plane::filled((6, 1), 9) };
         half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 256, NONE]), 0);
         assert_eq!(dense.disparity.data(), [NONE, NONE, NONE, 256, NONE, 512]);
 
-        let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled(3, 1, 9) };
+        let mut dense = Dense { disparity: plane(&[-128, 256, 256]), confidence: Plane::filled((3, 1), 9) };
         // -128 is a half: up, to 0.
         consistency(&mut dense, View::Right, &plane(&[-128, 0, 256]), 0);
         assert_eq!(dense.disparity.data(), [-128, 256, NONE]);

@@ -5,13 +5,13 @@ use rayon::prelude::*;
 use crate::{
     dense::{Cost, MAX_COST, View, WEIGHT_BITS},
     disparity::DisparityRange,
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// For each pixel of `reference`, the costs of its disparities, as many more as make whole fours. Both views are given
 /// as [`super::census`] leaves them; a pixel without a partner is compared with the nearest one of the row.
 pub fn cost([reference, other]: [&Plane<u32>; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
-    let (width, height) = reference.size();
+    let Size { width, height } = reference.size();
     let at = |plane: &Plane<u32>, x: i64, y: u32| plane.get_clamped(x, i64::from(y));
     let luma = |word: u32| i64::from(word & 255);
     let gradient = |plane: &Plane<u32>, x: i64, y: u32| luma(at(plane, x + 1, y)) - luma(at(plane, x - 1, y));

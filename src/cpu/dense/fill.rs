@@ -3,13 +3,13 @@
 use crate::{
     dense::kernels::surface::{FARTHEST, RUN, SHORTEST, STEEPEST},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// The map with the holes of each row filled: of the surfaces at both ends of a hole by the one further away.
 pub fn fill(disparities: &DisparityMap, range: DisparityRange) -> DisparityMap {
-    let (width, height) = disparities.size();
-    Plane::from_fn(width, height, |x, y| {
+    let Size { width, height } = disparities.size();
+    Plane::from_fn((width, height), |x, y| {
         let row = disparities.row(y);
         let x = x as usize;
         if row[x] != NONE {
@@ -48,17 +48,17 @@ mod tests {
     #[test]
     fn background_goes_on_behind_what_hides_it() {
         let range = DisparityRange::new(0, 20).unwrap();
-        let map = Plane::new(5, 1, vec![NONE, 512, NONE, 1024, NONE]).unwrap();
+        let map = Plane::new((5, 1), vec![NONE, 512, NONE, 1024, NONE]).unwrap();
         assert_eq!(fill(&map, range).data(), [512, 512, 512, 1024, 1024]);
         // A slope of 16/256 px a pixel goes on.
-        let slanted = Plane::from_fn(40, 1, |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
+        let slanted = Plane::from_fn((40, 1), |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
         let filled = fill(&slanted, range);
         assert_eq!(filled.get(35, 0), 256 + 16 * 35);
     }
 
     #[test]
     fn an_empty_row_stays_empty() {
-        let map = Plane::filled(4, 2, NONE);
+        let map = Plane::filled((4, 2), NONE);
         assert_eq!(fill(&map, DisparityRange::new(0, 4).unwrap()), map);
     }
 }

@@ -3,16 +3,16 @@
 use crate::{
     dense::{View, kernels::MAX_RESIDUAL},
     disparity::{DisparityMap, NONE, SCALE},
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
 };
 
 /// For each pixel of the `reference` view by how much its luma differs from that of its partner in the other one, at the
 /// nearest whole disparity, up to [`MAX_RESIDUAL`]. Where there is no disparity it is 0, where there is no partner
 /// [`MAX_RESIDUAL`].
 pub fn residual([left, right]: [&Luma; 2], reference: View, disparities: &DisparityMap) -> Plane<u8> {
-    let (width, height) = disparities.size();
+    let Size { width, height } = disparities.size();
     let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
-    Plane::from_fn(width, height, |x, y| {
+    Plane::from_fn((width, height), |x, y| {
         let disparity = disparities.get(x, y);
         if disparity == NONE {
             return 0;

@@ -6,14 +6,14 @@ use crate::{
         kernels::{SUPPORT_RADIUS, SUPPORT_TOLERANCE},
     },
     disparity::NONE,
-    image::Plane,
+    image::{Plane, Size},
 };
 
 /// The disparities that at least `least` pixels of the window around them share, themselves included. Their number becomes
 /// the better part of the confidence: 1 + 5 (number - 1), up to 4 more for what it was, and less by an eighth of the
 /// photometric `residuals` of the 5x5 around it; at least 1.
 pub fn support(dense: &Dense, residuals: &Plane<u8>, least: u32) -> Dense {
-    let (width, height) = dense.disparity.size();
+    let Size { width, height } = dense.disparity.size();
     let radius = SUPPORT_RADIUS as i64;
     let mut out = dense.clone();
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {

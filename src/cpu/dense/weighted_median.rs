@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::{
     dense::Median,
     disparity::{DisparityMap, NONE},
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
 };
 
 /// 256 / 2^(difference / 2^halving_bits), interpolated between whole powers.
@@ -17,7 +17,7 @@ fn weight(difference: u8, halving_bits: u32) -> u32 {
 /// Each disparity replaced by the least one of its window for which those up to it weigh at least half of all. With
 /// `median.holes_only` only those change that `before` does not have.
 pub fn weighted_median(luma: &Luma, disparities: &DisparityMap, before: &DisparityMap, median: Median) -> DisparityMap {
-    let (width, height) = disparities.size();
+    let Size { width, height } = disparities.size();
     let radius = i64::from(median.radius);
     let filtered = |x: u32, y: u32| {
         let own = disparities.get(x, y);
@@ -45,5 +45,5 @@ pub fn weighted_median(luma: &Luma, disparities: &DisparityMap, before: &Dispari
     };
     let rows: Vec<Vec<i32>> =
         (0..height).into_par_iter().map(|y| (0..width).map(|x| filtered(x, y)).collect()).collect();
-    Plane::from_fn(width, height, |x, y| rows[y as usize][x as usize])
+    Plane::from_fn((width, height), |x, y| rows[y as usize][x as usize])
 }

@@ -117,7 +117,7 @@ mod tests {
     }
 
     fn describe_picture(f: impl FnMut(u32, u32) -> u8, (x, y): (f32, f32), orientation: Option<f32>) -> [f32; 64] {
-        descriptor(&IntegralImage::new(&Luma::from_fn(81, 81, f)), Place::new(x, y, 2.0), orientation)
+        descriptor(&IntegralImage::new(&Luma::from_fn((81, 81), f)), Place::new(x, y, 2.0), orientation)
     }
 
     fn distance(a: &[f32; 64], b: &[f32; 64]) -> f32 {

@@ -57,7 +57,7 @@ mod tests {
 
     /// Blobs of several sizes on a grid, light and dark.
     fn blobs(width: u32, height: u32) -> Luma {
-        Luma::from_fn(width, height, |x, y| {
+        Luma::from_fn((width, height), |x, y| {
             let (column, row) = (x / 40, y / 40);
             let (dx, dy) = ((x % 40) as f32 - 20.0 + row as f32, (y % 40) as f32 - 20.0);
             let sigma = 2.5 + 0.5 * column as f32;
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn flat_and_tiny_pictures_have_none() {
         for (width, height) in [(1, 1), (3, 200), (200, 3), (200, 200)] {
-            assert_eq!(detect(&Luma::filled(width, height, 77), &FeatureConfig::default()).unwrap(), []);
+            assert_eq!(detect(&Luma::filled((width, height), 77), &FeatureConfig::default()).unwrap(), []);
         }
     }
 

@@ -54,16 +54,16 @@ mod tests {
 
     #[test]
     fn a_step_is_seen_across_and_not_along() {
-        let step = IntegralImage::new(&Luma::from_fn(16, 16, |x, _| if x < 8 { 10 } else { 110 }));
+        let step = IntegralImage::new(&Luma::from_fn((16, 16), |x, _| if x < 8 { 10 } else { 110 }));
         // Halves of 3 x 6 px that differ by 100.
         assert_eq!(responses(&step, 8 * 16, 8 * 16, 3 * 16), (256 * 1800, 0));
-        let lying = IntegralImage::new(&Luma::from_fn(16, 16, |_, y| if y < 8 { 10 } else { 110 }));
+        let lying = IntegralImage::new(&Luma::from_fn((16, 16), |_, y| if y < 8 { 10 } else { 110 }));
         assert_eq!(responses(&lying, 8 * 16, 8 * 16, 3 * 16), (0, 256 * 1800));
     }
 
     #[test]
     fn parts_of_pixels_count() {
-        let step = IntegralImage::new(&Luma::from_fn(16, 16, |x, _| if x < 8 { 0 } else { 16 }));
+        let step = IntegralImage::new(&Luma::from_fn((16, 16), |x, _| if x < 8 { 0 } else { 16 }));
         // Half a pixel right of the edge: the right half sees 2 px of light, the left half 0.5, in 4 rows.
         assert_eq!(responses(&step, 8 * 16 + 8, 8 * 16, 2 * 16), (256 * 16 * 6, 0));
         // The smallest wavelet, on the edge: 1/16 px by 1/8 px of light.
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_ramp_has_its_slope_everywhere() {
-        let ramp = IntegralImage::new(&Luma::from_fn(64, 64, |x, y| (2 * x + y) as u8));
+        let ramp = IntegralImage::new(&Luma::from_fn((64, 64), |x, y| (2 * x + y) as u8));
         // At whole and half pixels the sums of a stepped ramp are those of the smooth one: halves of
         // 4 x 8 px whose centres are 4 px apart.
         for (x, y) in [(30 * 16 + 8, 20 * 16), (30 * 16, 20 * 16 + 8), (31 * 16, 33 * 16)] {
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn beyond_the_picture_everything_is_zero() {
-        let white = IntegralImage::new(&Luma::filled(8, 8, 255));
+        let white = IntegralImage::new(&Luma::filled((8, 8), 255));
         // On the left edge the left half sees nothing.
         assert_eq!(responses(&white, 0, 4 * 16, 2 * 16), (256 * 255 * 8, 0));
         assert_eq!(responses(&white, -100 * 16, 4 * 16, 2 * 16), (0, 0));
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn wrapped_sums_do_no_harm() {
-        let white = IntegralImage::new(&Luma::filled(6000, 4000, 255));
+        let white = IntegralImage::new(&Luma::filled((6000, 4000), 255));
         assert_eq!(responses(&white, 16 * 5000 + 3, 16 * 3500 + 5, 16 * 90 + 7), (0, 0));
         assert_eq!(responses(&white, 16 * 6000, 16 * 3500, 16 * 90), (-256 * 255 * 90 * 180, 0));
     }

@@ -71,7 +71,7 @@ fn layer(integral: &IntegralImage, size: u32, spacing: u32) -> Plane<Response> {
     let (width, height) = (integral.width(), integral.height());
     let (columns, rows) = (width.div_ceil(spacing), height.div_ceil(spacing));
     let filter = Filter::new(size);
-    let mut plane = Plane::filled(columns, rows, Response::default());
+    let mut plane = Plane::filled((columns, rows), Response::default());
     plane.data_mut().par_chunks_mut(columns as usize).enumerate().for_each(|(j, row)| {
         let y = j as u32 * spacing;
         for (i, word) in row.iter_mut().enumerate() {
@@ -130,9 +130,10 @@ fn derivatives(integral: &IntegralImage, x: u32, y: u32, size: u32) -> [i32; 3] 
 mod tests {
     use super::*;
     use crate::image::Luma;
+    use crate::image::Size;
 
     fn integral(width: u32, height: u32, f: impl FnMut(u32, u32) -> u8) -> IntegralImage {
-        IntegralImage::new(&Luma::from_fn(width, height, f))
+        IntegralImage::new(&Luma::from_fn((width, height), f))
     }
 
     fn impulse(x: u32, y: u32) -> IntegralImage {
@@ -203,6 +204,6 @@ mod tests {
     #[test]
     fn a_grid_reaches_the_last_pixel_it_can() {
         let octave = Octave::new(&integral(17, 16, |_, _| 0), 1, 2);
-        assert_eq!((octave.spacing, octave.layers[3].size()), (4, (5, 4)));
+        assert_eq!((octave.spacing, octave.layers[3].size()), (4, Size::new(5, 4)));
     }
 }

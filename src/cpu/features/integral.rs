@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     fn three_by_two() -> IntegralImage {
-        IntegralImage::new(&Luma::new(3, 2, vec![1, 2, 3, 4, 5, 6]).unwrap())
+        IntegralImage::new(&Luma::new((3, 2), vec![1, 2, 3, 4, 5, 6]).unwrap())
     }
 
     #[test]
@@ -107,7 +107,7 @@ mod tests {
     /// 24 megapixels of white sum to 6.12e9, beyond 2^32.
     #[test]
     fn boxes_are_exact_though_the_sums_wrap() {
-        let integral = IntegralImage::new(&Luma::filled(6000, 4000, 255));
+        let integral = IntegralImage::new(&Luma::filled((6000, 4000), 255));
         assert_eq!(integral.sums().get(6000, 4000), (6_120_000_000u64 % (1 << 32)) as u32);
         assert_eq!(integral.box_sum(0, 2700, 6000, 2900), 6000 * 200 * 255);
         for (x, y) in [(0, 0), (5613, 3613), (3000, 2807), (5000, 3300)] {

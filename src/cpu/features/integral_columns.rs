@@ -17,7 +17,7 @@ mod tests {
 
     #[test]
     fn sums_wrap() {
-        let mut sums = Plane::new(2, 3, vec![1, u32::MAX, 2, 3, 4, 5]).unwrap();
+        let mut sums = Plane::new((2, 3), vec![1, u32::MAX, 2, 3, 4, 5]).unwrap();
         integral_columns(&mut sums);
         assert_eq!(sums.data(), [1, u32::MAX, 3, 2, 7, 7]);
     }

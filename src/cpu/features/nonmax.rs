@@ -2,7 +2,10 @@
 
 use rayon::prelude::*;
 
-use crate::cpu::features::hessian::{FILTER_SIZES, Octave, RESPONSE_SCALE, Response, fits};
+use crate::{
+    cpu::features::hessian::{FILTER_SIZES, Octave, RESPONSE_SCALE, Response, fits},
+    image::Size,
+};
 
 /// The standard deviation, in pixels, of the Gaussian that the smallest filter stands for (Bay et al., section 3.3).
 const SMALLEST_SCALE: f32 = 1.2;
@@ -44,7 +47,7 @@ pub fn integer_threshold(threshold: f32) -> i32 {
 ///
 /// `width` and `height` are the picture's.
 pub fn candidates(octave: &Octave, width: u32, height: u32, threshold: i32) -> Vec<Candidate> {
-    let (columns, rows) = octave.layers[0].size();
+    let Size { width: columns, height: rows } = octave.layers[0].size();
     let inner = |length: u32| 1..length.max(1) - 1;
     [1, 2]
         .into_iter()
@@ -134,8 +137,8 @@ mod tests {
 
     /// An octave whose determinants are those of `f(x, y, layer)`, on the first octave's grid.
     fn octave(width: u32, height: u32, f: impl Fn(i32, i32, i32) -> i32) -> Octave {
-        let layers =
-            [0, 1, 2, 3].map(|layer| Plane::from_fn(width, height, |x, y| Response(f(x as i32, y as i32, layer) << 1)));
+        let layers = [0, 1, 2, 3]
+            .map(|layer| Plane::from_fn((width, height), |x, y| Response(f(x as i32, y as i32, layer) << 1)));
         Octave { index: 0, spacing: 1, layers }
     }
 
@@ -224,7 +227,7 @@ mod tests {
     #[test]
     fn a_symmetric_blob_is_found_at_its_centre() {
         for (light, ground) in [(200, 40), (40, 200)] {
-            let blob = Luma::from_fn(61, 61, |x, y| {
+            let blob = Luma::from_fn((61, 61), |x, y| {
                 let (dx, dy) = (x as f32 - 30.0, y as f32 - 30.0);
                 (ground as f32 + (light - ground) as f32 * (-(dx * dx + dy * dy) / 18.0).exp()) as u8
             });

@@ -100,7 +100,7 @@ mod tests {
         // Slopes in x and y, and the direction uphill.
         for (sx, sy, expected) in [(1, 0, 0.0), (0, 1, FRAC_PI_2), (-1, 0, PI), (-1, -1, PI * 1.25)] {
             let ramp = |x: u32, y: u32| (sx * (x as i32 - 45) + sy * (y as i32 - 45) + 128) as u8;
-            let integral = IntegralImage::new(&Luma::from_fn(91, 91, ramp));
+            let integral = IntegralImage::new(&Luma::from_fn((91, 91), ramp));
             assert_angle(orientation(&integral, Place::new(45.0, 45.0, 2.0)), expected);
         }
     }
@@ -108,9 +108,9 @@ mod tests {
     #[test]
     fn rotating_the_picture_rotates_the_orientation() {
         let size = 81;
-        let picture = Luma::from_fn(size, size, |x, y| ((x * 7 + y * 3) ^ (x * y / 5)) as u8);
+        let picture = Luma::from_fn((size, size), |x, y| ((x * 7 + y * 3) ^ (x * y / 5)) as u8);
         // A quarter turn from the x axis to the y axis takes (x, y) to (size - 1 - y, x).
-        let turned = Luma::from_fn(size, size, |x, y| picture.get(y, size - 1 - x));
+        let turned = Luma::from_fn((size, size), |x, y| picture.get(y, size - 1 - x));
         for (x, y) in [(40, 40), (30, 44), (47, 35)] {
             let before = orientation(&IntegralImage::new(&picture), Place::new(x as f32, y as f32, 1.75));
             let (tx, ty) = ((size - 1 - y) as f32, x as f32);
@@ -120,19 +120,19 @@ mod tests {
 
     #[test]
     fn flat_has_orientation_zero() {
-        let integral = IntegralImage::new(&Luma::filled(64, 64, 99));
+        let integral = IntegralImage::new(&Luma::filled((64, 64), 99));
         assert_eq!(orientation(&integral, Place::new(32.0, 32.0, 2.0)), 0.0);
     }
 
     #[test]
     fn what_last_digits_decide_is_told_apart() {
         let decided = |picture: &Luma, scale| is_decided(&IntegralImage::new(picture), Place::new(45.0, 45.0, scale));
-        assert!(decided(&Luma::from_fn(91, 91, |x, y| (x + y) as u8), 2.0));
-        assert!(decided(&Luma::filled(91, 91, 7), 2.0), "no gradient at all: everyone says 0");
+        assert!(decided(&Luma::from_fn((91, 91), |x, y| (x + y) as u8), 2.0));
+        assert!(decided(&Luma::filled((91, 91), 7), 2.0), "no gradient at all: everyone says 0");
         // A ridge rises from both sides alike.
-        assert!(!decided(&Luma::from_fn(91, 91, |x, _| 200 - x.abs_diff(45) as u8), 2.0));
+        assert!(!decided(&Luma::from_fn((91, 91), |x, _| 200 - x.abs_diff(45) as u8), 2.0));
         // One grey level in a large window.
-        assert!(!decided(&Luma::from_fn(91, 91, |x, y| u8::from((x, y) == (47, 46))), 12.0));
+        assert!(!decided(&Luma::from_fn((91, 91), |x, y| u8::from((x, y) == (47, 46))), 12.0));
     }
 
     #[test]

@@ -2,7 +2,10 @@
 
 use rayon::prelude::*;
 
-use crate::kamencay::{Links, Smoothness, kernels::Turn};
+use crate::{
+    image::Size,
+    kamencay::{Links, Smoothness, kernels::Turn},
+};
 
 /// The neighbours in the order of a node's messages: above, below, to the left and to the right.
 const NEIGHBOURS: [(i64, i64); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
@@ -11,7 +14,7 @@ const NEIGHBOURS: [(i64, i64); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
 #[derive(Clone, Copy)]
 pub struct Grid<'g> {
     /// Nodes in a row and rows.
-    pub size: (u32, u32),
+    pub size: Size,
     /// The data costs.
     pub costs: &'g [u16],
     /// The weights of its links.
@@ -21,14 +24,14 @@ pub struct Grid<'g> {
 impl Grid<'_> {
     /// Disparities of a node.
     fn count(&self) -> usize {
-        self.costs.len() / (self.size.0 as usize * self.size.1 as usize)
+        self.costs.len() / (self.size.width as usize * self.size.height as usize)
     }
 
     /// The neighbour in a direction, an index into [`NEIGHBOURS`].
     fn neighbour(&self, (x, y): (u32, u32), direction: usize) -> Option<(u32, u32)> {
         let (dx, dy) = NEIGHBOURS[direction];
         let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
-        let inside = (0..self.size.0.into()).contains(&x) && (0..self.size.1.into()).contains(&y);
+        let inside = (0..self.size.width.into()).contains(&x) && (0..self.size.height.into()).contains(&y);
         inside.then_some((x as u32, y as u32))
     }
 
@@ -41,7 +44,8 @@ impl Grid<'_> {
         from_parents: bool,
     ) -> Option<&'m [u8]> {
         let (x, y) = self.neighbour(at, direction)?;
-        let (width, x, y) = if from_parents { (self.size.0.div_ceil(2), x / 2, y / 2) } else { (self.size.0, x, y) };
+        let (width, x, y) =
+            if from_parents { (self.size.width.div_ceil(2), x / 2, y / 2) } else { (self.size.width, x, y) };
         // Directions come in pairs of opposites.
         let place = 4 * (y as usize * width as usize + x as usize) + (direction ^ 1);
         Some(&messages[place * self.count()..][..self.count()])
@@ -50,7 +54,7 @@ impl Grid<'_> {
     /// The data costs of a node and all messages to it, but the one from a direction.
     pub(super) fn belief(&self, messages: &[u8], at: (u32, u32), but: Option<usize>, from_parents: bool) -> Vec<u32> {
         let count = self.count();
-        let node = (at.1 * self.size.0 + at.0) as usize;
+        let node = (at.1 * self.size.width + at.0) as usize;
         let mut sum: Vec<u32> = self.costs[node * count..][..count].iter().map(|&cost| cost.into()).collect();
         for direction in (0..4).filter(|&direction| Some(direction) != but) {
             if let Some(message) = self.received(messages, at, direction, from_parents) {
@@ -86,7 +90,7 @@ fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
 /// Half of the nodes of `grid` send a message to each of their neighbours: four a node, upwards, downwards, to the left
 /// and to the right, 0 where there is nobody. `parents` are the messages in the grid of half the size.
 pub fn belief(grid: Grid<'_>, messages: &mut [u8], parents: &[u8], smoothness: &Smoothness, turn: Turn) {
-    let (width, count) = (grid.size.0 as usize, grid.count());
+    let (width, count) = (grid.size.width as usize, grid.count());
     let before = messages.to_vec();
     let received = if turn.from_parents { parents } else { &before };
     messages.par_chunks_mut(4 * count).enumerate().for_each(|(node, sent)| {

@@ -1,9 +1,9 @@
 //! The data costs of a coarser grid, from the definition.
 
-use crate::kamencay::FAR;
+use crate::{image::Size, kamencay::FAR};
 
 /// The costs of a grid of half the size: for each disparity those of a block of 2x2 nodes added up, at most [`FAR`].
-pub fn belief_reduce(costs: &[u16], (width, height): (u32, u32)) -> Vec<u16> {
+pub fn belief_reduce(costs: &[u16], Size { width, height }: Size) -> Vec<u16> {
     let count = costs.len() / (width as usize * height as usize);
     let (columns, rows) = (width.div_ceil(2) as usize, height.div_ceil(2) as usize);
     let mut sums = vec![0_u32; columns * rows * count];

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::belief::Grid;
-use crate::kamencay::kernels::Winner;
+use crate::{image::Size, kamencay::kernels::Winner};
 
 /// For each node of the grid the disparity of the least belief among the first `disparities`, ties to the smaller one.
 pub fn belief_select(grid: Grid<'_>, messages: &[u8], disparities: u32) -> Vec<Winner> {
-    let (width, height) = grid.size;
+    let Size { width, height } = grid.size;
     let winner = |node: u32| {
         let beliefs = &grid.belief(messages, (node % width, node / width), None, false)[..disparities as usize];
         let (belief, index) = (0..).zip(beliefs).map(|(index, &belief)| (belief, index)).min().unwrap_or((0, 0));

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     dense::Dense,
     error::Result,
-    image::Plane,
+    image::{Plane, Size},
     io::Picture,
     kamencay::{
         KamencayConfig, Links, MAX_MESSAGE_BYTES, Problem, Solver, Strip,
@@ -40,7 +40,7 @@ impl Solver for Twins {
         Ok(mean_shift(&problem.left, &problem.parameters.mean_shift))
     }
 
-    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[((u32, u32), Links)]) -> Result<Vec<Winner>> {
+    async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[(Size, Links)]) -> Result<Vec<Winner>> {
         let Problem { left, right, range, parameters } = problem;
         let mut costs = vec![belief_cost([left, right], strip, &parameters.cost, *range)];
         for (level, &(size, _)) in grids.iter().enumerate().take(grids.len() - 1) {

@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use crate::{
-    image::Plane,
+    image::{Plane, Size},
     kamencay::{ModeSeeking, kernels::STILL},
 };
 
 /// The colour of the mode that each pixel climbs to: red, green and blue from the lowest byte of a word on.
 pub fn mean_shift(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Plane<u32> {
-    let (width, height) = pixels.size();
+    let Size { width, height } = pixels.size();
     let modes: Vec<u32> = (0..width * height)
         .into_par_iter()
         .map(|pixel| {
@@ -26,7 +26,7 @@ pub fn mean_shift(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Plane<u32> {
             u32::from_le_bytes([red, green, blue, 0])
         })
         .collect();
-    Plane::from_fn(width, height, |x, y| modes[(y * width + x) as usize])
+    Plane::from_fn((width, height), |x, y| modes[(y * width + x) as usize])
 }
 
 /// Column, row, red, green and blue in 1/16.

@@ -18,7 +18,7 @@ pub fn luma(width: u32, height: u32, rgba: &[u8]) -> Result<Luma> {
             expected: "RGBA takes four bytes a pixel".into(),
         });
     }
-    Luma::new(width, height, pixels.iter().map(|&[r, g, b, _]| luma_of([r, g, b])).collect())
+    Luma::new((width, height), pixels.iter().map(|&[r, g, b, _]| luma_of([r, g, b])).collect())
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use crate::{
     disparity::{DisparityRange, SCALE},
     error::Result,
     gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
+    image::Size,
 };
 
 /// The pixels that one thread matches, and the tiles that a workgroup does.
@@ -196,7 +197,7 @@ impl Layout {
     /// # Errors
     /// As [`DenseConfig::searched`].
     pub fn new(
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         first_row: u32,
         rows: u32,
         config: &DenseConfig,

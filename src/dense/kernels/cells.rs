@@ -4,6 +4,7 @@ use crate::{
     dense::config::{DenseConfig, DenseParameters},
     disparity::{DisparityRange, SCALE},
     gpu::{Gpu, buffer_of},
+    image::Size,
 };
 
 /// The side of a cell in pixels.
@@ -59,7 +60,7 @@ pub struct CellBand {
 
 impl CellBand {
     /// The cells of `rows` rows from `first_row` on, a multiple of [`CELL`], of a picture of `size`.
-    pub fn new((width, height): (u32, u32), (first_row, rows): (u32, u32), range: DisparityRange) -> Self {
+    pub fn new(Size { width, height }: Size, (first_row, rows): (u32, u32), range: DisparityRange) -> Self {
         let rows = rows.div_ceil(CELL);
         let map_first_row = (first_row / 2).saturating_sub(REACH / 2);
         let map_end = ((first_row + rows * CELL + REACH) / 2).min(height.div_ceil(2));
@@ -118,10 +119,10 @@ mod tests {
     #[test]
     fn a_band_looks_at_its_surroundings() {
         let range = DisparityRange { min: 0, count: 10 };
-        let band = CellBand::new((100, 130), (64, 40), range);
+        let band = CellBand::new(Size::new(100, 130), (64, 40), range);
         assert_eq!((band.columns, band.rows, band.words()), (7, 3, 42));
         // Rows 64 to 112 and 8 more around, halved.
         assert_eq!((band.map_first_row, band.map_rows, band.map_start), (28, 32, 4));
-        assert_eq!(CellBand::new((100, 130), (0, 32), range).map_start, 0);
+        assert_eq!(CellBand::new(Size::new(100, 130), (0, 32), range).map_start, 0);
     }
 }

@@ -1,7 +1,10 @@
 //! The census transform, with the luma beside it. `shaders/dense/census.wgsl`.
 
 use super::{pad::PadParams, rows_per_thread::rows_per_thread};
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
@@ -43,7 +46,7 @@ impl Census {
 
     /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
     /// word on. Rows outside the picture are those of its edge.
-    pub fn padding((width, height): (u32, u32), first_row: i32, rows: u32) -> PadParams {
+    pub fn padding(Size { width, height }: Size, first_row: i32, rows: u32) -> PadParams {
         PadParams {
             width,
             height,
@@ -61,7 +64,12 @@ impl Census {
 
     /// Transforms the rows that stand in `padded` as [`Self::padding`] says: a word a pixel, the 24 bits of its window above
     /// its luma.
-    pub fn prepare(&self, (width, rows): (u32, u32), padded: &wgpu::Buffer, census: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(
+        &self,
+        Size { width, height: rows }: Size,
+        padded: &wgpu::Buffer,
+        census: &wgpu::Buffer,
+    ) -> Dispatch {
         let params = Params { width, rows, stride: Self::stride(width) };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
         self.kernel.dispatch(&params, &[padded, census], groups)

@@ -3,6 +3,7 @@
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
     gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
+    image::Size,
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -62,7 +63,7 @@ impl Fill {
     /// Copies `disparities` to `filled`, with the holes of each row filled by disparities of `range`.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         range: DisparityRange,
         disparities: &WordTexture,
         filled: &wgpu::Buffer,

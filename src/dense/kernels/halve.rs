@@ -1,6 +1,9 @@
 //! A picture of half the size. `shaders/dense/halve.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -32,7 +35,7 @@ impl Halve {
     }
 
     /// Writes packed `luma` of a picture of this size, at half the size, to `halved`.
-    pub fn prepare(&self, (width, height): (u32, u32), luma: &wgpu::Buffer, halved: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(&self, Size { width, height }: Size, luma: &wgpu::Buffer, halved: &wgpu::Buffer) -> Dispatch {
         let words = width.div_ceil(2).div_ceil(4);
         let groups = [words.div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
         let params = Params { width, height };

@@ -4,6 +4,7 @@ use crate::{
     dense::config::{Brightness, View},
     disparity::{NONE, SCALE},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
 };
 
 const WORKGROUP: [u32; 2] = [32, 8];
@@ -69,7 +70,7 @@ impl Residual {
     /// on. The residuals are packed as luma is.
     pub fn prepare(
         &self,
-        (width, rows): (u32, u32),
+        Size { width, height: rows }: Size,
         first_row: u32,
         views: Views<'_>,
         disparities: &wgpu::Buffer,

@@ -5,6 +5,7 @@ use crate::{
     dense::config::Median,
     disparity::NONE,
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -61,7 +62,7 @@ impl WeightedMedian {
     /// `first_row`; `before` is the map before its holes were filled.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         (luma, first_row): (&wgpu::Buffer, u32),
         [disparities, before]: [&wgpu::Buffer; 2],
         filtered: &wgpu::Buffer,

@@ -17,6 +17,7 @@ use crate::{
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
+    image::Size,
 };
 
 /// More rows than this are never matched at once, to stay below 65,535 workgroups.
@@ -29,13 +30,13 @@ const MAX_BAND_WORK: u64 = 1 << 30;
 /// The plan for packed `left` and `right` of `size`, in bands within `limits`.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
-    size: (u32, u32),
+    size: Size,
     config: &DenseConfig,
     search: Search,
     [left, right]: [&wgpu::Buffer; 2],
     limits: BandLimits,
 ) -> Result<Plan> {
-    let (width, height) = size;
+    let Size { width, height } = size;
     let tile = Tile::of(gpu);
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
@@ -86,12 +87,12 @@ pub(in crate::dense) fn plan(
 fn band_rows_within(
     BandLimits { bytes: limit, rows: wanted }: BandLimits,
     texture_limit: u64,
-    size: (u32, u32),
+    size: Size,
     config: &DenseConfig,
     tile: Tile,
     unit: u32,
 ) -> Result<u32> {
-    let (width, height) = size;
+    let Size { width, height } = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
     let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
     let whole_units = |rows: u32| if rows >= height { height } else { (rows / unit * unit).max(unit) };

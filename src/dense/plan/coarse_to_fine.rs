@@ -15,12 +15,13 @@ use crate::{
     disparity::DisparityRange,
     error::Result,
     gpu::{Gpu, WordTexture},
+    image::Size,
     luma::packed_bytes,
 };
 
 /// The kernels and the memory of the search at half the size.
 pub(super) struct Coarse {
-    size: (u32, u32),
+    size: Size,
     tile: Tile,
     range: DisparityRange,
     half: DenseConfig,
@@ -40,27 +41,27 @@ impl Coarse {
     pub(super) fn new(
         gpu: &Gpu,
         plan: &mut Plan,
-        size: (u32, u32),
+        size: Size,
         config: &DenseConfig,
         pictures: [&wgpu::Buffer; 2],
         band_rows: u32,
     ) -> Result<Self> {
-        let (width, height) = size;
+        let Size { width, height } = size;
         let range = config.searched(width)?;
-        let half_size = (width.div_ceil(2), height.div_ceil(2));
+        let half_size = Size::new(width.div_ceil(2), height.div_ceil(2));
         let half = halved_config(config, range);
-        let half = DenseConfig { range: half.searched(half_size.0)?, ..half };
+        let half = DenseConfig { range: half.searched(half_size.width)?, ..half };
         let halve = Halve::new(gpu);
         let [left, right] = pictures.map(|picture| -> Result<wgpu::Buffer> {
-            let halved = plan.buffer("half the picture", packed_bytes(half_size.0, half_size.1) / 4)?;
+            let halved = plan.buffer("half the picture", packed_bytes(half_size) / 4)?;
             plan.run(halve.prepare(size, picture, &halved));
             Ok(halved)
         });
         // No band looks at more rows than one in the midst of the picture.
-        let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.1);
+        let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.height);
         let tile = Tile::of(gpu);
         let planes = plan.words("padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
-        let map_layout = MapLayout { width: half_size.0, rows: most_rows };
+        let map_layout = MapLayout { width: half_size.width, rows: most_rows };
         let map = plan.buffer("map of half the size", map_layout.words())?;
         let words = CellBand::new(size, (0, band_rows), range).words();
         let ranges = Ranges::of_cells(plan.buffer("ranges of cells", words)?, width);
@@ -89,7 +90,7 @@ impl Coarse {
         rows: (u32, u32),
     ) -> Result<(&Ranges, Option<ConfirmingMap<'_>>)> {
         let band = CellBand::new(self.size, rows, self.range);
-        let half_size = (band.map_width, self.size.1.div_ceil(2));
+        let half_size = Size::new(band.map_width, self.size.height.div_ceil(2));
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, self.tile)?;
         for ((params, view), half) in layout.padding().into_iter().zip(View::ALL).zip(&self.halves) {
             plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));

@@ -23,18 +23,19 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu},
+    image::Size,
 };
 
 /// The plan for packed luma of `size`, left and right, in bands within `limits`.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
-    size: (u32, u32),
+    size: Size,
     config: &DenseConfig,
     costs: &CostAggregation,
     luma: [&wgpu::Buffer; 2],
     limits: BandLimits,
 ) -> Result<Plan> {
-    let width = size.0;
+    let width = size.width;
     let range = config.searched(width)?;
     let bands = Bands::new(size, range, costs, limits)?;
     let mut plan = Plan::new(gpu, config, bands.count());
@@ -116,7 +117,7 @@ enum OtherDisparities {
 
 /// How a pair is cut into bands of rows.
 struct Bands {
-    size: (u32, u32),
+    size: Size,
     range: DisparityRange,
     /// Rows of each band but perhaps the last.
     rows: u32,
@@ -129,7 +130,7 @@ struct Bands {
 }
 
 impl Bands {
-    fn new(size: (u32, u32), range: DisparityRange, costs: &CostAggregation, limits: BandLimits) -> Result<Self> {
+    fn new(size: Size, range: DisparityRange, costs: &CostAggregation, limits: BandLimits) -> Result<Self> {
         let (last, directions) = costs.last_and_stored();
         let radius = costs.radius();
         let rows = band_rows_within(limits, size, range, (directions.len() as u64, radius))?;
@@ -137,7 +138,7 @@ impl Bands {
     }
 
     fn count(&self) -> usize {
-        self.size.1.div_ceil(self.rows) as usize
+        self.size.height.div_ceil(self.rows) as usize
     }
 
     fn first_row(&self, index: usize) -> u32 {
@@ -152,8 +153,8 @@ impl Bands {
 
     /// The volume of a band, as its transforms hold it.
     fn band(&self, index: usize) -> VolumeBand {
-        let rows = self.rows.min(self.size.1 - self.first_row(index));
-        VolumeBand { width: self.size.0, first_row: self.halo(), rows, range: self.range }
+        let rows = self.rows.min(self.size.height - self.first_row(index));
+        VolumeBand { width: self.size.width, first_row: self.halo(), rows, range: self.range }
     }
 
     /// Words of a row of a volume.
@@ -194,7 +195,7 @@ impl Workspace {
         costs: &CostAggregation,
         [left, right]: [&wgpu::Buffer; 2],
     ) -> Result<Self> {
-        let (width, height) = bands.size;
+        let Size { width, height } = bands.size;
         let cost_words = bands.row_words() * u64::from((bands.rows + 2 * bands.radius).min(height));
         let transformed_rows = bands.rows + 2 * bands.halo();
         let padding = Census::padding(bands.size, 0, transformed_rows);
@@ -226,7 +227,7 @@ impl Workspace {
         for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
             let padding = Census::padding(size, first_row, rows);
             plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
-            plan.run(self.transform.prepare((size.0, rows), &self.padded, census));
+            plan.run(self.transform.prepare(Size::new(size.width, rows), &self.padded, census));
         }
     }
 
@@ -277,7 +278,7 @@ impl Side {
         };
         let above = (bands.count() > 1).then(|| rows("paths from above", 1)).transpose()?;
         let below = (1..bands.count()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
-        let layout = MapLayout { width: bands.size.0, rows: bands.rows };
+        let layout = MapLayout { width: bands.size.width, rows: bands.rows };
         let key_words = if selection.keys { u64::from(layout.pixels()) } else { 0 };
         let matches = match selection.wanted {
             ResultKind::Matches => plan.buffer("matches", layout.words() + key_words)?,
@@ -293,7 +294,7 @@ impl Side {
         let bands = &workspace.bands;
         let (band, first_row) = (bands.band(index), bands.first_row(index));
         let above = bands.radius.min(first_row);
-        let below = bands.radius.min(bands.size.1 - first_row - band.rows);
+        let below = bands.radius.min(bands.size.height - first_row - band.rows);
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
         plan.run(self.cost.prepare(&with_halo, workspace.census_of(self.view), &workspace.costs));
         if let Some((box_mean, means)) = &workspace.box_mean {
@@ -393,7 +394,7 @@ fn paths_with(bands: &Bands, dy: i32) -> impl Iterator<Item = (usize, u64)> + us
 /// rows on either side, and so many stored `paths`.
 fn band_rows_within(
     limits: BandLimits,
-    (width, height): (u32, u32),
+    Size { width, height }: Size,
     range: DisparityRange,
     (paths, radius): (u64, u32),
 ) -> Result<u32> {

@@ -15,6 +15,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{Dispatch, Gpu, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
+    image::Size,
 };
 
 use word_copy::CopyTarget;
@@ -112,7 +113,7 @@ impl Plan {
     }
 
     /// Brings the answers of all bands together in one map of `size` before anyone gets them.
-    pub(super) fn collect(&mut self, (width, height): (u32, u32)) -> Result<WholeMap> {
+    pub(super) fn collect(&mut self, Size { width, height }: Size) -> Result<WholeMap> {
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
             self.bytes += bytes;

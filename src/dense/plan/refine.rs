@@ -12,6 +12,7 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
+    image::Size,
 };
 
 /// A map to be refined.
@@ -19,7 +20,7 @@ pub(super) struct Unrefined<'a> {
     /// The map of all bands.
     pub(super) map: &'a WholeMap,
     /// Width and height of the map.
-    pub(super) size: (u32, u32),
+    pub(super) size: Size,
     /// The disparities that were searched: filled pixels stay within.
     pub(super) range: DisparityRange,
     /// Both views, and the one whose map it is.
@@ -54,11 +55,11 @@ pub(super) fn plan_refinement(
     gpu: &Gpu,
     plan: &mut Plan,
     refinement: &Refinement,
-    Unrefined { map, size: (width, height), range, views }: Unrefined<'_>,
+    Unrefined { map, size: Size { width, height }, range, views }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
     let halo = SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
-    let rows = window_rows(gpu, (width, height), halo, limits)?;
+    let rows = window_rows(gpu, Size { width, height }, halo, limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
     let pixels = u64::from(largest.pixels());
     let words = largest.words().max(in_rows(pixels));
@@ -79,7 +80,7 @@ pub(super) fn plan_refinement(
         let result_rows = rows.min(height - first_row);
         let top = first_row.saturating_sub(halo);
         let layout = MapLayout { width, rows: (first_row + result_rows + halo).min(height) - top };
-        let (size, confidence_offset) = ((width, layout.rows), u64::from(layout.confidence_offset()));
+        let (size, confidence_offset) = (Size::new(width, layout.rows), u64::from(layout.confidence_offset()));
         let parts = [(&map.disparities, width, 0), (&map.confidences, width.div_ceil(4), confidence_offset)];
         for (from, row_words, to_word) in parts {
             let row_words = u64::from(row_words);
@@ -125,7 +126,7 @@ pub(super) fn plan_refinement(
 }
 
 /// The rows of the result that are refined at once, beside `halo` rows on either side.
-fn window_rows(gpu: &Gpu, (width, height): (u32, u32), halo: u32, limits: BandLimits) -> Result<u32> {
+fn window_rows(gpu: &Gpu, Size { width, height }: Size, halo: u32, limits: BandLimits) -> Result<u32> {
     let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words();
     // A map with holes is a texture as well.
     let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / u64::from(width));

@@ -5,7 +5,7 @@ use crate::{filter::grey, io::Picture};
 
 /// Applies `f(column, value)` to each colour value; the result is rounded (halves up) and clamped to 0 to 255.
 fn each(picture: &Picture, f: impl Fn(u32, u8) -> f64) -> Picture {
-    Picture::from_fn(picture.width(), picture.height(), |x, y| {
+    Picture::from_fn(picture.size(), |x, y| {
         let [red, green, blue, alpha] = picture.get(x, y);
         let [red, green, blue] = [red, green, blue].map(|value| grey(f(x, value)));
         [red, green, blue, alpha]
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     fn picture() -> Picture {
-        Picture::new(3, 1, vec![[0, 100, 255, 7], [51, 200, 3, 0], [10, 20, 30, 255]]).unwrap()
+        Picture::new((3, 1), vec![[0, 100, 255, 7], [51, 200, 3, 0], [10, 20, 30, 255]]).unwrap()
     }
 
     #[test]
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn noise_has_the_deviation_asked_for() {
-        let flat = Picture::filled(100, 100, [128, 128, 128, 255]);
+        let flat = Picture::filled((100, 100), [128, 128, 128, 255]);
         let noisy = noise(&flat, 10.0, Random::new(1, 1));
         let squares: f64 = noisy.data().iter().map(|pixel| (f64::from(pixel[1]) - 128.0).powi(2)).sum();
         assert!(((squares / 10_000.0).sqrt() - 10.0).abs() < 0.3);

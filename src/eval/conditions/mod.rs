@@ -14,7 +14,7 @@ use glam::{DAffine2, DVec2};
 use crate::{
     error::{Error, Result},
     filter,
-    image::Plane,
+    image::{Plane, Size},
     io::Picture,
 };
 use random::Random;
@@ -140,9 +140,9 @@ impl Condition {
     pub fn apply(self, picture: &Picture, seed: u64) -> Changed {
         let Self { kind, strength } = self;
         let random = || Random::new(seed, kind as u64);
-        let (width, height) = picture.size();
+        let Size { width, height } = picture.size();
         let in_place =
-            |picture| Changed { picture, map: DAffine2::IDENTITY, visible: Plane::filled(width, height, VISIBLE) };
+            |picture| Changed { picture, map: DAffine2::IDENTITY, visible: Plane::filled((width, height), VISIBLE) };
         let covered = |(picture, visible)| Changed { picture, map: DAffine2::IDENTITY, visible };
         let moved = |map| {
             let (picture, visible) = filter::resample(picture, map, picture.size(), mean(picture));
@@ -209,16 +209,19 @@ pub struct Changed {
 impl Changed {
     /// Applies several conditions in order; without conditions the picture is unchanged.
     pub fn by(conditions: &[Condition], picture: &Picture, seed: u64) -> Self {
-        let (width, height) = picture.size();
-        let unchanged =
-            Self { picture: picture.clone(), map: DAffine2::IDENTITY, visible: Plane::filled(width, height, VISIBLE) };
+        let Size { width, height } = picture.size();
+        let unchanged = Self {
+            picture: picture.clone(),
+            map: DAffine2::IDENTITY,
+            visible: Plane::filled((width, height), VISIBLE),
+        };
         conditions.iter().fold(unchanged, |before, condition| before.then(*condition, seed))
     }
 
     fn then(self, condition: Condition, seed: u64) -> Self {
         let Self { picture, map, visible } = condition.apply(&self.picture, seed);
         let back = map.inverse();
-        let both = Plane::from_fn(visible.width(), visible.height(), |x, y| {
+        let both = Plane::from_fn(visible.size(), |x, y| {
             let before = back.transform_point2(DVec2::new(x.into(), y.into()));
             visible.get(x, y).min(value_at(&self.visible, before).unwrap_or(0))
         });
@@ -248,7 +251,7 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, height: u32) -> Picture {
-        Picture::from_fn(width, height, |x, y| {
+        Picture::from_fn((width, height), |x, y| {
             [(x * 7 % 251) as u8, (y * 5 % 253) as u8, ((x * 3) ^ (y * 11)) as u8, 255]
         })
     }
@@ -292,7 +295,7 @@ mod tests {
     #[test]
     fn a_marked_place_lands_where_the_map_says() {
         let spot = |x: u32, y: u32| (x.abs_diff(70).pow(2) + y.abs_diff(41).pow(2)) as f64;
-        let picture = Picture::from_fn(121, 91, |x, y| [(220.0 * (-spot(x, y) / 8.0).exp()) as u8, 0, 0, 255]);
+        let picture = Picture::from_fn((121, 91), |x, y| [(220.0 * (-spot(x, y) / 8.0).exp()) as u8, 0, 0, 255]);
         for text in
             ["rotation=17.5", "rotation=-45", "rotation=90", "scale=0.5", "scale=0.77", "scale=2", "blur=2", "gain=0.5"]
         {

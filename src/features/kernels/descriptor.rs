@@ -7,6 +7,7 @@ use crate::{
         keypoints::{DISPATCH_WIDTH, KeypointList, PARAMS, Params},
     },
     gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, Stage},
+    image::Size,
 };
 
 /// The stage, for axes of the picture (`upright`) or along each keypoint's orientation.
@@ -38,7 +39,7 @@ impl Descriptor {
     /// how many (see [`super::workgroups`]). The `descriptors` stand in the list's order.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,

@@ -4,6 +4,7 @@
 use crate::{
     features::FeatureConfig,
     gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
 };
 
 /// Layers of an octave.
@@ -41,7 +42,8 @@ pub struct Grid {
 
 impl Grid {
     /// The grid of `octave` in a picture, where that of octave 0 has the given step.
-    pub fn new(width: u32, height: u32, step: u32, octave: u32) -> Self {
+    pub fn new(size: impl Into<Size>, step: u32, octave: u32) -> Self {
+        let Size { width, height } = size.into();
         let step = step << octave;
         Self { step, width: width.div_ceil(step), height: height.div_ceil(step) }
     }
@@ -112,8 +114,8 @@ impl Hessian {
     }
 
     /// Bytes of the responses of an octave of a picture: [`LAYERS`] planes of the octave's [`Grid`].
-    pub fn bytes(&self, (width, height): (u32, u32), octave: u32) -> u64 {
-        let grid = Grid::new(width, height, self.step, octave);
+    pub fn bytes(&self, Size { width, height }: Size, octave: u32) -> u64 {
+        let grid = Grid::new((width, height), self.step, octave);
         4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height)
     }
 
@@ -121,15 +123,15 @@ impl Hessian {
     /// does not fit in the picture; those of the next `finer` octave, if there is any, are not computed again.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         octave: u32,
         integral: &wgpu::Buffer,
         finer: Option<&wgpu::Buffer>,
         responses: &wgpu::Buffer,
     ) -> Dispatch {
         let sizes = FILTER_SIZES[octave as usize];
-        let grid = Grid::new(width, height, self.step, octave);
-        let finer_grid = finer.map(|_| Grid::new(width, height, self.step, octave - 1));
+        let grid = Grid::new((width, height), self.step, octave);
+        let finer_grid = finer.map(|_| Grid::new((width, height), self.step, octave - 1));
         let params = Params {
             width,
             height,
@@ -170,9 +172,9 @@ mod tests {
 
     #[test]
     fn a_grid_covers_the_picture_from_pixel_0() {
-        assert_eq!(Grid::new(741, 497, 1, 0), Grid { step: 1, width: 741, height: 497 });
-        assert_eq!(Grid::new(741, 497, 2, 3), Grid { step: 16, width: 47, height: 32 });
-        assert_eq!(Grid::new(1, 1, 2, 4), Grid { step: 32, width: 1, height: 1 });
+        assert_eq!(Grid::new((741, 497), 1, 0), Grid { step: 1, width: 741, height: 497 });
+        assert_eq!(Grid::new((741, 497), 2, 3), Grid { step: 16, width: 47, height: 32 });
+        assert_eq!(Grid::new((1, 1), 2, 4), Grid { step: 32, width: 1, height: 1 });
     }
 
     #[test]

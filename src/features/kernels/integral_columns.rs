@@ -1,7 +1,10 @@
 //! The second half of the integral image: the row sums, summed along columns.
 //! `shaders/features/integral_columns.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: u32 = 64;
 
@@ -34,7 +37,7 @@ impl IntegralColumns {
 
     /// Sums the `sums` of [`super::integral_rows`] along the columns, in place: at `(x, y)` stands then the sum over all
     /// columns below `x` of the rows below `y`, modulo 2^32.
-    pub fn prepare(&self, (width, height): (u32, u32), sums: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(&self, Size { width, height }: Size, sums: &wgpu::Buffer) -> Dispatch {
         self.0.dispatch(&Params { width, height }, &[sums], [(width + 1).div_ceil(WORKGROUP), 1, 1])
     }
 }

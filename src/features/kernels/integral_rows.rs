@@ -1,7 +1,10 @@
 //! The first half of the integral image, which gives sums of grey values over boxes in four reads
 //! (Viola and Jones, CVPR 2001): sums along rows. `shaders/features/integral_rows.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: u32 = 64;
 
@@ -33,12 +36,12 @@ impl IntegralRows {
     }
 
     /// Bytes of the sums of a picture: `height + 1` rows of `width + 1` words.
-    pub fn bytes((width, height): (u32, u32)) -> u64 {
+    pub fn bytes(Size { width, height }: Size) -> u64 {
         4 * (u64::from(width) + 1) * (u64::from(height) + 1)
     }
 
     /// Sums packed `luma` of a picture along its rows into `sums`, of which row 0 and column 0 are 0.
-    pub fn prepare(&self, (width, height): (u32, u32), luma: &wgpu::Buffer, sums: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(&self, Size { width, height }: Size, luma: &wgpu::Buffer, sums: &wgpu::Buffer) -> Dispatch {
         self.0.dispatch(&Params { width, height }, &[luma, sums], [(height + 1).div_ceil(WORKGROUP), 1, 1])
     }
 }

@@ -5,6 +5,7 @@ use super::hessian::{DETERMINANT_SCALE, FILTER_SIZES, Grid};
 use crate::{
     features::{FeatureConfig, keypoints::KeypointList},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
@@ -52,13 +53,13 @@ impl Nonmax {
     /// the `list`.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         octave: u32,
         config: &FeatureConfig,
         responses: &wgpu::Buffer,
         list: &KeypointList,
     ) -> Dispatch {
-        let grid = Grid::new(width, height, config.step, octave);
+        let grid = Grid::new((width, height), config.step, octave);
         let params = Params {
             width,
             height,

@@ -4,6 +4,7 @@
 use crate::{
     features::keypoints::{DISPATCH_WIDTH, KeypointList, PARAMS, Params},
     gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, Stage},
+    image::Size,
 };
 
 const WORKGROUP: u32 = 64;
@@ -40,7 +41,7 @@ impl Orientation {
     /// per keypoint; `groups` says how many (see [`super::workgroups`]).
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         integral: &wgpu::Buffer,
         list: &KeypointList,
         groups: &wgpu::Buffer,

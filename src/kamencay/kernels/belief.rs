@@ -1,6 +1,9 @@
 //! Belief propagation: half of the nodes send. `shaders/kamencay/belief.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -73,7 +76,7 @@ impl Belief {
     /// A turn in a grid of `size`.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         Turn { parity, from_parents }: Turn,
         GridBuffers { costs, links, parents, messages }: GridBuffers<'_>,
     ) -> Dispatch {

@@ -4,6 +4,7 @@ use crate::{
     dense::config::Difference,
     disparity::DisparityRange,
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
     kamencay::grid::{FAR, Strip},
 };
 
@@ -73,7 +74,7 @@ impl BeliefCost {
     /// [`super::described`] leaves them.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         strip: Strip,
         range: DisparityRange,
         [left, right]: [&wgpu::Buffer; 2],

@@ -2,6 +2,7 @@
 
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
     kamencay::grid::FAR,
 };
 
@@ -42,7 +43,7 @@ impl BeliefReduce {
     /// Adds up the costs of a `fine` grid of `size` with so many `fours` of disparities a node.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         fours: u32,
         fine: &wgpu::Buffer,
         coarse: &wgpu::Buffer,

@@ -2,7 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -76,7 +79,7 @@ impl BeliefSelect {
     /// Selects in a grid of `size`; a [`Winner`] a pixel.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         disparities: u32,
         [costs, messages]: [&wgpu::Buffer; 2],
         winners: &wgpu::Buffer,

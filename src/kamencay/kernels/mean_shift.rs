@@ -1,6 +1,9 @@
 //! Mean-shift filtering. `shaders/kamencay/mean_shift.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
@@ -53,7 +56,7 @@ impl MeanShift {
     }
 
     /// Writes the colour of each pixel's mode; both buffers hold a word a pixel, red in its lowest byte.
-    pub fn prepare(&self, (width, height): (u32, u32), pixels: &wgpu::Buffer, modes: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(&self, Size { width, height }: Size, pixels: &wgpu::Buffer, modes: &wgpu::Buffer) -> Dispatch {
         let params = Params { width, height };
         let groups = [width.div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[pixels, modes], groups)

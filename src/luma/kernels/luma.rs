@@ -1,6 +1,9 @@
 //! RGBA8 to packed luma. `shaders/luma/luma.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -32,7 +35,7 @@ impl RgbaToLuma {
     }
 
     /// Turns `pixels`, one word per pixel with red in its lowest byte, into packed `luma`.
-    pub fn prepare(&self, (width, height): (u32, u32), pixels: &wgpu::Buffer, luma: &wgpu::Buffer) -> Dispatch {
+    pub fn prepare(&self, Size { width, height }: Size, pixels: &wgpu::Buffer, luma: &wgpu::Buffer) -> Dispatch {
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&Params { width, height }, &[pixels, luma], groups)
     }

@@ -1,7 +1,10 @@
 //! A texture's colours to packed luma, so that a renderer's pictures need not be read back.
 //! `shaders/luma/luma_texture.wgsl`.
 
-use crate::gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct};
+use crate::{
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    image::Size,
+};
 
 const WORKGROUP: [u32; 2] = [16, 8];
 
@@ -68,7 +71,7 @@ impl LumaTexture {
     /// Turns the texels of `picture`, whose view has `size` pixels and this format, into packed `luma`.
     pub fn prepare(
         &self,
-        (width, height): (u32, u32),
+        Size { width, height }: Size,
         format: TexelFormat,
         picture: &wgpu::TextureView,
         luma: &wgpu::Buffer,

@@ -6,7 +6,7 @@ use crate::{
     disparity::DisparityRange,
     error::Result,
     gpu::block_on,
-    image::Plane,
+    image::{Plane, Size},
     io::Picture,
     kamencay::{
         self, FAR, KamencayConfig, KamencayParameters, LinkWeights, Links, MAX_MESSAGE_BYTES, ModeSeeking, OVERLAP,
@@ -16,7 +16,7 @@ use crate::{
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size, smooth_noise},
+        dice::{Dice, smooth_noise},
         trial::{Subject, Trial},
     },
 };
@@ -38,7 +38,7 @@ const FEW_PIXELS: u32 = 4000;
 
 fn colours(size: Size, dice: &mut Dice) -> Picture {
     let channels = [0; 4].map(|_| dice.picture(size));
-    Plane::from_fn(size.0, size.1, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
+    Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
 }
 
 /// Left and right view of a slanted plane, with some noise in the left one; sometimes of nothing that both see.
@@ -48,7 +48,7 @@ fn pair(size: Size, dice: &mut Dice) -> [Picture; 2] {
         return [colours(size, dice), right];
     }
     let (least, slant, noise) = (i64::from(dice.between(-4, 12)), 1 + dice.below(40), dice.pick(&[1, 4, 16]));
-    let left = Plane::from_fn(size.0, size.1, |x, y| {
+    let left = Plane::from_fn(size, |x, y| {
         let disparity = least + i64::from(y / slant % 12);
         right.get_clamped(i64::from(x) - disparity, y.into()).map(|level| level.saturating_add(dice.below(noise) as u8))
     });
@@ -62,9 +62,9 @@ fn links(view: &Plane<u32>, segmentation: Segmentation, weights: LinkWeights) ->
 }
 
 /// Data costs of all nodes, 0 to `255 scale`, with as many more as make whole fours of disparities.
-fn costs((width, height): Size, disparities: u32, scale: u16, dice: &mut Dice) -> Vec<u16> {
+fn costs(Size { width, height }: Size, disparities: u32, scale: u16, dice: &mut Dice) -> Vec<u16> {
     let count = disparities.next_multiple_of(4);
-    let noise = smooth_noise(width * count, height, dice.word());
+    let noise = smooth_noise((width * count, height), dice.word());
     let cost = |(index, &value): (u32, &u8)| {
         if index % count < disparities { scale * u16::from(value) } else { FAR as u16 }
     };
@@ -98,7 +98,7 @@ pub struct MeanShiftTrial {
 
 impl MeanShiftTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let (radius, turns) = if size.0 * size.1 <= FEW_PIXELS { (15, 20) } else { (3, 6) };
+        let (radius, turns) = if size.width * size.height <= FEW_PIXELS { (15, 20) } else { (3, 6) };
         let seeking = ModeSeeking {
             radius: 1 + dice.below(radius),
             range: dice.pick(&[1, 8, 10, 30, 90, 255]),
@@ -118,10 +118,10 @@ impl Trial for MeanShiftTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, height)) = (bench.gpu, self.pixels.size());
+        let (gpu, Size { width, height }) = (bench.gpu, self.pixels.size());
         let modes = bench.output(width * height)?;
         let pixels = bench.upload(self.pixels.data())?;
-        let dispatch = MeanShift::new(gpu, &self.seeking).prepare((width, height), &pixels, &modes);
+        let dispatch = MeanShift::new(gpu, &self.seeking).prepare(Size::new(width, height), &pixels, &modes);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("modes", bench.download::<u32>(&modes)?)])
     }
@@ -151,11 +151,11 @@ impl BeliefCostTrial {
             dice.pick(&[any, any, Difference { weight: 0, limit: 0 }, Difference { weight: 4096, limit: 255 }])
         };
         let (color, gradient) = (part(), part());
-        let radius = dice.below(if size.0 * size.1 <= FEW_PIXELS { 8 } else { 2 });
+        let radius = dice.below(if size.width * size.height <= FEW_PIXELS { 8 } else { 2 });
         let mut range = dice.range(MOST_DISPARITIES);
         range.min += dice.pick(&[0, 0, 9, -500, 90]);
-        let first_row = dice.below(size.1.min(4));
-        let strip = Strip { first_row, rows: size.1 - first_row - dice.below((size.1 - first_row).min(9)) };
+        let first_row = dice.below(size.height.min(4));
+        let strip = Strip { first_row, rows: size.height - first_row - dice.below((size.height - first_row).min(9)) };
         let views = pair(size, dice).map(|view| described(&view, Brightness::SAME));
         Self { views, strip, cost: WindowCost { radius, color, gradient }, range }
     }
@@ -174,7 +174,7 @@ impl Trial for BeliefCostTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let Self { views: [left, right], strip, cost, range } = self;
         let (gpu, size) = (bench.gpu, left.size());
-        let costs = costs_output(bench, range.count.next_multiple_of(4) * size.0 * strip.rows)?;
+        let costs = costs_output(bench, range.count.next_multiple_of(4) * size.width * strip.rows)?;
         let views = [&bench.upload(left.data())?, &bench.upload(right.data())?];
         let dispatch = BeliefCost::new(gpu, cost).prepare(size, *strip, *range, views, &costs);
         bench.run(|encoder| dispatch.record(encoder));
@@ -214,7 +214,7 @@ impl Trial for BeliefReduceTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, height)) = (bench.gpu, self.size);
+        let (gpu, Size { width, height }) = (bench.gpu, self.size);
         let count = self.costs.len() as u32 / (width * height);
         let coarse = costs_output(bench, count * width.div_ceil(2) * height.div_ceil(2))?;
         let fine = bench.upload(&self.costs)?;
@@ -262,7 +262,8 @@ impl BeliefTrial {
         // As of a pixel, and as of a coarse grid's node, where they may be cut off at FAR.
         let scale = dice.pick(&[1, 3, 257]);
         let costs = costs(size, disparities, scale, dice);
-        let parents = costs.len() / (size.0 * size.1) as usize * (size.0.div_ceil(2) * size.1.div_ceil(2)) as usize;
+        let parents = costs.len() / (size.width * size.height) as usize
+            * (size.width.div_ceil(2) * size.height.div_ceil(2)) as usize;
         let messages = |costs: usize, dice: &mut Dice| messages(4 * costs, limit, dice);
         Self { messages: messages(costs.len(), dice), parents: messages(parents, dice), costs, links, smoothness, turn }
     }
@@ -288,7 +289,7 @@ impl Trial for BeliefTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.size());
-        let fours = self.costs.len() as u32 / (4 * size.0 * size.1);
+        let fours = self.costs.len() as u32 / (4 * size.width * size.height);
         let messages = bench.upload(&self.messages)?;
         let buffers = GridBuffers {
             costs: &bench.upload(&self.costs)?,
@@ -347,7 +348,7 @@ impl Trial for BeliefSelectTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.size);
-        let winners = bench.output(2 * size.0 * size.1)?;
+        let winners = bench.output(2 * size.width * size.height)?;
         let volumes = [&bench.upload(&self.costs)?, &bench.upload(&self.messages)?];
         let dispatch = BeliefSelect::new(gpu).prepare(size, self.disparities, volumes, &winners);
         bench.run(|encoder| dispatch.record(encoder));
@@ -357,7 +358,7 @@ impl Trial for BeliefSelectTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         // A grid has links; here nobody asks for them.
         let weights = LinkWeights { halving: 1, least: 0, inside: 0, across: 0 };
-        let view = Plane::filled(self.size.0, self.size.1, 0);
+        let view = Plane::filled(self.size, 0);
         let links = links(&view, Segmentation { join: 0, least: 0 }, weights);
         let grid = Grid { size: self.size, costs: &self.costs, links: &links };
         Ok(Self::arrays(&belief_select(grid, &self.messages, self.disparities)))
@@ -389,8 +390,8 @@ impl KamencayTrial {
         };
         let brightness = dice.pick(&[Brightness::SAME, Brightness { gain: 280, offset: -700 }]);
         let config = KamencayConfig { range, reference: dice.view(), brightness, parameters };
-        let row_bytes = 16 * u64::from(size.0) * u64::from(range.count.div_ceil(4));
-        let strips = u64::from(3 * OVERLAP + dice.below(size.1)) * row_bytes;
+        let row_bytes = 16 * u64::from(size.width) * u64::from(range.count.div_ceil(4));
+        let strips = u64::from(3 * OVERLAP + dice.below(size.height)) * row_bytes;
         let message_bytes = dice.pick(&[MAX_MESSAGE_BYTES, strips]);
         let [left, right] = pair(size, dice);
         Self { left, right, config, message_bytes }

@@ -4,7 +4,7 @@ use crate::{
     cpu::luma::{Texels, luma, luma_texture},
     error::{Error, Result},
     gpu::storage_buffer,
-    image::Plane,
+    image::{Plane, Size},
     luma::{
         TexelFormat,
         kernels::{luma::RgbaToLuma, luma_texture::LumaTexture},
@@ -13,7 +13,7 @@ use crate::{
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -30,7 +30,7 @@ pub struct LumaTrial(pub Plane<[u8; 4]>);
 impl LumaTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let channels = [0; 4].map(|_| dice.picture(size));
-        Self(Plane::from_fn(size.0, size.1, |x, y| channels.each_ref().map(|channel| channel.get(x, y))))
+        Self(Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y))))
     }
 }
 
@@ -44,15 +44,16 @@ impl Trial for LumaTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (width, height) = self.0.size();
-        let luma = bench.output((packed_bytes(width, height) / 4) as u32)?;
-        let dispatch = RgbaToLuma::new(bench.gpu).prepare((width, height), &bench.upload(self.0.data())?, &luma);
+        let Size { width, height } = self.0.size();
+        let luma = bench.output((packed_bytes((width, height)) / 4) as u32)?;
+        let dispatch =
+            RgbaToLuma::new(bench.gpu).prepare(Size::new(width, height), &bench.upload(self.0.data())?, &luma);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("luma", bench.download::<u32>(&luma)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let (width, height) = self.0.size();
+        let Size { width, height } = self.0.size();
         let luma = luma(width, height, self.0.data().as_flattened())?;
         Ok(vec![Array::exact("luma", pack(&luma))])
     }
@@ -68,12 +69,12 @@ pub struct LumaTextureTrial {
 }
 
 impl LumaTextureTrial {
-    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
         // No device need have larger textures.
         let size = (width.min(2048), height.min(2048));
         let format = dice.pick(&TexelFormat::ALL);
         let channels = [0; 4].map(|_| dice.picture(size));
-        let bytes = Plane::from_fn(size.0, size.1, |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
+        let bytes = Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
         // Below 2, of either sign, and all of them numbers: most of them dark, or 1/8 to 1.
         let mut half = |byte: u8| match dice.below(4) {
             0 => dice.word() as u16 & 0xbfff,
@@ -126,7 +127,7 @@ impl Trial for LumaTextureTrial {
         let texel = TexelFormat::new(self.format)
             .ok_or_else(|| Error::Unsupported(format!("no luma of textures of format {:?}", self.format)))?;
         let picture = bench.texture(self.format, size, &self.bytes());
-        let luma = storage_buffer(gpu, "luma", packed_bytes(size.0, size.1))?;
+        let luma = storage_buffer(gpu, "luma", packed_bytes(size))?;
         bench.poison(&luma);
         let dispatch = LumaTexture::new(gpu).prepare(size, texel, &picture, &luma);
         bench.run(|encoder| dispatch.record(encoder));

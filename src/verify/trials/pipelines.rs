@@ -7,12 +7,12 @@ use crate::{
     disparity::DisparityRange,
     error::Result,
     gpu::block_on,
-    image::Luma,
+    image::{Luma, Size},
     luma::pack,
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size, smooth_noise},
+        dice::{Dice, smooth_noise},
         trial::{Subject, Trial},
     },
 };
@@ -43,7 +43,7 @@ impl DenseTrial {
         let banded = dice.below(3) == 0;
         let brightness = dice.pick(&[Brightness::SAME, Brightness { gain: 280, offset: -700 }]);
         let reference = if preset == Preset::Paper { preset.config().reference } else { view };
-        let band_rows = if banded { 1 + dice.below(size.1) } else { u32::MAX };
+        let band_rows = if banded { 1 + dice.below(size.height) } else { u32::MAX };
         let (range, [left, right]) = uneven(size, dice);
         Self { left, right, config: DenseConfig { reference, brightness, ..preset.dense_config(range) }, band_rows }
     }
@@ -58,15 +58,15 @@ impl DenseTrial {
 
 /// A pair whose disparities go through the range from left to right, up and down, in more and more noise: for every
 /// penalty and every check there are pixels on which it decides.
-fn uneven((width, height): Size, dice: &mut Dice) -> (DisparityRange, [Luma; 2]) {
+fn uneven(Size { width, height }: Size, dice: &mut Dice) -> (DisparityRange, [Luma; 2]) {
     // In a picture of one column only 0 has a partner.
     let min = dice.between(-6, 1).min(width as i32 - 1);
     let range = DisparityRange { min, count: 24 + dice.below(25) };
     let [right, relief, grain] = [0; 3].map(|_| dice.word());
-    let right = smooth_noise(width, height, right);
-    let relief = smooth_noise(width / 8 + 1, height / 8 + 1, relief);
-    let grain = smooth_noise(8 * width, height, grain);
-    let left = Luma::from_fn(width, height, |x, y| {
+    let right = smooth_noise((width, height), right);
+    let relief = smooth_noise((width / 8 + 1, height / 8 + 1), relief);
+    let grain = smooth_noise((8 * width, height), grain);
+    let left = Luma::from_fn((width, height), |x, y| {
         let quarters = 3 * x * range.count / width + u32::from(relief.get(x / 8, y / 8)) * range.count / 256;
         let disparity = range.min + (quarters / 4) as i32;
         let noise = i64::from(grain.get(8 * x, y)) - 128;

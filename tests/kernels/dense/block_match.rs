@@ -7,7 +7,7 @@ use hsad::{
         kernels::{CELL, Tile},
     },
     disparity::{DisparityRange, SCALE},
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     verify::trials::BlockMatchTrial,
 };
 
@@ -15,9 +15,9 @@ use crate::common::*;
 
 /// A pair with a step in it, its right view noisier than its left.
 fn pair(width: u32, height: u32, seed: u32) -> (Luma, Luma) {
-    let right = picture(width, height, seed);
-    let noise = picture(width, height, seed + 1);
-    let left = Luma::from_fn(width, height, |x, y| {
+    let right = picture((width, height), seed);
+    let noise = picture((width, height), seed + 1);
+    let left = Luma::from_fn((width, height), |x, y| {
         let disparity = if y < height / 2 { 3 } else { 9 };
         let value = right.get_clamped(i64::from(x) - disparity, i64::from(y));
         value.saturating_add(noise.get(x, y) % 16)
@@ -52,7 +52,7 @@ fn compare_tiled(
 
 #[test]
 fn the_twin_matches_the_same_at_any_size() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         let (left, right) = pair(width, height, 11);
         for view in [View::Left, View::Right] {
             compare(&format!("{width}x{height} {view:?}"), (&left, &right), view, &config(7, 0, 17));
@@ -74,7 +74,7 @@ fn the_twin_searches_the_same_cells() {
     // From nothing to everything, and from one end or the other.
     let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
     let (columns, rows) = (130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL));
-    let cells = Plane::from_fn(columns, rows, |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
+    let cells = Plane::from_fn((columns, rows), |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
     for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::HARDWARE), (View::Left, Tile::SOFTWARE)] {
         for min in [0, -7, 2] {
             let what = format!("{view:?} {tile:?} from {min}");
@@ -85,7 +85,7 @@ fn the_twin_searches_the_same_cells() {
 
 #[test]
 fn the_other_view_is_asked_at_half_the_size() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         let (left, right) = pair(width, height, 71);
         for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
             for min in [0, -9] {
@@ -133,9 +133,9 @@ fn the_twin_decides_the_same_with_any_check() {
 
 #[test]
 fn black_white_and_noise() {
-    let black = Luma::filled(40, 30, 0);
-    let white = Luma::filled(40, 30, 255);
-    let noise = |seed| Luma::from_fn(40, 30, |x, y| picture(1, 1, seed + 40 * y + x).get(0, 0));
+    let black = Luma::filled((40, 30), 0);
+    let white = Luma::filled((40, 30), 255);
+    let noise = |seed| Luma::from_fn((40, 30), |x, y| picture((1, 1), seed + 40 * y + x).get(0, 0));
     for (left, right) in [(&black, &black), (&black, &white), (&white, &black), (&noise(1), &noise(5000))] {
         for window in [3, 15] {
             let config = config(window, -8, 17).with(|parameters| parameters.uniqueness = 5);
@@ -149,7 +149,7 @@ fn by_hand() {
     // A bright column in the dark, at 5 in the left view and at 3 in the right: disparity 2. A 3x3
     // window sees it from the columns 4, 5 and 6; no other window of the left view sees anything,
     // and a window without it costs nothing at any disparity that does not see it either.
-    let view = |bright| Luma::from_fn(9, 1, |x, _| if x == bright { 100 } else { 0 });
+    let view = |bright| Luma::from_fn((9, 1), |x, _| if x == bright { 100 } else { 0 });
     let config = config(3, 0, 4).with(|parameters| parameters.interpolation = Interpolation::None);
     let (left, right) = (view(5), view(3));
     let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, ranges: None, tile: Tile::HARDWARE });

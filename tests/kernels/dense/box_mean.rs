@@ -6,6 +6,7 @@ use hsad::{
     cpu::dense::box_mean,
     dense::kernels::{BoxMean, VolumeBand},
     disparity::DisparityRange,
+    image::Size,
 };
 
 use crate::common::*;
@@ -25,15 +26,15 @@ fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Ran
 }
 
 fn costs(width: u32, height: u32, count: u32) -> Vec<u8> {
-    picture(width * count.next_multiple_of(4), height, 78).data().to_vec()
+    picture((width * count.next_multiple_of(4), height), 78).data().to_vec()
 }
 
 #[test]
 fn the_twin_averages_the_same() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         for (side, count) in [(3, 17), (7, 4), (31, 33)] {
             let costs = costs(width, height, count);
-            let expected = box_mean(&costs, (width, height), side);
+            let expected = box_mean(&costs, Size::new(width, height), side);
             let actual = on_device(&costs, width, side, 0..height, 0..height, count);
             assert_same(&format!("{width}x{height}, {count} disparities, side {side}"), &actual, &expected);
         }
@@ -45,7 +46,7 @@ fn the_twin_averages_the_same() {
 fn no_quotient_is_off() {
     for side in (1..=31).step_by(2) {
         let costs: Vec<u8> = costs(67, 5, 8).iter().map(|&cost| if cost > 90 { 255 } else { cost }).collect();
-        let expected = box_mean(&costs, (67, 5), side);
+        let expected = box_mean(&costs, Size::new(67, 5), side);
         assert_same(&format!("side {side}"), &on_device(&costs, 67, side, 0..5, 0..5, 8), &expected);
     }
 }
@@ -54,7 +55,7 @@ fn no_quotient_is_off() {
 fn a_band_needs_no_more_than_half_a_window_around_it() {
     let (width, height, side) = (37, 40, 7);
     let costs = costs(width, height, 8);
-    let expected = box_mean(&costs, (width, height), side);
+    let expected = box_mean(&costs, Size::new(width, height), side);
     for wanted in [0..1_u32, 2..9, 20..21, 30..40, 0..40] {
         let known = wanted.start.saturating_sub(3)..(wanted.end + 3).min(height);
         let actual = on_device(&costs, width, side, known, wanted.clone(), 8);
@@ -74,5 +75,5 @@ fn by_hand() {
     let expected =
         [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]];
     assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 4), expected.concat());
-    assert_eq!(box_mean(&costs, (3, 2), 3), expected.concat());
+    assert_eq!(box_mean(&costs, Size::new(3, 2), 3), expected.concat());
 }

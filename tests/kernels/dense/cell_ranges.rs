@@ -2,7 +2,7 @@
 
 use hsad::{
     disparity::{DisparityRange, NONE, SCALE},
-    image::Plane,
+    image::{Plane, Size},
     verify::{Values, trials::CellRangesTrial},
 };
 
@@ -12,17 +12,17 @@ use crate::common::*;
 fn the_twin_finds_the_same_ranges() {
     for (min, count) in [(0, 64), (-9, 33), (5, 1), (-3000, 6001)] {
         let range = DisparityRange::new(min, count).unwrap();
-        for (width, height) in SIZES {
+        for Size { width, height } in SIZES {
             let half = (width.div_ceil(2), height.div_ceil(2));
-            let (steps, holes) = (picture(half.0, half.1, 81), picture(half.0, half.1, 82));
-            let map = Plane::from_fn(half.0, half.1, |x, y| {
+            let (steps, holes) = (picture((half.0, half.1), 81), picture((half.0, half.1), 82));
+            let map = Plane::from_fn(half, |x, y| {
                 let share = i64::from(steps.get(x, y)) * i64::from(count) * i64::from(SCALE) / 512;
                 // More and more holes to the right.
                 let hole = u32::from(holes.get(x, y)) < x * 300 / half.0;
                 if hole { NONE } else { min * SCALE / 2 + share as i32 }
             });
             let what = format!("{width}x{height}, {count} from {min}");
-            assert_twin(&what, &CellRangesTrial { size: (width, height), map, range });
+            assert_twin(&what, &CellRangesTrial { size: Size::new(width, height), map, range });
         }
     }
 }
@@ -32,8 +32,8 @@ fn a_cell_by_hand() {
     // One cell, of 8x8 pixels at half the size: four blocks of 4x4.
     let range = DisparityRange::new(0, 64).unwrap();
     let found = |map: Vec<i32>| {
-        let map = Plane::new(8, 8, map).unwrap();
-        leaves(&CellRangesTrial { size: (16, 16), map, range }).remove(0)
+        let map = Plane::new((8, 8), map).unwrap();
+        leaves(&CellRangesTrial { size: Size::new(16, 16), map, range }).remove(0)
     };
     let range = |first: u32, count: u32| Values::from(vec![first, count]);
     let mut map = vec![10 * SCALE; 64];

@@ -1,7 +1,7 @@
 use hsad::{
     dense::kernels::MapTexel,
     disparity::{DisparityMap, NONE, NONE_IN_PIXELS, SCALE},
-    image::Plane,
+    image::{Plane, Size},
     verify::trials::MapTextureTrial,
 };
 
@@ -9,7 +9,7 @@ use crate::common::{SIZES, assert_twin, leaves, picture};
 
 #[test]
 fn by_hand() {
-    let disparities = DisparityMap::new(3, 2, vec![0, 256, -128, NONE, 1, 16_000 * 256 + 3]).unwrap();
+    let disparities = DisparityMap::new((3, 2), vec![0, 256, -128, NONE, 1, 16_000 * 256 + 3]).unwrap();
     for parts in [1, 2] {
         let trial = |texel| MapTextureTrial { disparities: disparities.clone(), texel, parts };
         assert_eq!(leaves(&trial(MapTexel::FixedPoint)), [disparities.data().to_vec().into()]);
@@ -21,9 +21,9 @@ fn by_hand() {
 
 #[test]
 fn equals_the_twin_at_every_size() {
-    for (width, height) in SIZES {
-        let noise = picture(width, height, 3);
-        let disparities = Plane::from_fn(width, height, |x, y| match noise.get(x, y) {
+    for Size { width, height } in SIZES {
+        let noise = picture((width, height), 3);
+        let disparities = Plane::from_fn((width, height), |x, y| match noise.get(x, y) {
             grey if grey % 7 == 0 => NONE,
             grey => (i32::from(grey) - 100) * SCALE + (x * y) as i32 % SCALE,
         });

@@ -12,7 +12,7 @@ use hsad::{
     disparity::{DisparityRange, coverage},
     error::Error,
     gpu::Gpu,
-    image::Luma,
+    image::{Luma, Size},
     luma::pack,
     verify::trials::DenseTrial,
     wgpu,
@@ -21,9 +21,9 @@ use hsad::{
 use crate::common::*;
 
 fn pair(width: u32, height: u32) -> (Luma, Luma) {
-    let right = picture(width, height, 1);
+    let right = picture((width, height), 1);
     let left =
-        Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
+        Luma::from_fn((width, height), |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
     (left, right)
 }
 
@@ -53,7 +53,7 @@ fn coarse_to_fine(reference: View) -> DenseConfig {
 
 #[test]
 fn the_twins_end_with_the_same_bytes() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         let (left, right) = pair(width, height);
         for (reference, config) in [
             (View::Left, config(View::Left)),
@@ -179,7 +179,7 @@ fn what_cannot_be_is_refused_by_both_alike() {
         assert!(matches!(device, Error::Parameter { .. }), "{device}");
         assert_eq!(device.to_string(), twin.to_string());
     }
-    let small = Luma::filled(39, 30, 0);
+    let small = Luma::filled((39, 30), 0);
     assert!(matches!(
         block_on(dense::compute(gpu(), &left, &small, &config(View::Left))),
         Err(Error::SizesDiffer { .. })
@@ -226,16 +226,16 @@ fn no_buffer_needs_to_hold_a_whole_view() {
 #[test]
 fn a_pair_too_large_for_one_buffer() {
     let (width, height) = (6000, 6000);
-    let tile = picture(300, 200, 17);
-    let right = Luma::from_fn(width, height, |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
-    let left = Luma::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
+    let tile = picture((300, 200), 17);
+    let right = Luma::from_fn((width, height), |x, y| tile.get((x + y / 200 * 7) % 300, y % 200));
+    let left = Luma::from_fn((width, height), |x, y| right.get_clamped(i64::from(x) - 3, i64::from(y)));
     let config = DenseConfig::new(DisparityRange::new(0, 5).unwrap()).with_window(3);
     let dense = block_on(dense::compute(&strict(), &left, &right, &config)).unwrap();
     // The twin on cuts of it, without the rows whose windows see the cut; the second has the border
     // between two bands in its middle.
     let rows = 20;
     for first in [0, height / 2 - rows / 2, height - rows] {
-        let cut = |view: &Luma| Luma::from_fn(width, rows, |x, y| view.get(x, first + y));
+        let cut = |view: &Luma| Luma::from_fn((width, rows), |x, y| view.get(x, first + y));
         let twin = compute(&cut(&left), &cut(&right), &config).unwrap();
         for y in 1..rows - 1 {
             let (actual, expected) = (dense.disparity.row(first + y), twin.disparity.row(y));
@@ -246,10 +246,10 @@ fn a_pair_too_large_for_one_buffer() {
 
 #[test]
 fn no_preset_trusts_pairs_that_show_nothing() {
-    let noise = |seed| Luma::from_fn(41, 30, |x, y| picture(1, 1, seed + 41 * y + x).get(0, 0));
+    let noise = |seed| Luma::from_fn((41, 30), |x, y| picture((1, 1), seed + 41 * y + x).get(0, 0));
     let pairs = [
-        ("black", Luma::filled(41, 30, 0), Luma::filled(41, 30, 0)),
-        ("grey and white", Luma::filled(41, 30, 90), Luma::filled(41, 30, 255)),
+        ("black", Luma::filled((41, 30), 0), Luma::filled((41, 30), 0)),
+        ("grey and white", Luma::filled((41, 30), 90), Luma::filled((41, 30), 255)),
         ("noise", noise(1), noise(5000)),
     ];
     for preset in [Preset::Fast, Preset::Balanced, Preset::Quality] {
@@ -271,7 +271,7 @@ fn no_preset_trusts_pairs_that_show_nothing() {
 
 #[test]
 fn a_profile_has_a_time_for_each_kernel_and_the_same_map() {
-    let (left, right) = (picture(60, 50, 31), picture(60, 50, 32));
+    let (left, right) = (picture((60, 50), 31), picture((60, 50), 32));
     let config = coarse_to_fine(View::Left);
     let matcher = Matcher::new(gpu(), (60, 50), &config).unwrap();
     write(&matcher, &left, &right);

@@ -2,7 +2,7 @@
 
 use hsad::{
     dense::{Direction, Penalties},
-    image::Plane,
+    image::{Plane, Size},
     verify::trials::PathTrial,
 };
 
@@ -11,14 +11,14 @@ use crate::common::*;
 const PENALTIES: Penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
 
 fn costs(width: u32, height: u32, count: u32) -> Vec<u8> {
-    picture(width * count, height, 77).data().iter().map(|&value| value / 2).collect()
+    picture((width * count, height), 77).data().iter().map(|&value| value / 2).collect()
 }
 
 #[test]
 fn the_twin_goes_the_same_way() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         for direction in Direction::ALL {
-            let reference = picture(width, height, 71).map(|&value| u32::from(value) | 0xabcd_ef00);
+            let reference = picture((width, height), 71).map(|&value| u32::from(value) | 0xabcd_ef00);
             let costs = costs(width, height, 12);
             let trial = PathTrial { reference, costs, direction, penalties: PENALTIES, band_rows: height };
             assert_twin(&format!("{width}x{height} {direction:?}"), &trial);
@@ -30,7 +30,7 @@ fn the_twin_goes_the_same_way() {
 fn bands_leave_no_trace() {
     for direction in Direction::ALL {
         for band_rows in [1, 7] {
-            let reference = picture(37, 20, 72).map(|&value| value.into());
+            let reference = picture((37, 20), 72).map(|&value| value.into());
             let trial = PathTrial { reference, costs: costs(37, 20, 8), direction, penalties: PENALTIES, band_rows };
             assert_twin(&format!("{direction:?} in bands of {band_rows}"), &trial);
         }
@@ -41,7 +41,7 @@ fn bands_leave_no_trace() {
 fn by_hand() {
     // Two pixels of the same luma. From 5 9 30 90: stays at 5; 9; 9 + P1 = 25 before 30; the jump, 5 + P2.
     let trial = PathTrial {
-        reference: Plane::new(2, 1, vec![7, 7]).unwrap(),
+        reference: Plane::new((2, 1), vec![7, 7]).unwrap(),
         costs: vec![5, 9, 30, 200, 1, 2, 3, 4],
         direction: Direction { dx: 1, dy: 0 },
         penalties: PENALTIES,

@@ -3,7 +3,7 @@
 use hsad::{
     dense::{Direction, Interpolation, Penalties},
     disparity::{DisparityRange, SCALE},
-    image::Plane,
+    image::{Plane, Size},
     verify::trials::SelectTrial,
 };
 
@@ -14,12 +14,12 @@ const BACK: Direction = Direction { dx: -1, dy: 0 };
 
 #[test]
 fn the_twin_selects_the_same() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         for (count, stored, uniqueness) in [(1_u32, 3, 0), (2, 1, 0), (17, 3, 10), (40, 7, 1)] {
             for interpolation in [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular] {
-                let volume = |seed| picture(width * count.next_multiple_of(4), height, seed).into_data();
+                let volume = |seed| picture((width * count.next_multiple_of(4), height), seed).into_data();
                 let trial = SelectTrial {
-                    reference: picture(width, height, 99).map(|&value| value.into()),
+                    reference: picture((width, height), 99).map(|&value| value.into()),
                     costs: volume(55).iter().map(|&cost| cost / 2).collect(),
                     stored: (0..stored).map(volume).collect(),
                     range: DisparityRange::new(-3, count).unwrap(),
@@ -41,7 +41,7 @@ fn by_hand() {
     // parabola's vertex lies (40 - 10) / 2(40 + 10) = 0.3 px to the right.
     let trial = SelectTrial {
         // In the first pixel of a line its costs are those of the path.
-        reference: Plane::filled(1, 1, 0),
+        reference: Plane::filled((1, 1), 0),
         costs: vec![10, 5, 20, 40],
         stored: vec![vec![50, 15, 10, 40]],
         range: DisparityRange::new(0, 4).unwrap(),

@@ -3,15 +3,15 @@
 use hsad::{
     dense::Median,
     disparity::{DisparityMap, NONE},
-    image::Plane,
+    image::{Plane, Size},
     verify::{Values, trials::MedianTrial},
 };
 
 use crate::common::*;
 
 fn map(width: u32, height: u32, seed: u32, holes: u8) -> DisparityMap {
-    let (coarse, fine) = (picture(width, height, seed), picture(width, height, seed + 1));
-    Plane::from_fn(width, height, |x, y| match coarse.get(x, y) {
+    let (coarse, fine) = (picture((width, height), seed), picture((width, height), seed + 1));
+    Plane::from_fn((width, height), |x, y| match coarse.get(x, y) {
         value if value < holes => NONE,
         value => (i32::from(value) - 100) * 97 + i32::from(fine.get(x, y)),
     })
@@ -21,9 +21,9 @@ fn map(width: u32, height: u32, seed: u32, holes: u8) -> DisparityMap {
 fn the_twin_filters_the_same() {
     for (radius, halving_bits, holes_only) in [(1, 31, false), (2, 3, false), (2, 0, true), (4, 5, true)] {
         let median = Median { radius, halving_bits, holes_only };
-        for (width, height) in SIZES {
+        for Size { width, height } in SIZES {
             let (disparities, before) = (map(width, height, 92, 40), map(width, height, 92, 90));
-            let trial = MedianTrial { luma: picture(width, height, 91), disparities, before, median };
+            let trial = MedianTrial { luma: picture((width, height), 91), disparities, before, median };
             assert_twin(&format!("{width}x{height} {median:?}"), &trial);
         }
     }
@@ -32,8 +32,8 @@ fn the_twin_filters_the_same() {
 #[test]
 fn by_hand() {
     // The middle one is as dark as its left neighbour, and the bright three to the right of it weigh nothing.
-    let luma = Plane::new(5, 1, vec![10, 10, 200, 200, 200]).unwrap();
-    let map = Plane::new(5, 1, vec![100, 900, 500, 500, NONE]).unwrap();
+    let luma = Plane::new((5, 1), vec![10, 10, 200, 200, 200]).unwrap();
+    let map = Plane::new((5, 1), vec![100, 900, 500, 500, NONE]).unwrap();
     let filtered = |halving_bits, holes_only| {
         let median = Median { radius: 2, halving_bits, holes_only };
         let (disparities, before) = (map.clone(), map.clone());

@@ -42,7 +42,7 @@ fn assert_close(actual: &[f32], expected: &[f32], tolerance: f32) {
 /// descriptor's is their products: with g = exp(-1.5^2 / 4.5) : exp(-0.5^2 / 4.5) along each side.
 #[test]
 fn a_ramp_shows_the_gaussian_of_the_subregions() {
-    let picture = Luma::from_fn(101, 101, |x, _| (2 * x) as u8);
+    let picture = Luma::from_fn((101, 101), |x, _| (2 * x) as u8);
     let points = &[[50.0, 50.0, 2.0, 0.0]];
     let side = [(-0.5_f32).exp(), (-1.0_f32 / 18.0).exp(), (-1.0_f32 / 18.0).exp(), (-0.5_f32).exp()];
     // Each value stands twice, as dx and |dx|; the squares of the products sum to (sum of g^2)^2.
@@ -60,7 +60,7 @@ fn a_ramp_shows_the_gaussian_of_the_subregions() {
 
 #[test]
 fn signs_follow_the_rise() {
-    let down = Luma::from_fn(101, 101, |_, y| (200 - 2 * y) as u8);
+    let down = Luma::from_fn((101, 101), |_, y| (200 - 2 * y) as u8);
     let found = upright(&down, &[[50.0, 50.0, 2.0, 0.0]])[0];
     for cell in found.chunks(4) {
         assert!(cell[0] == 0.0 && cell[2] == 0.0 && cell[1] < 0.0 && cell[3] == -cell[1], "{cell:?}");
@@ -70,8 +70,8 @@ fn signs_follow_the_rise() {
 #[test]
 fn the_orientation_turns_the_grid_and_the_responses() {
     // A picture and the same turned by a quarter: (x, y) of the first is (60 - y, x) of the second.
-    let level = picture(61, 61, 5);
-    let turned = Luma::from_fn(61, 61, |x, y| level.get(y, 60 - x));
+    let level = picture((61, 61), 5);
+    let turned = Luma::from_fn((61, 61), |x, y| level.get(y, 60 - x));
     let first = descriptors(&level, &[[30.0, 30.0, 2.0, 0.0]])[0];
     let second = descriptors(&turned, &[[30.0, 30.0, 2.0, PI / 2.0]])[0];
     assert_close(&second, &first, 1e-3);
@@ -81,7 +81,7 @@ fn the_orientation_turns_the_grid_and_the_responses() {
 
 #[test]
 fn flat_surroundings_have_no_descriptor() {
-    let flat = Luma::filled(80, 80, 77);
+    let flat = Luma::filled((80, 80), 77);
     assert_eq!(descriptors(&flat, &[[40.0, 40.0, 2.0, 1.0]])[0], [0.0; DESCRIPTOR_LENGTH]);
     assert_eq!(upright(&flat, &[[40.0, 40.0, 2.0, 0.0]])[0], [0.0; DESCRIPTOR_LENGTH]);
 }
@@ -89,7 +89,7 @@ fn flat_surroundings_have_no_descriptor() {
 #[test]
 fn everything_else_has_unit_length_even_beyond_the_edge() {
     let points: Vec<_> = (0..600).map(|n| n as f32).map(|n| [n % 97.0, n % 31.0, 1.2 + n / 50.0, n / 100.0]).collect();
-    for (found, point) in descriptors(&picture(97, 33, 4), &points).iter().zip(&points) {
+    for (found, point) in descriptors(&picture((97, 33), 4), &points).iter().zip(&points) {
         let length = found.iter().map(|v| v * v).sum::<f32>().sqrt();
         assert!((length - 1.0).abs() < 1e-4, "{length} at {point:?}");
     }
@@ -120,5 +120,5 @@ fn equals_the_twin() {
 #[test]
 fn equals_the_twin_anywhere() {
     let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0, n / 50.0]).collect();
-    assert_equals_the_twin("noise", &picture(97, 133, 11), &at(&points));
+    assert_equals_the_twin("noise", &picture((97, 133), 11), &at(&points));
 }

@@ -3,7 +3,7 @@ use std::f32::consts::PI;
 use hsad::{
     Error,
     features::{Detector, Feature, FeatureConfig, detect},
-    image::Luma,
+    image::{Luma, Size},
     luma::pack,
     verify::trials::FeaturesTrial,
 };
@@ -12,7 +12,7 @@ use crate::common::{SIZES, assert_twin, bench, block_on, gpu, picture, pictures}
 
 /// A Gaussian blob around a centre on a ground of 128.
 fn blob(width: u32, height: u32, centre: (f32, f32), sigma: f32, height_of_blob: f32) -> Luma {
-    Luma::from_fn(width, height, |x, y| {
+    Luma::from_fn((width, height), |x, y| {
         let (dx, dy) = (x as f32 - centre.0, y as f32 - centre.1);
         (128.0 + height_of_blob * (-(dx * dx + dy * dy) / (2.0 * sigma * sigma)).exp()).round() as u8
     })
@@ -39,10 +39,10 @@ fn a_blob_is_found_where_it_is() {
 
 #[test]
 fn pictures_of_any_size_are_accepted() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         for upright in [true, false] {
             let config = FeatureConfig { upright, ..FeatureConfig::default() };
-            let found = block_on(detect(gpu(), &picture(width, height, 6), &config)).unwrap();
+            let found = block_on(detect(gpu(), &picture((width, height), 6), &config)).unwrap();
             assert_eq!(found.is_empty(), width.min(height) < 30, "{width}x{height}: {}", found.len());
             for feature in found {
                 assert!(feature.x >= 0.0 && feature.x < width as f32 && feature.y >= 0.0 && feature.y < height as f32);
@@ -56,7 +56,7 @@ fn pictures_of_any_size_are_accepted() {
 
 #[test]
 fn the_same_picture_gives_the_same_list() {
-    let picture = picture(311, 239, 7);
+    let picture = picture((311, 239), 7);
     let config = FeatureConfig { upright: false, ..FeatureConfig::default() };
     let first = block_on(detect(gpu(), &picture, &config)).unwrap();
     assert!(first.len() > 100, "{}", first.len());
@@ -68,7 +68,7 @@ fn the_same_picture_gives_the_same_list() {
 #[test]
 fn a_detector_is_used_again_for_the_next_picture() {
     let (width, height) = (130, 131);
-    let pictures = [picture(width, height, 8), Luma::filled(width, height, 9), picture(width, height, 10)];
+    let pictures = [picture((width, height), 8), Luma::filled((width, height), 9), picture((width, height), 10)];
     let config = FeatureConfig::default();
     let luma = bench().upload_luma(&pictures[0]).unwrap();
     let detector = block_on(Detector::new(gpu(), (width, height), &config)).unwrap();
@@ -83,7 +83,7 @@ fn a_detector_is_used_again_for_the_next_picture() {
 
 #[test]
 fn more_than_there_is_room_for_is_an_error_that_says_so() {
-    let picture = picture(311, 239, 7);
+    let picture = picture((311, 239), 7);
     let all = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap().len();
     let room = all as u32 - 1;
     let error = block_on(detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }))
@@ -101,7 +101,7 @@ fn more_than_there_is_room_for_is_an_error_that_says_so() {
 #[test]
 fn parameters_out_of_range_are_refused() {
     let config = FeatureConfig { octaves: 6, ..FeatureConfig::default() };
-    let error = block_on(detect(gpu(), &picture(20, 20, 1), &config)).unwrap_err();
+    let error = block_on(detect(gpu(), &picture((20, 20), 1), &config)).unwrap_err();
     assert!(matches!(error, Error::Parameter { name: "octaves", .. }), "{error}");
 }
 

@@ -24,32 +24,32 @@ fn assert_only_the_middle(picture: &Luma, expected: i32) {
 #[test]
 fn a_bright_pixel() {
     // Dxx = Dyy = 255 - 3 * 255 = -510; -510 * 256 / 81 rounds to -1612; Dxy = 0.
-    let picture = Luma::from_fn(9, 9, |x, y| if (x, y) == (4, 4) { 255 } else { 0 });
+    let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (4, 4) { 255 } else { 0 });
     assert_only_the_middle(&picture, (1612 * 1612) << 1);
 }
 
 #[test]
 fn a_dark_pixel_has_a_positive_trace() {
-    let picture = Luma::from_fn(9, 9, |x, y| if (x, y) == (4, 4) { 0 } else { 255 });
+    let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (4, 4) { 0 } else { 255 });
     assert_only_the_middle(&picture, (1612 * 1612) << 1 | 1);
 }
 
 #[test]
 fn a_pixel_off_the_axes_makes_dxy() {
     // As above, and Dxy = 255; 0.9 * 255 * 256 / 81 rounds to 725.
-    let picture = Luma::from_fn(9, 9, |x, y| if (x, y) == (5, 3) { 255 } else { 0 });
+    let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (5, 3) { 255 } else { 0 });
     assert_only_the_middle(&picture, (1612 * 1612 - 725 * 725) << 1);
     // In the lower right quadrant Dxy = -255, and its square is the same.
-    let picture = Luma::from_fn(9, 9, |x, y| if (x, y) == (5, 5) { 255 } else { 0 });
+    let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (5, 5) { 255 } else { 0 });
     assert_only_the_middle(&picture, (1612 * 1612 - 725 * 725) << 1);
     // At the corner only Dyy's rows and Dxx's columns miss it, and Dxy's quadrants end before it.
-    let picture = Luma::from_fn(9, 9, |x, y| if (x, y) == (8, 8) { 255 } else { 0 });
+    let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (8, 8) { 255 } else { 0 });
     assert_only_the_middle(&picture, 0);
 }
 
 #[test]
 fn every_layer_sees_a_pixel_in_its_middle() {
-    let picture = Luma::from_fn(387, 387, |x, y| if (x, y) == (193, 193) { 255 } else { 0 });
+    let picture = Luma::from_fn((387, 387), |x, y| if (x, y) == (193, 193) { 255 } else { 0 });
     // Step 1, octave 0: the pixel is a grid point.
     let all = responses(&picture, 1);
     for (layer, side) in [9_i32, 15, 21, 27].into_iter().enumerate() {

@@ -4,7 +4,7 @@ use crate::common::{assert_twin, leaves, pictures};
 
 #[test]
 fn three_by_two() {
-    let picture = Luma::new(3, 2, vec![1, 2, 3, 4, 5, 6]).unwrap();
+    let picture = Luma::new((3, 2), vec![1, 2, 3, 4, 5, 6]).unwrap();
     #[rustfmt::skip]
     let expected: Vec<u32> = vec![
         0, 0, 0,  0,

@@ -7,6 +7,7 @@ use hsad::{
         },
         keypoints::Keypoint,
     },
+    image::Size,
     verify::trials::NonmaxTrial,
 };
 
@@ -17,13 +18,13 @@ const SIDE: u32 = 64;
 /// The keypoints in an octave of a 64x64 picture whose determinants are 0 but for `samples`:
 /// (column, row, layer), determinant. Also how many there would have been with more room.
 fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32), i32)]) -> (u32, Vec<Keypoint>) {
-    let grids = (0..config.octaves).map(|octave| Grid::new(SIDE, SIDE, config.step, octave));
+    let grids = (0..config.octaves).map(|octave| Grid::new((SIDE, SIDE), config.step, octave));
     let mut responses: Vec<_> = grids.map(|grid| vec![0; (LAYERS * grid.width * grid.height) as usize]).collect();
-    let grid = Grid::new(SIDE, SIDE, config.step, octave);
+    let grid = Grid::new((SIDE, SIDE), config.step, octave);
     for &((i, j, k), determinant) in samples {
         responses[octave as usize][((k * grid.height + j) * grid.width + i) as usize] = determinant << 1 | 1;
     }
-    NonmaxTrial { size: (SIDE, SIDE), config: config.clone(), responses }.keypoints(&bench()).unwrap()
+    NonmaxTrial { size: Size::new(SIDE, SIDE), config: config.clone(), responses }.keypoints(&bench()).unwrap()
 }
 
 /// As above, with a threshold of 100.

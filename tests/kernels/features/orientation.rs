@@ -31,7 +31,7 @@ fn ramps_point_where_they_rise() {
         (0, -2, 3.0 * PI / 2.0),
         (2, -2, 7.0 * PI / 4.0),
     ] {
-        let picture = Luma::from_fn(61, 61, |x, y| (128 + dx * (x as i32 - 30) + dy * (y as i32 - 30)) as u8);
+        let picture = Luma::from_fn((61, 61), |x, y| (128 + dx * (x as i32 - 30) + dy * (y as i32 - 30)) as u8);
         let found = orientations(&picture, &[[30.0, 30.0, 2.0], [31.3, 29.6, 1.7]]);
         for angle in found {
             assert!((angle - expected).abs() < 0.01, "({dx}, {dy}): {angle}, not {expected}");
@@ -41,12 +41,12 @@ fn ramps_point_where_they_rise() {
 
 #[test]
 fn no_gradient_has_no_direction() {
-    assert_eq!(orientations(&Luma::filled(50, 50, 200), &[[25.0, 25.0, 2.0]]), [0.0]);
+    assert_eq!(orientations(&Luma::filled((50, 50), 200), &[[25.0, 25.0, 2.0]]), [0.0]);
 }
 
 #[test]
 fn keypoints_at_and_beyond_the_edge_are_in_range() {
-    let picture = Luma::from_fn(40, 30, |x, y| (x * 5 + y * 3) as u8);
+    let picture = Luma::from_fn((40, 30), |x, y| (x * 5 + y * 3) as u8);
     for angle in orientations(&picture, &[[0.0, 0.0, 3.0], [39.0, 29.0, 30.0], [-5.0, 400.0, 1.2]]) {
         assert!((0.0..2.0 * PI).contains(&angle), "{angle}");
     }
@@ -55,7 +55,7 @@ fn keypoints_at_and_beyond_the_edge_are_in_range() {
 /// More keypoints than one row of workgroups holds: none is left out.
 #[test]
 fn every_keypoint_of_many_gets_its_own() {
-    let picture = Luma::from_fn(61, 61, |x, _| (4 * x) as u8);
+    let picture = Luma::from_fn((61, 61), |x, _| (4 * x) as u8);
     let points = vec![[30.0, 30.0, 2.0]; 700];
     let found = orientations(&picture, &points);
     assert!(found.iter().all(|angle| angle.abs() < 0.01), "{found:?}");
@@ -78,5 +78,5 @@ fn equals_the_twin() {
 #[test]
 fn equals_the_twin_anywhere() {
     let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0]).collect();
-    assert_twin("noise", &at(&picture(97, 133, 11), &points));
+    assert_twin("noise", &at(&picture((97, 133), 11), &points));
 }

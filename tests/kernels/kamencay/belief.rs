@@ -2,7 +2,7 @@
 
 use hsad::{
     dense::Brightness,
-    image::Plane,
+    image::{Plane, Size},
     kamencay::{LinkWeights, Links, Segmentation, Segments, Smoothness, Strip, described, kernels::Turn},
     verify::{Values, trials::BeliefTrial},
 };
@@ -11,8 +11,8 @@ use crate::{common::*, kamencay::compute::colours};
 
 const SMOOTHNESS: Smoothness = Smoothness { slope: 14, limit: 100 };
 
-fn links((width, height): (u32, u32)) -> Links {
-    let view = described(&colours(width, height, 9), Brightness::SAME);
+fn links(Size { width, height }: Size) -> Links {
+    let view = described(&colours((width, height), 9), Brightness::SAME);
     let segments = Segments::new(&view, Segmentation { join: 9, least: 3 });
     let weights = LinkWeights { halving: 9, least: 0, inside: 8, across: 4 };
     Links::new(&view, &segments, Strip { first_row: 0, rows: height }, weights)
@@ -20,7 +20,7 @@ fn links((width, height): (u32, u32)) -> Links {
 
 /// So many bytes of noise, at most `most`.
 pub fn noise(count: usize, seed: u32, most: u8) -> Vec<u8> {
-    picture(count as u32, 1, seed)
+    picture((count as u32, 1), seed)
         .data()
         .iter()
         .map(|&value| (u16::from(value) % (u16::from(most) + 1)) as u8)
@@ -29,8 +29,8 @@ pub fn noise(count: usize, seed: u32, most: u8) -> Vec<u8> {
 
 #[test]
 fn the_twin_sends_the_same() {
-    for (width, height) in SIZES {
-        let links = links((width, height));
+    for Size { width, height } in SIZES {
+        let links = links(Size::new(width, height));
         for (count, smoothness) in [(12, SMOOTHNESS), (4, Smoothness { slope: 255, limit: 255 })] {
             let nodes = (width * height) as usize;
             let costs: Vec<u16> = noise(nodes * count, 6, 255).into_iter().map(|value| u16::from(value) * 3).collect();
@@ -56,7 +56,7 @@ fn the_twin_sends_the_same() {
 /// from the right one that must not come back.
 #[test]
 fn by_hand() {
-    let view = Plane::filled(2, 1, 0x80_000000);
+    let view = Plane::filled((2, 1), 0x80_000000);
     let segments = Segments::new(&view, Segmentation { join: 0, least: 0 });
     let weights = LinkWeights { halving: 4, least: 0, inside: 0, across: 0 };
     let links = Links::new(&view, &segments, Strip { first_row: 0, rows: 1 }, weights);
@@ -90,7 +90,7 @@ fn many_disparities() {
     let count = 512;
     let trial = BeliefTrial {
         costs: noise(6 * count, 6, 255).into_iter().map(u16::from).collect(),
-        links: links((3, 2)),
+        links: links(Size::new(3, 2)),
         messages: noise(4 * 6 * count, 8, 100),
         parents: vec![0; 4],
         smoothness: SMOOTHNESS,
@@ -102,7 +102,7 @@ fn many_disparities() {
 /// Where all costs are cut off, messages come on top of the largest.
 #[test]
 fn costs_that_are_cut_off_are_still_compared() {
-    let (size, count) = ((3, 2), 8);
+    let (size, count) = (Size::new(3, 2), 8);
     let trial = BeliefTrial {
         costs: vec![u16::MAX; 6 * count],
         links: links(size),
@@ -117,7 +117,7 @@ fn costs_that_are_cut_off_are_still_compared() {
 /// A slope of 1, which the weight of a link rounds down to 0: differences cost nothing, up to any distance.
 #[test]
 fn a_slope_that_links_round_to_nothing() {
-    let (size, count) = ((1, 6), 12);
+    let (size, count) = (Size::new(1, 6), 12);
     let trial = BeliefTrial {
         costs: noise(6 * count, 6, 255).into_iter().map(u16::from).collect(),
         links: links(size),

@@ -3,7 +3,7 @@
 use hsad::{
     dense::{Brightness, Difference},
     disparity::DisparityRange,
-    image::Plane,
+    image::{Plane, Size},
     kamencay::{Strip, WindowCost, described},
     verify::{Values, trials::BeliefCostTrial},
 };
@@ -16,9 +16,9 @@ const COST: WindowCost = WindowCost {
     gradient: Difference { weight: 24, limit: 16 },
 };
 
-fn compare((width, height): (u32, u32), cost: WindowCost, (min, count): (i32, u32)) {
+fn compare(Size { width, height }: Size, cost: WindowCost, (min, count): (i32, u32)) {
     let range = DisparityRange::new(min, count).unwrap();
-    let views = [1, 2].map(|seed| described(&colours(width, height, seed), Brightness::SAME));
+    let views = [1, 2].map(|seed| described(&colours((width, height), seed), Brightness::SAME));
     let whole = Strip { first_row: 0, rows: height };
     let inner = (height > 2).then(|| Strip { first_row: 1, rows: height - 2 });
     for strip in [whole].into_iter().chain(inner) {
@@ -33,7 +33,7 @@ fn the_twin_costs_the_same() {
         compare(size, COST, (0, 17));
     }
     for range in [(0, 1), (-20, 41), (5, 3), (-500, 12), (90, 100)] {
-        compare((97, 5), COST, range);
+        compare(Size::new(97, 5), COST, range);
     }
     let none = Difference { weight: 0, limit: 0 };
     let most = Difference { weight: 4096, limit: 255 };
@@ -42,13 +42,13 @@ fn the_twin_costs_the_same() {
         WindowCost { radius: 3, gradient: none, ..COST },
         WindowCost { radius: 7, color: most, gradient: most },
     ] {
-        compare((33, 9), cost, (-3, 10));
+        compare(Size::new(33, 9), cost, (-3, 10));
     }
 }
 
 #[test]
 fn by_hand() {
-    let words = |pixels: [[u8; 4]; 3]| Plane::new(3, 1, pixels.map(u32::from_le_bytes).to_vec()).unwrap();
+    let words = |pixels: [[u8; 4]; 3]| Plane::new((3, 1), pixels.map(u32::from_le_bytes).to_vec()).unwrap();
     let left = words([[0, 0, 0, 128], [50, 60, 70, 140], [0, 0, 0, 128]]);
     let right = words([[50, 60, 70, 140], [53, 60, 61, 150], [250, 60, 70, 140]]);
     let range = DisparityRange::new(-1, 3).unwrap();

@@ -1,6 +1,7 @@
 //! From messages to disparities.
 
 use hsad::{
+    image::Size,
     kamencay::kernels::Winner,
     verify::{Values, trials::BeliefSelectTrial},
 };
@@ -12,7 +13,7 @@ use crate::common::*;
 fn the_twin_selects_the_same() {
     for size in SIZES {
         for disparities in [1_u32, 2, 12, 17] {
-            let count = (size.0 * size.1 * disparities.next_multiple_of(4)) as usize;
+            let count = (size.width * size.height * disparities.next_multiple_of(4)) as usize;
             let costs = noise(count, 3, 255).into_iter().map(u16::from).collect();
             let trial = BeliefSelectTrial { size, disparities, costs, messages: noise(4 * count, 4, 255) };
             assert_twin(&format!("{size:?}, {disparities}"), &trial);
@@ -27,7 +28,7 @@ fn by_hand() {
     // To the right from the left node, and to the left from the right one.
     messages[12..16].copy_from_slice(&[8, 1, 1, 0]);
     messages[24..28].copy_from_slice(&[1, 3, 0, 0]);
-    let trial = BeliefSelectTrial { size: (2, 1), disparities: 3, costs, messages };
+    let trial = BeliefSelectTrial { size: Size::new(2, 1), disparities: 3, costs, messages };
     // 6 6 9 9, of two the smaller disparity, whose rivals are the last two; and 12 5 5 of three.
     let expected = [Winner::new(0, 6, Some(9)), Winner::new(1, 5, None)];
     assert_eq!(leaves(&trial), [Values::U32(bytemuck::cast_slice(&expected).to_vec())]);

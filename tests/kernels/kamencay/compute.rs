@@ -6,6 +6,7 @@ use hsad::{
     disparity::{DisparityRange, SCALE},
     error::Error,
     gpu::Gpu,
+    image::Size,
     io::Picture,
     kamencay::{self, KamencayConfig},
     wgpu,
@@ -14,9 +15,9 @@ use hsad::{
 use crate::common::*;
 
 /// Colours of smooth noise.
-pub fn colours(width: u32, height: u32, seed: u32) -> Picture {
-    let channels = [0, 1, 2].map(|channel| picture(width, height, 3 * seed + channel));
-    Picture::from_fn(width, height, |x, y| {
+pub fn colours((width, height): (u32, u32), seed: u32) -> Picture {
+    let channels = [0, 1, 2].map(|channel| picture((width, height), 3 * seed + channel));
+    Picture::from_fn((width, height), |x, y| {
         let [red, green, blue] = [0, 1, 2].map(|channel: usize| channels[channel].get(x, y));
         [red, green, blue, 0]
     })
@@ -24,9 +25,9 @@ pub fn colours(width: u32, height: u32, seed: u32) -> Picture {
 
 /// A right view, and a left one that is it shifted: by 5 px and one more from row to row of 16 px.
 fn pair(width: u32, height: u32) -> (Picture, Picture) {
-    let right = colours(width, height, 1);
+    let right = colours((width, height), 1);
     let left =
-        Picture::from_fn(width, height, |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
+        Picture::from_fn((width, height), |x, y| right.get_clamped(i64::from(x) - 5 - i64::from(y / 16), i64::from(y)));
     (left, right)
 }
 
@@ -43,7 +44,7 @@ fn compare(what: &str, (left, right): &(Picture, Picture), config: &KamencayConf
 
 #[test]
 fn the_twins_end_with_the_same_bytes() {
-    for (width, height) in SIZES {
+    for Size { width, height } in SIZES {
         for (min, count) in [(0, 13), (-2, 32)] {
             // Some of these sizes have no pixel with a partner further away than 0.
             compare(&format!("{width}x{height}"), &pair(width, height), &config(min, count));
@@ -56,8 +57,8 @@ fn the_twins_end_with_the_same_bytes() {
 /// Nothing to see, one disparity, no partner at all but for a few columns.
 #[test]
 fn what_shows_nothing_gives_a_map_and_no_panic() {
-    let flat = |level: u8| Picture::filled(41, 30, [level; 4]);
-    for (left, right) in [(flat(0), flat(0)), (flat(90), flat(255)), (colours(41, 30, 5), colours(41, 30, 77))] {
+    let flat = |level: u8| Picture::filled((41, 30), [level; 4]);
+    for (left, right) in [(flat(0), flat(0)), (flat(90), flat(255)), (colours((41, 30), 5), colours((41, 30), 77))] {
         for (min, count) in [(3, 1), (-9, 17), (0, 500), (-40, 3)] {
             compare(&format!("{count} from {min}"), &(left.clone(), right.clone()), &config(min, count));
         }
@@ -66,8 +67,8 @@ fn what_shows_nothing_gives_a_map_and_no_panic() {
 
 #[test]
 fn a_shifted_picture_is_found_in_either_view() {
-    let right = colours(120, 60, 1);
-    let left = Picture::from_fn(120, 60, |x, y| right.get_clamped(i64::from(x) - 7, y.into()));
+    let right = colours((120, 60), 1);
+    let left = Picture::from_fn((120, 60), |x, y| right.get_clamped(i64::from(x) - 7, y.into()));
     for reference in [View::Left, View::Right] {
         let config = KamencayConfig { reference, ..config(-3, 20) };
         let dense = block_on(kamencay::compute(gpu(), &left, &right, &config)).unwrap();
@@ -124,7 +125,7 @@ fn what_cannot_be_is_refused_by_both_alike() {
         assert!(matches!(device, Error::Parameter { .. }), "{device}");
         assert_eq!(device.to_string(), twin.to_string());
     }
-    let other = colours(39, 30, 1);
+    let other = colours((39, 30), 1);
     assert!(matches!(block_on(kamencay::compute(gpu(), &left, &other, &config(0, 9))), Err(Error::SizesDiffer { .. })));
     assert!(matches!(compute(&left, &other, &config(0, 9)), Err(Error::SizesDiffer { .. })));
 }

@@ -1,7 +1,7 @@
 //! Mean-shift filtering.
 
 use hsad::{
-    image::Plane,
+    image::{Plane, Size},
     kamencay::ModeSeeking,
     verify::{Values, trials::MeanShiftTrial},
 };
@@ -22,12 +22,12 @@ fn compare(what: &str, pixels: &Plane<u32>, seeking: ModeSeeking) {
 #[test]
 fn the_twin_filters_the_same() {
     let words = |picture: &hsad::io::Picture| picture.map(|&pixel| u32::from_le_bytes(pixel));
-    for (width, height) in SIZES {
-        let pixels = words(&colours(width, height, 3));
+    for Size { width, height } in SIZES {
+        let pixels = words(&colours((width, height), 3));
         compare(&format!("{width}x{height}"), &pixels, ModeSeeking { radius: 5, range: 8, turns: 10 });
         compare(&format!("{width}x{height}"), &pixels, ModeSeeking { radius: 1, range: 60, turns: 3 });
     }
-    let pixels = words(&colours(64, 48, 4));
+    let pixels = words(&colours((64, 48), 4));
     compare("all there is", &pixels, ModeSeeking { radius: 15, range: 255, turns: 100 });
     for (name, photograph) in photographs().into_iter().take(2) {
         compare(&name, &words(&photograph), ModeSeeking { radius: 3, range: 8, turns: 5 });
@@ -38,7 +38,7 @@ fn the_twin_filters_the_same() {
 fn by_hand() {
     let grey = |level: u32| level | level << 8 | level << 16;
     let seeking = |range, turns| ModeSeeking { radius: 1, range, turns };
-    let pixels = Plane::new(4, 1, [10, 13, 100, 107].map(grey).to_vec()).unwrap();
+    let pixels = Plane::new((4, 1), [10, 13, 100, 107].map(grey).to_vec()).unwrap();
     // Greys that differ by 3 are 5.2 apart, by 7 they are 12.1. The mean of 10 and 13 is 11.5, up.
     assert_eq!(on_device(&pixels, seeking(6, 1)), [12, 12, 100, 107].map(grey));
     // 103.5 for the others.
@@ -49,7 +49,7 @@ fn by_hand() {
 
 #[test]
 fn edges_stay_and_grain_goes() {
-    let pixels = Plane::from_fn(40, 20, |x, y| {
+    let pixels = Plane::from_fn((40, 20), |x, y| {
         let level = if x < 20 { 50 } else { 120 } + (7 * x + 5 * y) % 5;
         level | level << 8 | level << 16
     });

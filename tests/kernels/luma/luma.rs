@@ -1,9 +1,12 @@
-use hsad::{image::Plane, verify::trials::LumaTrial};
+use hsad::{
+    image::{Plane, Size},
+    verify::trials::LumaTrial,
+};
 
 use crate::common::{SIZES, assert_twin, leaves, photographs, picture};
 
 fn packed(width: u32, height: u32, pixels: &[[u8; 4]]) -> LumaTrial {
-    LumaTrial(Plane::new(width, height, pixels.to_vec()).unwrap())
+    LumaTrial(Plane::new((width, height), pixels.to_vec()).unwrap())
 }
 
 #[test]
@@ -21,10 +24,10 @@ fn rows_start_new_words() {
 
 #[test]
 fn equals_the_twin_at_every_size() {
-    for (width, height) in SIZES {
-        let [red, green, blue] = [1, 2, 3].map(|seed| picture(width, height, seed));
+    for Size { width, height } in SIZES {
+        let [red, green, blue] = [1, 2, 3].map(|seed| picture((width, height), seed));
         let pixel = |x, y| [red.get(x, y), green.get(x, y), blue.get(x, y), (x + y) as u8];
-        assert_twin(&format!("{width}x{height}"), &LumaTrial(Plane::from_fn(width, height, pixel)));
+        assert_twin(&format!("{width}x{height}"), &LumaTrial(Plane::from_fn((width, height), pixel)));
     }
 }
 

@@ -197,7 +197,7 @@ pub mod tests {
     /// A record from the error of each pixel; NaN stands for no estimate.
     pub fn record(scene: &str, method: &str, errors: &[f32], non_occluded: Option<&[f32]>) -> Record {
         let score = |errors: &[f32]| {
-            let map = Plane::new(errors.len() as u32, 1, errors.to_vec()).unwrap();
+            let map = Plane::new((errors.len() as u32, 1), errors.to_vec()).unwrap();
             score_pixels(&map, &map.map(|_| 0.0), None, &THRESHOLDS).unwrap()
         };
         Record {

@@ -6,6 +6,7 @@ use glam::DVec2;
 use hsad::{
     Result,
     eval::{Point, PointMatch},
+    image::Size,
     io::csv,
 };
 
@@ -15,7 +16,7 @@ const SAME: f64 = 0.75;
 
 /// Reads matches: columns x1, y1, x2, y2 in pixels, and optionally confidence. Without that column the lines are taken
 /// to be in order of confidence, the most confident first.
-pub fn matches(path: &Path, sizes: [(u32, u32); 2]) -> Result<Vec<PointMatch>> {
+pub fn matches(path: &Path, sizes: [Size; 2]) -> Result<Vec<PointMatch>> {
     let table = csv::read(path, &["x1", "y1", "x2", "y2"], &["confidence"])?;
     let matches = table.rows.iter().enumerate().map(|(i, (line, values))| {
         let &[x1, y1, x2, y2, ..] = &values[..] else { unreachable!("four columns were asked for") };
@@ -28,7 +29,7 @@ pub fn matches(path: &Path, sizes: [(u32, u32); 2]) -> Result<Vec<PointMatch>> {
 }
 
 /// Reads interest points as `hsad features` writes them: columns x, y and scale, in pixels.
-pub fn points(path: &Path, size: (u32, u32)) -> Result<Vec<Point>> {
+pub fn points(path: &Path, size: Size) -> Result<Vec<Point>> {
     let table = csv::read(path, &["x", "y", "scale"], &[])?;
     let points = table.rows.iter().map(|(line, values)| {
         let &[x, y, scale] = &values[..] else { unreachable!("three columns were asked for") };
@@ -63,7 +64,7 @@ pub fn join(matches: &mut [PointMatch], points: [&[Point]; 2]) {
     }
 }
 
-fn inside(path: &Path, line: usize, [x, y]: [(&str, f64); 2], (width, height): (u32, u32)) -> Result<()> {
+fn inside(path: &Path, line: usize, [x, y]: [(&str, f64); 2], Size { width, height }: Size) -> Result<()> {
     for ((name, value), side, what) in [(x, width, "wide"), (y, height, "high")] {
         if !(-0.5..=f64::from(side) - 0.5).contains(&value) {
             return Err(csv::at(path, line, format!("{name} is {value}, but the picture is {side} px {what}")));

@@ -9,6 +9,7 @@ use hsad::{
     disparity::pixels,
     eval::PointMatch,
     gpu::block_on,
+    image::Size,
     io::Picture,
     kamencay::KamencayParameters,
     pipeline,
@@ -98,7 +99,7 @@ impl Method {
             return Ok(MethodMatches { points, at_points: matches.clone(), everywhere: matches });
         };
         let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
-        let (width, height) = first.size();
+        let Size { width, height } = first.size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| DVec2::new(x.into(), y.into())));
         Ok(MethodMatches {
             points: points.to_vec(),
@@ -128,8 +129,8 @@ mod tests {
 
     #[test]
     fn a_map_answers_where_it_was_measured() {
-        let disparity = Plane::from_fn(4, 1, |x, _| [256, 384, NONE, 512][x as usize]);
-        let confidence = Plane::from_fn(4, 1, |x, _| [0, 7, 0, 9][x as usize]);
+        let disparity = Plane::from_fn((4, 1), |x, _| [256, 384, NONE, 512][x as usize]);
+        let confidence = Plane::from_fn((4, 1), |x, _| [0, 7, 0, 9][x as usize]);
         let dense = Dense { disparity, confidence };
         let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| match_at(&dense, DVec2::new(x, 0.3)));
         let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));

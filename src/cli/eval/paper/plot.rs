@@ -1,5 +1,6 @@
 //! The curves as SVG plots: one panel per condition and mean, one line per method.
 
+use hsad::image::Size;
 use std::error::Error;
 
 use plotters::prelude::*;
@@ -13,7 +14,7 @@ use super::{
 /// Number of panels in a row.
 const COLUMNS: usize = 4;
 /// Width and height of a panel, in pixels.
-const PANEL: (u32, u32) = (240, 190);
+const PANEL: Size = Size::new(240, 190);
 /// Height of the header with the title and the legend, in pixels.
 const HEADER: u32 = 46;
 /// Font size that plotters needs for text of 1 px.
@@ -94,7 +95,7 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
 
     let rows = names.len().div_ceil(COLUMNS);
     let columns = names.len().min(COLUMNS);
-    let size = (PANEL.0 * COLUMNS as u32, HEADER + PANEL.1 * rows as u32);
+    let size = (PANEL.width * COLUMNS as u32, HEADER + PANEL.height * rows as u32);
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -106,7 +107,7 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
             header.draw(&PathElement::new([(x, 35), (x + 22, 35)], color(method).stroke_width(2)))?;
             header.draw(&Text::new(method.name(), (x + 28, 28), ("sans-serif", 12.0 * EM)))?;
         }
-        let width = PANEL.0 * columns as u32;
+        let width = PANEL.width * columns as u32;
         let (panels, _) = panels.split_horizontally(width);
         for (name, panel) in names.iter().zip(panels.split_evenly((rows, columns.max(1)))) {
             let [from, to] = axis.ends;

@@ -146,7 +146,7 @@ pub mod tests {
     #[test]
     fn answers_are_held_against_the_truth() {
         // Columns 0 and 1 leave the picture, and column 7 has no ground truth.
-        let disparities = Plane::from_fn(8, 2, |x, _| if x == 7 { f32::INFINITY } else { 2.0 });
+        let disparities = Plane::from_fn((8, 2), |x, _| if x == 7 { f32::INFINITY } else { 2.0 });
         let truth = Truth::stereo(disparities.clone(), None).unwrap();
         let points: Vec<_> = [1.0, 3.0, 4.0, 6.0, 7.0].map(|x| DVec2::new(x, 1.0)).into();
         let answer = |i: usize, off: f64, confidence| PointMatch {

@@ -12,12 +12,12 @@ use crate::{
     disparity::DisparityRange,
     error::Result,
     gpu::uniform_buffer,
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     luma::pack,
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -40,7 +40,7 @@ pub struct PadTrial {
 
 impl PadTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let (width, height) = size;
+        let Size { width, height } = size;
         let (above, below) = (dice.below(20), dice.below(20));
         let brightness = dice.pick(&[
             Brightness::SAME,
@@ -105,7 +105,7 @@ pub struct BlockMatchTrial {
 
 impl BlockMatchTrial {
     fn matched(&self, bench: &Bench<'_>, wanted: ResultKind) -> Result<Vec<u32>> {
-        let (gpu, (width, height)) = (bench.gpu, self.left.size());
+        let (gpu, Size { width, height }) = (bench.gpu, self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
         let [left, right] = layout.padding();
@@ -176,7 +176,7 @@ impl BlockMatchTrial {
         let uniqueness = dice.pick(&[0, 0, 1, 15, 100]);
         let range = dice.range(80);
         // Also ranges that none of the costs of most pixels lie in.
-        let away = if size.0 > 64 { dice.between(-40, 40) } else { 0 };
+        let away = if size.width > 64 { dice.between(-40, 40) } else { 0 };
         let range = DisparityRange { min: range.min + away, ..range };
         let [left, right] = dice.pair(size);
         let consistency = dice.pick(&[None, Some(0), Some(256)]);
@@ -185,8 +185,8 @@ impl BlockMatchTrial {
         let parameters = DenseParameters { aggregation, interpolation, uniqueness, consistency, refinement: None };
         let config = DenseConfig { parameters, ..DenseConfig::new(range) };
         let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
-        let ranges = config.searched(size.0).ok().filter(|_| in_cells).map(|range| {
-            Plane::from_fn(size.0.div_ceil(CELL), size.1.div_ceil(CELL), |_, _| {
+        let ranges = config.searched(size.width).ok().filter(|_| in_cells).map(|range| {
+            Plane::from_fn((size.width.div_ceil(CELL), size.height.div_ceil(CELL)), |_, _| {
                 let first = dice.below(range.count);
                 (first, dice.below(range.count - first + 1))
             })

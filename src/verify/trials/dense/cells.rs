@@ -6,12 +6,12 @@ use crate::{
     dense::kernels::{CellBand, CellRanges, Halve},
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     luma::pack,
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -35,9 +35,9 @@ impl Trial for HalveTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, height)) = (bench.gpu, self.0.size());
+        let (gpu, Size { width, height }) = (bench.gpu, self.0.size());
         let halved = bench.output(width.div_ceil(2).div_ceil(4) * height.div_ceil(2))?;
-        let dispatch = Halve::new(gpu).prepare((width, height), &bench.upload_luma(&self.0)?, &halved);
+        let dispatch = Halve::new(gpu).prepare(Size::new(width, height), &bench.upload_luma(&self.0)?, &halved);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("half the picture", bench.download::<u32>(&halved)?)])
     }
@@ -62,9 +62,9 @@ impl CellRangesTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let range = dice.pick(&[(0, 64), (-9, 33), (5, 1), (-3000, 6001)]);
         let range = DisparityRange { min: range.0, count: range.1 };
-        let half = (size.0.div_ceil(2), size.1.div_ceil(2));
+        let half = (size.width.div_ceil(2), size.height.div_ceil(2));
         let (steps, holes) = (dice.picture(half), dice.picture(half));
-        let map = Plane::from_fn(half.0, half.1, |x, y| {
+        let map = Plane::from_fn(half, |x, y| {
             let share = i64::from(steps.get(x, y)) * i64::from(range.count) * i64::from(SCALE) / 512;
             // More and more holes to the right.
             let hole = u32::from(holes.get(x, y)) < x * 300 / half.0;
@@ -84,7 +84,7 @@ impl Trial for CellRangesTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let band = CellBand::new(self.size, (0, self.size.1), self.range);
+        let band = CellBand::new(self.size, (0, self.size.height), self.range);
         let ranges = bench.output(band.words() as u32)?;
         let dispatch = CellRanges::new(bench.gpu).prepare(&band, &bench.upload(self.map.data())?, &ranges);
         bench.run(|encoder| dispatch.record(encoder));

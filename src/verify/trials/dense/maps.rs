@@ -13,12 +13,12 @@ use crate::{
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     gpu::uniform_buffer,
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     luma::pack,
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -33,10 +33,10 @@ pub(super) const SUBJECTS: &[Subject] = &[
 ];
 
 /// Disparities of all kinds, in 1/256 px: smooth, noisy, none, from `least` to `most` and perhaps beyond.
-fn map((width, height): Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
+fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
     let surface = dice.picture((width, height));
     let (holes, noise) = (dice.pick(&[0, 30, 128, 250]), 1 + dice.below(300));
-    Plane::from_fn(width, height, |x, y| {
+    Plane::from_fn((width, height), |x, y| {
         let smooth = least + (most - least) / 256 * i32::from(surface.get(x, y));
         if dice.below(256) < holes { NONE } else { smooth + dice.below(noise) as i32 }
     })
@@ -112,12 +112,17 @@ impl Trial for ConsistencyTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.dense.disparity.size());
-        let layout = MapLayout { width: size.0, rows: size.1 };
+        let layout = MapLayout { width: size.width, rows: size.height };
         let (others, matches) = (bench.upload(&self.words())?, bench.upload(&matches(&self.dense))?);
         let kernel =
             Consistency::new(gpu, self.claims_from.map_or(CheckedAgainst::Disparities, CheckedAgainst::Claims));
-        let dispatch =
-            kernel.prepare(MapBuffer { buffer: &matches, layout }, size.1, self.view, self.max_difference, &others);
+        let dispatch = kernel.prepare(
+            MapBuffer { buffer: &matches, layout },
+            size.height,
+            self.view,
+            self.max_difference,
+            &others,
+        );
         bench.run(|encoder| dispatch.record(encoder));
         Ok(arrays(&bench.download(&matches)?, layout.pixels() as usize))
     }
@@ -145,11 +150,11 @@ pub struct ResidualTrial {
 }
 
 impl ResidualTrial {
-    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
         let brightness = Brightness { gain: dice.pick(&[256, 100, 700]), offset: dice.pick(&[0, 9000, -9000]) };
         let views = [dice.picture((width, height)), dice.picture((width, height))];
         let first_row = dice.below(height);
-        let disparities = map((width, height - first_row), dice, -30 * SCALE, 60 * SCALE);
+        let disparities = map(Size::new(width, height - first_row), dice, -30 * SCALE, 60 * SCALE);
         Self { views, brightness, reference: dice.view(), first_row, disparities }
     }
 }
@@ -178,15 +183,15 @@ impl Trial for ResidualTrial {
             reference: self.reference,
         };
         let disparities = bench.upload(self.disparities.data())?;
-        let residuals = bench.output(size.0.div_ceil(4) * size.1)?;
+        let residuals = bench.output(size.width.div_ceil(4) * size.height)?;
         let dispatch = Residual::new(gpu).prepare(size, self.first_row, views, &disparities, &residuals);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("residuals", bench.download::<u32>(&residuals)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let (width, rows) = self.disparities.size();
-        let rows_of = |view: &Luma| Plane::from_fn(width, rows, |x, y| view.get(x, self.first_row + y));
+        let Size { width, height: rows } = self.disparities.size();
+        let rows_of = |view: &Luma| Plane::from_fn((width, rows), |x, y| view.get(x, self.first_row + y));
         let [left, right] = self.views.each_ref().map(rows_of);
         let right = right.map(|&luma| self.brightness.apply(luma));
         let found = residual([&left, &right], self.reference, &self.disparities);
@@ -208,7 +213,7 @@ pub struct SupportTrial {
 impl SupportTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let most = dice.pick(&[1, 8, u32::from(MAX_RESIDUAL) + 1]);
-        let residuals = Plane::from_fn(size.0, size.1, |_, _| dice.below(most) as u8);
+        let residuals = Plane::from_fn(size, |_, _| dice.below(most) as u8);
         Self { least: dice.pick(&[0, 1, 9, 25, 49]), dense: dense(size, dice), residuals }
     }
 }
@@ -224,7 +229,7 @@ impl Trial for SupportTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.dense.disparity.size());
-        let layout = MapLayout { width: size.0, rows: size.1 };
+        let layout = MapLayout { width: size.width, rows: size.height };
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
         let residuals = bench.upload_luma(&self.residuals)?;
@@ -249,12 +254,12 @@ pub struct FillTrial {
 }
 
 impl FillTrial {
-    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
         // Slanted surfaces with noise, of all lengths.
         let coarse = dice.picture((width.div_ceil(40), height));
         let (holes, noise) = (dice.pick(&[0, 5, 200, 256]), 1 + dice.below(100));
         let (slope, every) = (dice.between(-70, 70), 1 + dice.below(4));
-        let disparities = Plane::from_fn(width, height, |x, y| {
+        let disparities = Plane::from_fn((width, height), |x, y| {
             if x % every == 0 && dice.below(256) < holes {
                 return NONE;
             }
@@ -275,7 +280,7 @@ impl Trial for FillTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.disparities.size());
-        let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(size.0 * size.1)?);
+        let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(size.width * size.height)?);
         let dispatch = Fill::new(gpu).prepare(size, self.range, &from, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filled disparities", bench.download::<i32>(&to)?)])
@@ -298,9 +303,9 @@ pub struct MapTextureTrial {
 }
 
 impl MapTextureTrial {
-    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
         // No device need have larger textures.
-        let size = (width.min(2048), height.min(2048));
+        let size = Size::new(width.min(2048), height.min(2048));
         let texel = dice.pick(&MapTexel::ALL);
         Self { disparities: map(size, dice, -300 * SCALE, 2000 * SCALE), texel, parts: 1 + dice.below(3) }
     }
@@ -316,7 +321,7 @@ impl Trial for MapTextureTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, height)) = (bench.gpu, self.disparities.size());
+        let (gpu, Size { width, height }) = (bench.gpu, self.disparities.size());
         let from = bench.upload(self.disparities.data())?;
         let texture = bench.output_texture(self.texel.format(), (width, height));
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -382,7 +387,7 @@ impl Trial for MedianTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.disparities.size());
         let maps = [&bench.upload(self.disparities.data())?, &bench.upload(self.before.data())?];
-        let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.0 * size.1)?);
+        let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.width * size.height)?);
         let dispatch = WeightedMedian::new(gpu, self.median).prepare(size, (&luma, 0), maps, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filtered disparities", bench.download::<i32>(&to)?)])

@@ -12,12 +12,12 @@ use crate::{
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::Result,
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     luma::pack,
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size, smooth_noise},
+        dice::{Dice, smooth_noise},
         trial::{Subject, Trial},
     },
 };
@@ -61,8 +61,8 @@ impl Trial for CensusTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.0.size();
-        let plane = pad(&self.0, &Census::padding(size, 0, size.1), Brightness::SAME);
-        let transformed = bench.output(size.0 * size.1)?;
+        let plane = pad(&self.0, &Census::padding(size, 0, size.height), Brightness::SAME);
+        let transformed = bench.output(size.width * size.height)?;
         let kernel = Census::new(bench.gpu);
         let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
         bench.run(|encoder| dispatch.record(encoder));
@@ -90,8 +90,8 @@ pub struct BoxMeanTrial {
 impl BoxMeanTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let disparities = dice.below(33) + 1;
-        let row = size.0 * disparities.next_multiple_of(4);
-        let costs = dice.picture((row, size.1)).into_data();
+        let row = size.width * disparities.next_multiple_of(4);
+        let costs = dice.picture((row, size.height)).into_data();
         Self { size, costs, disparities, side: dice.pick(&[1, 3, 5, 7, 9, 31]) }
     }
 }
@@ -106,7 +106,7 @@ impl Trial for BoxMeanTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, rows)) = (bench.gpu, self.size);
+        let (gpu, Size { width, height: rows }) = (bench.gpu, self.size);
         let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
         let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
         let dispatches = BoxMean::new(gpu, self.side).prepare(&band, 0..rows, &costs, &means);
@@ -141,9 +141,9 @@ impl CostTrial {
         let cost = Cost { census: dice.pick(&[0, 20, 40, 255]), difference, gradient };
         let (view, mut range) = (dice.view(), dice.range(70));
         range.min += dice.pick(&[0, 0, 9, -500, 90]);
-        let first = dice.below(size.1.min(4));
+        let first = dice.below(size.height.min(4));
         let views = dice.pair(size).map(|view| census(&view));
-        Self { views, view, cost, range, rows: first..size.1 - dice.below(size.1 - first) }
+        Self { views, view, cost, range, rows: first..size.height - dice.below(size.height - first) }
     }
 }
 
@@ -184,8 +184,8 @@ fn penalties(dice: &mut Dice) -> Penalties {
 }
 
 /// Costs of all pixels and as many disparities as make whole fours, from 0 to 127.
-fn costs((width, height): Size, count: u32, seed: u32) -> Vec<u8> {
-    let noise = smooth_noise(width * count.next_multiple_of(4), height, seed);
+fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
+    let noise = smooth_noise((width * count.next_multiple_of(4), height), seed);
     noise.data().iter().map(|&value| value / 2).collect()
 }
 
@@ -208,7 +208,7 @@ impl PathTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let (penalties, count) = (penalties(dice), dice.pick(&[4, 12, 20, 64]));
         let direction = dice.pick(&Direction::ALL);
-        let band_rows = if dice.coin() { size.1 } else { 1 + dice.below(size.1) };
+        let band_rows = if dice.coin() { size.height } else { 1 + dice.below(size.height) };
         let high_bits = dice.word() << 8;
         let reference = dice.picture(size).map(|&value| u32::from(value) | high_bits);
         Self { reference, costs: costs(size, count, dice.word()), direction, penalties, band_rows }
@@ -226,7 +226,7 @@ impl Trial for PathTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let Self { reference, direction, .. } = self;
-        let (width, height) = reference.size();
+        let Size { width, height } = reference.size();
         let count = self.costs.len() as u32 / (width * height);
         let kernel = Path::new(bench.gpu, &self.penalties, count / 4);
         let view = bench.upload(reference.data())?;
@@ -303,7 +303,7 @@ impl SelectTrial {
         let (stored, count) = (dice.pick(&[1, 2, 3, 7]), dice.pick(&[1_u32, 2, 17, 40, 61]));
         let (penalties, interpolation) = (penalties(dice), dice.interpolation());
         let uniqueness = dice.pick(&[0, 1, 10, 100]);
-        let volume = |seed| smooth_noise(size.0 * count.next_multiple_of(4), size.1, seed).into_data();
+        let volume = |seed| smooth_noise((size.width * count.next_multiple_of(4), size.height), seed).into_data();
         Self {
             range: DisparityRange { min: dice.between(-9, 9), count },
             last: dice.pick(&Direction::ALL[..2]),
@@ -332,7 +332,7 @@ impl Trial for SelectTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, (width, rows)) = (bench.gpu, self.reference.size());
+        let (gpu, Size { width, height: rows }) = (bench.gpu, self.reference.size());
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
         let layout = MapLayout { width, rows };
         let volumes = PathVolumes { start: 0, volume_words: band.row_words() * rows };
@@ -392,7 +392,7 @@ impl ClaimTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let (view, range, spare_rows) = (dice.view(), dice.range(60), dice.below(7));
         let few = dice.coin();
-        let winners = Plane::from_fn(size.0, size.1, |_, _| {
+        let winners = Plane::from_fn(size, |_, _| {
             // With few costs many claims are equally good.
             let cost = if few { dice.below(3) } else { dice.below(2040) };
             let disparity = range.min + dice.below(range.count) as i32;
@@ -412,7 +412,7 @@ impl Trial for ClaimTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (width, rows) = self.winners.size();
+        let Size { width, height: rows } = self.winners.size();
         let layout = MapLayout { width, rows: rows + self.spare_rows };
         // A map in front of the keys.
         let mut matches = vec![7; layout.key_offset() as usize];

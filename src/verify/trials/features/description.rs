@@ -18,11 +18,11 @@ use crate::{
         keypoints::{Keypoint, KeypointList},
     },
     gpu::block_on,
-    image::Luma,
+    image::{Luma, Size},
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -46,7 +46,7 @@ fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu
 }
 
 /// Places anywhere in a picture and around it, of any scale and orientation.
-fn places_in((width, height): Size, dice: &mut Dice) -> Vec<Keypoint> {
+fn places_in(Size { width, height }: Size, dice: &mut Dice) -> Vec<Keypoint> {
     let count = 1 + dice.below(400);
     let mut sixty_fourths = |least: f32, length: f32| least + dice.below((64.0 * length) as u32) as f32 / 64.0;
     let place = |_| Keypoint {
@@ -264,7 +264,7 @@ mod tests {
     /// What last digits decide is left out of the trial, and is not most of it.
     #[test]
     fn most_orientations_are_decided() {
-        let trial = OrientationTrial::draw((311, 239), &mut Dice::new("orientation", 8));
+        let trial = OrientationTrial::draw(Size::new(311, 239), &mut Dice::new("orientation", 8));
         let left = trial.keypoints.iter().filter(|keypoint| keypoint.x != NOTHING_THERE).count();
         assert!(2 * left > trial.keypoints.len(), "{left} of {}", trial.keypoints.len());
     }

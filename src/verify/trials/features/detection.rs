@@ -18,11 +18,11 @@ use crate::{
         },
         keypoints::{DISPATCH_WIDTH, Keypoint, KeypointList},
     },
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -134,13 +134,13 @@ impl NonmaxTrial {
 
     /// The same by the twin.
     pub fn twins_keypoints(&self) -> Vec<Keypoint> {
-        let (width, height) = self.size;
+        let Size { width, height } = self.size;
         let octave = |(index, responses): (u32, &Vec<i32>)| {
-            let grid = Grid::new(width, height, self.config.step, index);
+            let grid = Grid::new((width, height), self.config.step, index);
             let points = (grid.width * grid.height) as usize;
             let layers = [0, 1, 2, 3].map(|layer: usize| {
                 let words = &responses[layer * points..][..points];
-                Plane::from_fn(grid.width, grid.height, |x, y| Response(words[(y * grid.width + x) as usize]))
+                Plane::from_fn((grid.width, grid.height), |x, y| Response(words[(y * grid.width + x) as usize]))
             });
             let octave = Octave { index, spacing: grid.step, layers };
             let found = candidates(&octave, width, height, integer_threshold(self.config.threshold));
@@ -222,7 +222,7 @@ pub struct WorkgroupsTrial {
 }
 
 impl WorkgroupsTrial {
-    fn draw((width, height): Size, dice: &mut Dice) -> Self {
+    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
         let capacity = 1 + dice.below((width * height).min(1 << 16));
         Self { found: dice.pick(&[0, capacity, capacity + 1, capacity / 2, u32::MAX]), capacity }
     }
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn a_changed_keypoint_is_seen() {
         let good = Keypoint { x: 30.0, y: 20.0, scale: 2.0, orientation: 0.0, response: 9, octave: 1, index: 5 };
-        let trial = NonmaxTrial { size: (64, 64), config: FeatureConfig::default(), responses: Vec::new() };
+        let trial = NonmaxTrial { size: Size::new(64, 64), config: FeatureConfig::default(), responses: Vec::new() };
         let arrays = |keypoint| trial.arrays(1, &[keypoint]);
         assert!(!differ(&arrays(good), &arrays(good)));
         assert!(!differ(&arrays(Keypoint { x: 30.000_1, ..good }), &arrays(good)));

@@ -4,11 +4,11 @@ use crate::{
     cpu::features::{integral_columns::integral_columns, integral_rows::integral_rows},
     error::Result,
     features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     verify::{
         array::Array,
         bench::Bench,
-        dice::{Dice, Size},
+        dice::Dice,
         trial::{Subject, Trial},
     },
 };
@@ -73,7 +73,7 @@ impl Trial for ColumnsTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let sums = bench.upload(self.0.data())?;
-        let size = (self.0.width() - 1, self.0.height() - 1);
+        let size = Size::new(self.0.width() - 1, self.0.height() - 1);
         let dispatch = IntegralColumns::new(bench.gpu).prepare(size, &sums);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("integral image", bench.download::<u32>(&sums)?)])
