@@ -109,7 +109,7 @@ fn dense(
         }
         let outputs = matcher.outputs(Destination::Buffer(&map), Some(&confidence))?;
         time(&format!("dense {name}"), || {
-            submit(gpu, |encoder| matcher.record(encoder, &outputs));
+            submit(gpu, |encoder| matcher.record_luma(encoder, &outputs));
             Ok(())
         })?;
         kernels(&matcher)?;

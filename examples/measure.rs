@@ -8,18 +8,17 @@
 use std::path::Path;
 
 use hsad::{
-    backend::Backend,
+    Backend, Pair,
     config::{Config, Method, Preset},
-    cpu,
-    dense::{Aggregation, Dense, DenseConfig, DenseParameters, Search, View, kernels::CellBand},
+    dense::{Aggregation, Dense, DenseConfig, DenseParameters, Search, View},
     disparity::{self, DisparityRange, SCALE},
     eval::scene::{self, SceneFiles},
     features::Feature,
     gpu::{DeviceChoice, block_on},
     image::Size,
+    internals::{cpu, dense::CellBand},
     kamencay::KamencayParameters,
     matching::{MatchConfig, Rows, Seed, match_features, refine},
-    pair::Pair,
     pipeline,
 };
 

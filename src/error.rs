@@ -58,6 +58,28 @@ pub enum Error {
         expected: String,
     },
 
+    /// A buffer or texture of the application cannot serve for its use.
+    #[error("{name} is {value}, but {expected}")]
+    Resource {
+        /// What the buffer or texture was given as.
+        name: &'static str,
+        /// What was given.
+        value: String,
+        /// What would be accepted.
+        expected: String,
+    },
+
+    /// The picture has more interest points than there is room for.
+    #[error(
+        "max_features is {room}, but the picture has {found} interest points: raise max_features, or raise the threshold"
+    )]
+    TooManyFeatures {
+        /// Interest points in the picture.
+        found: usize,
+        /// Interest points that there is room for: [`crate::FeatureConfig::max_features`].
+        room: u32,
+    },
+
     /// The pair's rows do not correspond, so a search along rows would find nothing but noise.
     #[error("the pair is not rectified: {diagnosis}; rectify it first, or search along rows all the same")]
     NotRectified {
@@ -66,7 +88,7 @@ pub enum Error {
     },
 
     /// Too few points of one view were found in the other to tell the disparity range.
-    #[error("the disparity range could not be found: {reason}; name it with --min-disparity and --disparities")]
+    #[error("the disparity range could not be found: {reason}; name the range to search")]
     NoRange {
         /// What was found instead.
         reason: String,
@@ -94,8 +116,7 @@ pub enum Error {
 
     /// The device does not compute what the CPU twins do.
     #[error(
-        "{device} computes wrong results ({what}): use another device (hsad devices) or --device cpu, and repeat it \
-         with {command}"
+        "{device} computes wrong results ({what}): use another device or the CPU, and repeat the failure with {command}"
     )]
     WrongResults {
         /// The device's name.

@@ -1,13 +1,35 @@
-//! Stereo depth from two photographs, on any GPU: every heavy stage is a WGSL compute shader run by
-//! [`wgpu`], with a twin on the CPU that ends with the same bytes.
+//! Stereo depth from two photographs, on any GPU: every heavy stage is a WGSL compute shader run by [`wgpu`], with a twin
+//! on the CPU that computes the same bytes.
 //!
-//! On a device of your own, from your textures to your texture, in your own encoder; [`dense::Matcher`] submits nothing:
+//! # A pair of pictures
+//!
+//! [`pipeline::run`] finds the disparity range itself and computes a map by one of the presets ([`Preset`]) or by a
+//! [`Config`] of your own, on a GPU or on the CPU ([`Backend`]):
+//!
+//! ```
+//! use hsad::{Backend, DeviceChoice, DisparityMap, Picture, Preset, pipeline};
+//!
+//! /// Disparities of the left view, from 8-bit RGBA pixels of a rectified pair.
+//! fn disparity(size: (u32, u32), left: &[u8], right: &[u8]) -> hsad::Result<DisparityMap> {
+//!     let backend = Backend::open(&DeviceChoice::Best)?;
+//!     let (left, right) = (Picture::from_rgba8(size, left)?, Picture::from_rgba8(size, right)?);
+//!     let outcome = pipeline::run(&backend, (&left, &right), &Preset::Balanced.config(), |_| ())?;
+//!     Ok(outcome.dense.disparity)
+//! }
+//! ```
+//!
+//! [`io`] reads and writes files: PNG and JPEG pictures with the feature `pictures`, disparity maps as PFM or PNG, point
+//! clouds. [`disparity`] says how a map is stored, [`dense::Dense::confidence`] how far each disparity can be trusted.
+//!
+//! # Textures of an application
+//!
+//! A [`Matcher`] works on the application's own device, from its textures or buffers to its textures or buffers, in its own
+//! encoder; recording submits nothing and creates nothing:
 //!
 //! ```
 //! use hsad::{
-//!     config::Preset,
-//!     dense::{Brightness, Destination, Inputs, Matcher, Outputs},
-//!     disparity::DisparityRange,
+//!     DisparityRange, Gpu, Matcher, Preset,
+//!     dense::{Destination, Inputs, Outputs},
 //!     luma::Source,
 //!     wgpu,
 //! };
@@ -19,77 +41,69 @@
 //! }
 //!
 //! impl Stereo {
-//!     /// Once for a size: compiles the kernels, allocates all memory. `disparities` is of format R32Float, in pixels.
-//!     fn new(
-//!         device: &wgpu::Device,
-//!         [left, right]: [&wgpu::TextureView; 2],
-//!         disparities: &wgpu::TextureView,
-//!     ) -> hsad::Result<Self> {
-//!         let size = left.texture().size();
+//!     /// Once per size: compiles the kernels, allocates all memory. `map` has the format R32Float, in pixels.
+//!     fn new(gpu: &Gpu, [left, right, map]: [&wgpu::TextureView; 3]) -> hsad::Result<Self> {
 //!         let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64)?);
-//!         let matcher = Matcher::new(device, (size.width, size.height), &config)?;
-//!         let inputs = matcher.inputs(device, Source::Texture(left), Source::Texture(right))?;
-//!         let outputs = matcher.outputs(device, Destination::Texture(disparities), None)?;
+//!         let matcher = Matcher::new(gpu, left.texture().size(), &config)?;
+//!         let inputs = matcher.inputs(Source::Texture(left), Source::Texture(right))?;
+//!         let outputs = matcher.outputs(Destination::Texture(map), None)?;
 //!         Ok(Self { matcher, inputs, outputs })
 //!     }
 //!
-//!     /// Once a frame.
+//!     /// Once per frame.
 //!     fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-//!         self.inputs.record(encoder);
-//!         self.matcher.record(encoder, &self.outputs);
+//!         self.matcher.record(encoder, &self.inputs, &self.outputs);
 //!     }
 //! }
 //! ```
 //!
-//! [`luma::Source`] says which textures and buffers it takes, [`dense::Destination`] where disparities can go,
-//! [`gpu::REQUIRED_LIMITS`] what a device must offer, and [`gpu::Context`] how an application's pipeline cache is used.
-//! `examples/embed` draws the disparities, `examples/stream` goes through a sequence of frames.
+//! [`Gpu::new`] takes the application's device and queue, [`Gpu::with_cache`] its pipeline cache;
+//! [`gpu::REQUIRED_LIMITS`] lists what the device must offer, [`luma::Source`] and [`dense::Destination`] list formats and
+//! usages. `examples/embed` draws the map, `examples/stream` follows a sequence of frames.
 //!
-//! For a sequence, the features of a frame tell the range and the brightness of those after it, without anything having
-//! to wait: a [`features::Detector`] reads the matcher's luma, and what it found is copied and looked at when it arrives.
+//! # Interest points
+//!
+//! A [`Detector`] finds and describes interest points of luma, [`matching`] matches their descriptors, [`seeding`] tells
+//! range, brightness and rectification of a pair from the matches, and [`wide_baseline`] matches two views of which
+//! nothing is known. In a sequence, the points of one frame tell the range of those after it:
 //!
 //! ```
-//! use hsad::{dense::Matcher, features::Feature, image::Luma, pipeline, seeding::{Seeding, SeedingConfig}, wgpu};
+//! use hsad::{
+//!     DisparityRange, Feature, Luma, Matcher, pipeline,
+//!     seeding::{Seeding, SeedingConfig},
+//! };
 //!
-//! /// What a frame's features tell, for the frames after it; the range that a new matcher is needed for, if one is.
-//! fn learn(
-//!     matcher: &Matcher,
-//!     queue: &wgpu::Queue,
-//!     views: (&Luma, &Luma),
-//!     features: (&[Feature], &[Feature]),
-//!     searched: hsad::disparity::DisparityRange,
-//! ) -> hsad::Result<Option<hsad::disparity::DisparityRange>> {
-//!     let seeding = Seeding::find(views, features, &SeedingConfig::default())?;
-//!     if let Some(found) = &seeding.brightness {
-//!         matcher.set_brightness(queue, pipeline::equalising(found))?;
+//! /// Matches the next frames as bright as this one was found to be, and returns the range that this one shows.
+//! fn learn(matcher: &Matcher, views: (&Luma, &Luma), points: (&[Feature], &[Feature])) -> hsad::Result<DisparityRange> {
+//!     let seeding = Seeding::find(views, points, &SeedingConfig::default())?;
+//!     if let Some(relation) = &seeding.brightness {
+//!         matcher.set_brightness(pipeline::equalising(relation))?;
 //!     }
-//!     Ok(seeding.range.ok().filter(|range| range.min < searched.min || range.last() > searched.last()))
+//!     Ok(seeding.range?)
 //! }
 //! ```
 //!
-//! Or all at once, the disparity range found by itself:
+//! # Scores and errors
 //!
-//! ```
-//! use hsad::{config::Preset, gpu::DeviceChoice, io::Picture, backend::Backend, pipeline};
+//! [`eval`] scores maps and matches where the truth is known. Everything that can go wrong is an [`Error`] with the value,
+//! the limit and the way out.
 //!
-//! fn disparity(left: &Picture, right: &Picture) -> hsad::Result<hsad::disparity::DisparityMap> {
-//!     let backend = Backend::open(&DeviceChoice::Best)?;
-//!     let outcome = pipeline::run(&backend, (left, right), &Preset::Balanced.config(), |_| ())?;
-//!     Ok(outcome.dense.disparity)
-//! }
-//! ```
+//! # Waiting
 //!
-//! These wait for the device. [`pipeline::run_async`], [`dense::compute_async`] and all others that end in `_async` are
-//! awaited instead, in an application's own loop or in a browser, where there are no others:
+//! Functions that wait for a device are `async`. The futures drive the device themselves, so any executor will do;
+//! [`block_on`] is the simplest one. The few that most programs begin with also have a blocking form, beside one that ends
+//! in `_async`: [`Gpu::open`], [`Backend::open`], [`Matcher::new`], [`Matcher::inputs`], [`Matcher::outputs`],
+//! [`Matcher::run`] and [`pipeline::run`]. A browser has the awaited forms alone.
 //!
-//! ```
-//! # use hsad::{gpu::Gpu, dense::{self, Dense, DenseConfig}, image::Luma};
-//! async fn disparity(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> hsad::Result<Dense> {
-//!     dense::compute_async(gpu, left, right, config).await
-//! }
-//! ```
+//! # Features of the crate
 //!
-//! What they wait for natively comes when [`wgpu::Device::poll`] is called, on any thread, or work is submitted.
+//! | feature | brings |
+//! |---|---|
+//! | `backends` | wgpu's Vulkan, Metal and DirectX 12; without it, the application's own wgpu features decide |
+//! | `pictures` | reading PNG, JPEG and other picture files |
+//! | `files` | writing maps as PNG, whole or not at all, and reading scenes with their ground truth |
+//! | `verify` | the kernels and their twins as a regression suite for a device |
+//! | `cli` | the command line, with all of the above |
 //!
 //! # Conventions
 //!
@@ -97,37 +111,33 @@
 //! - A left pixel `(x, y)` with disparity `d` corresponds to the right pixel `(x - d, y)`; disparities may be negative.
 //! - A disparity is an `i32` in 1/256 px ([`disparity::SCALE`]); [`disparity::NONE`] says 'none', 0 is a disparity.
 //! - Ties go to the smaller disparity; lists are in raster order of their scale.
-//! - The dense half, the integral image, the determinant of the Hessian and the list of interest points are integer
-//!   arithmetic: the same bytes on every device and on none. Sub-sample positions, orientations and descriptors are
-//!   `f32`, with tolerances stated where they are verified: the feature `verify` holds a device against the twins.
-//!
-//! # The way through
-//!
-//! [`io`] or [`luma`] -> [`gpu`] -> [`features`] -> [`matching`] -> [`seeding`] -> [`dense`] -> [`io`], strung together by
-//! [`pipeline`]; where its method is asked for, [`kamencay`] stands in the place of [`dense`]. Each stage has one name in
-//! four places: `shaders/<stage>.wgsl`, `src/<half>/<stage>.rs`, `src/cpu/<stage>.rs` (its twin) and
-//! `tests/kernels/<stage>.rs`.
-//!
-//! Beside it, [`wide_baseline`] finds the points of one view in another of which nothing is known, and [`eval`] tells how good
-//! results are where the truth is known.
+//! - Dense matching, the integral image, the determinant of the Hessian and the list of interest points are integer
+//!   arithmetic: the same bytes on every device and on none. Sub-sample positions, orientations and descriptors are `f32`,
+//!   with tolerances stated where they are verified.
 
-pub mod backend;
+// Kernels and twins are tried one by one by the regression suite alone.
+#![cfg_attr(not(feature = "verify"), allow(dead_code, unused_imports))]
+
+mod backend;
 pub mod config;
-pub mod cpu;
+mod cpu;
 pub mod dense;
 pub mod disparity;
-pub mod error;
+mod error;
 pub mod eval;
 pub mod features;
-pub mod filter;
+mod filter;
 pub mod gpu;
 pub mod image;
+#[cfg(feature = "verify")]
+#[doc(hidden)]
+pub mod internals;
 pub mod io;
 pub mod kamencay;
 pub mod luma;
 pub mod matching;
 mod names;
-pub mod pair;
+mod pair;
 pub mod pipeline;
 pub mod seeding;
 mod size;
@@ -135,11 +145,16 @@ mod size;
 pub mod verify;
 pub mod wide_baseline;
 
+pub use backend::Backend;
+pub use config::{Config, Preset};
+pub use dense::{Dense, DenseConfig, Matcher};
+pub use disparity::{DisparityMap, DisparityRange};
 pub use error::{Error, Result};
-pub use wgpu;
-
-/// Every stage there is, for checks that need no GPU.
-pub fn stages() -> Vec<gpu::Stage> {
-    [luma::kernels::stages(), features::kernels::stages(), dense::kernels::stages(), kamencay::kernels::stages()]
-        .concat()
-}
+pub use features::{Detector, Feature, FeatureConfig};
+#[cfg(not(target_arch = "wasm32"))]
+pub use gpu::block_on;
+pub use gpu::{DeviceChoice, Gpu};
+pub use image::{Luma, Size};
+pub use io::Picture;
+pub use pair::Pair;
+pub use {glam, wgpu};

@@ -9,7 +9,7 @@ use std::{
 };
 
 use hsad::{
-    backend::Backend,
+    Backend,
     config::Preset,
     dense::View,
     disparity::NONE,

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use hsad::{
     Error,
-    cpu::features::detector::detect,
     disparity::DisparityRange,
     features::{Feature, FeatureConfig},
     image::{Luma, Plane},
+    internals::cpu::features::detector::detect,
     io::{load, pfm},
     seeding::{Seeding, SeedingConfig, Verdict},
 };

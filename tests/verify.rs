@@ -14,7 +14,7 @@ fn every_kernel_is_a_subject() {
     let names: BTreeSet<_> = subjects().map(|subject| subject.name).collect();
     assert_eq!(names.len(), subjects().count(), "names are unique");
     let kernels: BTreeSet<_> = subjects().filter(|subject| !subject.is_pipeline).map(|subject| subject.name).collect();
-    let stages: BTreeSet<_> = hsad::stages().iter().map(|stage| stage.name).collect();
+    let stages: BTreeSet<_> = hsad::internals::stages().iter().map(|stage| stage.name).collect();
     assert_eq!(kernels, stages);
 }
 

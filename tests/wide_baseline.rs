@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DAffine2;
 use hsad::{
-    backend::Backend,
+    Backend,
     dense::View,
     eval::{
         Judged, PointMatch, Truth,
@@ -13,8 +13,7 @@ use hsad::{
         curves::accuracy_of_first,
         scene::SceneFiles,
     },
-    gpu::DeviceChoice,
-    gpu::block_on,
+    gpu::{DeviceChoice, block_on},
     wide_baseline::{WideBaselineConfig, match_views},
 };
 

@@ -196,8 +196,7 @@ fn run() -> Result<(), AnyError> {
 
     // Once per frame.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-    inputs.record(&mut encoder);
-    matcher.record(&mut encoder, &outputs);
+    matcher.record(&mut encoder, &inputs, &outputs);
     let target = view(&frame);
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("draw"),

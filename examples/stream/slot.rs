@@ -93,8 +93,7 @@ impl Slot {
         }
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        self.inputs.record(&mut encoder);
-        matcher.record(&mut encoder, self.map.outputs());
+        matcher.record(&mut encoder, &self.inputs, self.map.outputs());
         if seeded {
             for ((detector, input), readback) in detectors.iter().zip(&self.features) {
                 detector.record(&mut encoder, input);

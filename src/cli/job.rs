@@ -4,8 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use hsad::{
-    Error,
-    backend::Backend,
+    Backend, Error,
     config::Config,
     disparity::DisparityRange,
     io::{Calibration, Picture},

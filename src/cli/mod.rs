@@ -70,7 +70,7 @@ impl Cli {
 /// The exit code that [`EXIT_CODES`] promises for an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     match error.downcast_ref() {
-        Some(hsad::Error::Parameter { .. }) => ExitCode::from(2),
+        Some(hsad::Error::Parameter { .. } | hsad::Error::TooManyFeatures { .. }) => ExitCode::from(2),
         Some(hsad::Error::NotRectified { .. }) => ExitCode::from(3),
         _ => ExitCode::FAILURE,
     }

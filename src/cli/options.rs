@@ -12,8 +12,7 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use hsad::{
-    Error, Result,
-    backend::Backend,
+    Backend, Error, Result,
     config::{Config, Method, Preset},
     dense::{Aggregation, CrossCheck, DenseParameters, Interpolation, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},

@@ -1,7 +1,7 @@
 //! `report.json`: parameters, figures and times of a run, for programs.
 
 use hsad::{
-    backend::Backend,
+    Backend,
     config::{Config, Method},
     dense::{Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search},
     disparity::{DisparityRange, SCALE, coverage},

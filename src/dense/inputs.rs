@@ -4,11 +4,8 @@ use crate::luma::Input;
 
 /// Left and right view on their way into a [`super::Matcher`]: see [`super::Matcher::inputs`].
 #[derive(Debug)]
-pub struct Inputs(pub(super) [Input; 2]);
-
-impl Inputs {
-    /// Records the conversion of both views to the matcher's packed luma.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.0.iter().for_each(|view| view.record(encoder));
-    }
+pub struct Inputs {
+    pub(super) views: [Input; 2],
+    /// First buffer of the matcher that the inputs were prepared for.
+    pub(super) of: wgpu::Buffer,
 }

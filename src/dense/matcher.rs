@@ -15,7 +15,7 @@ use crate::{
     error::{Error, Result},
     gpu::{
         Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded,
-        storage_buffer, try_recording,
+        refused_view, storage_buffer, try_recording,
     },
     image::{Luma, Plane},
     luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
@@ -46,8 +46,8 @@ impl Dense {
 ///
 /// It is built once for a size and a configuration; what an application has for it in each frame, textures or buffers, is
 /// prepared once as [`Self::inputs`] and [`Self::outputs`], of which there may be as many as it has frames in flight. Then
-/// [`Inputs::record`] and [`Self::record`] go into an encoder: they submit nothing, map nothing, write no buffer by the
-/// queue and create nothing on the device.
+/// [`Self::record`] goes into an encoder: recording submits nothing, maps nothing, writes no buffer by the queue and creates
+/// nothing on the device.
 ///
 /// The disparities that are searched are part of the kernels: for others build another matcher. Only
 /// [`Self::set_brightness`] changes what is there.
@@ -146,8 +146,8 @@ impl Matcher {
         self.plan.bands
     }
 
-    /// The packed luma of the left and of the right view (see [`crate::luma`]) that is matched: what [`Inputs::record`]
-    /// writes, where it is used, and a [`crate::features::Detector`] can read too. Both have `STORAGE`, `COPY_SRC` and
+    /// The packed luma of the left and of the right view (see [`crate::luma`]) that is matched: what [`Self::record`]
+    /// writes, and a [`crate::features::Detector`] can read too. Both have `STORAGE`, `COPY_SRC` and
     /// `COPY_DST`.
     pub fn luma(&self) -> [&wgpu::Buffer; 2] {
         self.luma.each_ref()
@@ -172,7 +172,8 @@ impl Matcher {
             |name, source, luma| Input::with_kernel(&self.gpu, name, self.size, source, luma, &self.luma_texture);
         let [left_luma, right_luma] = self.luma();
         let left = input("the left view", left, left_luma).await?;
-        Ok(Inputs([left, input("the right view", right, right_luma).await?]))
+        let right = input("the right view", right, right_luma).await?;
+        Ok(Inputs { views: [left, right], of: left_luma.clone() })
     }
 
     /// Prepares the copies of the results to `disparities` and, if they are wanted, to `confidences`: a buffer with
@@ -211,7 +212,7 @@ impl Matcher {
             let Some(buffer) = buffer else { continue };
             if buffers.contains(buffer) {
                 let value = "a buffer that has another use here".into();
-                return Err(Error::Parameter { name, value, expected: "it needs one of its own".into() });
+                return Err(Error::Resource { name, value, expected: "it needs one of its own".into() });
             }
             buffers.push(buffer.clone());
         }
@@ -224,7 +225,7 @@ impl Matcher {
     async fn to_texture(&self, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
         let (name, format) = ("the disparities", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
-            return Err(Error::Parameter {
+            return Err(Error::Resource {
                 name,
                 value: format!("a texture of format {format:?}"),
                 expected: format!("it must be one of {:?}", MapTexel::ALL.map(MapTexel::format)),
@@ -244,7 +245,8 @@ impl Matcher {
             let dispatches = self.plan.answers().map(dispatch).collect();
             Ok((kernel, dispatches))
         })
-        .await?;
+        .await
+        .map_err(|error| refused_view(name, error))?;
         // Only now that nothing is wrong with it.
         stored.get_or_init(|| kernel);
         Ok(dispatches)
@@ -261,13 +263,24 @@ impl Matcher {
         Ok(())
     }
 
-    /// Records the matching of what [`Self::luma`] holds then; all pixels of the outputs are overwritten, and nothing
-    /// else of them. Recorded twice in one encoder, it is done twice, one after the other, in the same memory.
+    /// Records the conversion of the inputs to [`Self::luma`] and the matching of the luma. All pixels of the outputs are
+    /// overwritten, and nothing else of the outputs. Work recorded twice in one encoder runs twice, one run after the other,
+    /// in the same memory.
+    ///
+    /// # Panics
+    /// If `inputs` or `outputs` were prepared for another matcher.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
+        assert_eq!(inputs.of, self.luma[0], "the inputs were prepared for another matcher");
+        inputs.views.iter().for_each(|view| view.record(encoder));
+        self.record_luma(encoder, outputs);
+    }
+
+    /// As [`Self::record`], of the luma that the caller has written to [`Self::luma`].
     ///
     /// # Panics
     /// If `outputs` were prepared for another matcher.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        assert_eq!(outputs.of, self.luma[0], "outputs of another matcher");
+    pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
+        assert_eq!(outputs.of, self.luma[0], "the outputs were prepared for another matcher");
         self.plan.record(encoder, outputs, None);
     }
 

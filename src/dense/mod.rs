@@ -10,16 +10,17 @@
 
 pub(crate) mod config;
 mod inputs;
-pub mod kernels;
+pub(crate) mod kernels;
 mod matcher;
 mod outputs;
 mod plan;
 mod readback;
 
 pub use config::{
-    Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference, Direction,
-    Interpolation, MAX_COST, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WEIGHT_BITS,
+    Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
+    Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View,
 };
+pub(crate) use config::{Direction, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;
 pub use matcher::{Dense, Matcher, compute};
 pub use outputs::{Destination, Outputs};

@@ -10,7 +10,7 @@ mod matches;
 mod metrics;
 mod overlap;
 mod repeatability;
-#[cfg(feature = "cli")]
+#[cfg(feature = "files")]
 pub mod scene;
 mod truth;
 

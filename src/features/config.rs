@@ -1,6 +1,6 @@
 //! What to look for, and what is found.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, check, check_range};
 
 /// Values in a descriptor.
 pub const DESCRIPTOR_LENGTH: usize = 64;
@@ -32,34 +32,17 @@ impl FeatureConfig {
     /// Refuses what no kernel could work with.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the accepted range.
+    /// [`crate::Error::Parameter`] with the accepted range.
     pub fn validate(&self) -> Result<()> {
-        let check = |ok: bool, name, value: String, expected: &str| {
-            if ok { Ok(()) } else { Err(Error::Parameter { name, value, expected: expected.into() }) }
-        };
-        check((1..=5).contains(&self.octaves), "octaves", self.octaves.to_string(), "it must be 1 to 5")?;
-        check((1..=2).contains(&self.step), "step", self.step.to_string(), "it must be 1 or 2")?;
+        check_range("octaves", self.octaves, 1..=5)?;
+        check_range("step", self.step, 1..=2)?;
         check(
             self.threshold > 0.0 && self.threshold <= 1.0,
             "threshold",
-            self.threshold.to_string(),
+            self.threshold,
             "it must be above 0 and at most 1",
         )?;
-        check(
-            (1..=1 << 20).contains(&self.max_features),
-            "max_features",
-            self.max_features.to_string(),
-            "it must be 1 to 1048576",
-        )
-    }
-}
-
-/// More interest points than there is room for.
-pub(crate) fn too_many(found: usize, room: u32) -> Error {
-    Error::Parameter {
-        name: "max_features",
-        value: room.to_string(),
-        expected: format!("the picture has {found} interest points: raise max_features, or raise the threshold"),
+        check_range("max_features", self.max_features, 1..=1 << 20)
     }
 }
 

@@ -13,10 +13,9 @@ use super::{
     },
     keypoints::{Keypoint, KeypointList},
     readback::FeatureReadback,
-    too_many,
 };
 use crate::{
-    error::Result,
+    error::{Error, Result},
     gpu::{Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer, try_recording},
     image::{Luma, Size},
     luma::{check_packed, check_size, upload},
@@ -43,7 +42,11 @@ pub struct Detector {
 
 /// A picture that a [`Detector`] reads: see [`Detector::input`].
 #[derive(Debug)]
-pub struct DetectorInput(Dispatch);
+pub struct DetectorInput {
+    dispatch: Dispatch,
+    /// Integral image of the detector that the input was prepared for.
+    of: wgpu::Buffer,
+}
 
 /// The values of one descriptor.
 type Values = [f32; DESCRIPTOR_LENGTH];
@@ -97,12 +100,13 @@ impl Detector {
     /// `STORAGE`; the input holds on to the buffer.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] for a buffer that does not hold such a picture; [`crate::Error::Unsupported`] with what
+    /// [`crate::Error::Resource`] for a buffer that does not hold such a picture; [`crate::Error::Unsupported`] with what
     /// else the device has against it.
     pub async fn input(&self, luma: &wgpu::Buffer) -> Result<DetectorInput> {
         check_packed(luma, self.size)?;
         let prepare = || Ok(self.integral_rows.prepare(self.size, luma, &self.integral));
-        let input = DetectorInput(guarded(&self.gpu, "the picture", prepare).await?);
+        let dispatch = guarded(&self.gpu, "the picture", prepare).await?;
+        let input = DetectorInput { dispatch, of: self.integral.clone() };
         try_recording(&self.gpu, "the picture", |encoder| self.record(encoder, &input)).await?;
         Ok(input)
     }
@@ -135,9 +139,13 @@ impl Detector {
     }
 
     /// Records everything from the integral image of `input` to the descriptors. What was found before is overwritten.
+    ///
+    /// # Panics
+    /// If `input` was prepared for another detector.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
+        assert_eq!(input.of, self.integral, "the input was prepared for another detector");
         encoder.clear_buffer(self.list.found(), 0, None);
-        input.0.record(encoder);
+        input.dispatch.record(encoder);
         self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
     }
 
@@ -173,7 +181,7 @@ impl Detector {
     /// Only as much is copied as was found, which takes two submissions.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
+    /// [`crate::Error::TooManyFeatures`] where more was found than there is room for; [`crate::Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
         let (gpu, list) = (&self.gpu, &self.list);
         let count = submit(gpu, |encoder| {
@@ -184,7 +192,7 @@ impl Detector {
         .await?;
         let found = count.read::<u32>(1).await?[0];
         if found > list.capacity() {
-            return Err(too_many(found as usize, list.capacity()));
+            return Err(Error::TooManyFeatures { found: found as usize, room: list.capacity() });
         }
         if found == 0 {
             return Ok(Vec::new());

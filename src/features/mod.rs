@@ -6,11 +6,11 @@
 
 mod config;
 mod detector;
-pub mod kernels;
-pub mod keypoints;
+pub(crate) mod kernels;
+pub(crate) mod keypoints;
 mod readback;
 
-pub(crate) use config::too_many;
 pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
 pub use detector::{Detector, DetectorInput, collect, detect};
+pub use keypoints::{Keypoint, KeypointList};
 pub use readback::FeatureReadback;

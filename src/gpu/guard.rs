@@ -20,7 +20,7 @@ fn is_lost(_: &wgpu::Device) -> bool {
 /// Runs `build`, which creates things on a device, and turns what the device has to say about it
 /// into an [`Error`] instead of a call of the application's error handler.
 pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let ((built, lost), said) = scoped(&gpu.device, || (build(), is_lost(&gpu.device)));
+    let ((built, lost), said) = scoped(&gpu.device, || (refusing_other_instances(what, build), is_lost(&gpu.device)));
     let mut errors = Vec::new();
     for error in said {
         errors.extend(error.await);
@@ -33,9 +33,38 @@ pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Re
         return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
     }
     match errors.into_iter().next() {
-        Some(error) => Err(Error::Unsupported(format!("{what}: {error}"))),
+        Some(error) => Err(Error::Unsupported(format!("{what}: {}", innermost(&error)))),
         None => built,
     }
+}
+
+/// The cause of a device's error: wgpu wraps it in the names of the calls that led there.
+fn innermost(error: &dyn std::error::Error) -> &dyn std::error::Error {
+    error.source().map_or(error, innermost)
+}
+
+/// Runs `build`, with an [`Error`] for a resource of another [`wgpu::Instance`], for which wgpu panics.
+#[cfg(not(target_arch = "wasm32"))]
+fn refusing_other_instances<T>(what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+    use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+    // Nothing that `build` leaves half done is used afterwards.
+    catch_unwind(AssertUnwindSafe(build)).unwrap_or_else(|panic| {
+        // The texts of wgpu-core's storage, where resources of one instance are looked up by index.
+        let unknown = ["non-existent resource", "found other resource"];
+        match panic.downcast_ref::<String>() {
+            Some(text) if unknown.iter().any(|part| text.contains(part)) => {
+                Err(Error::Unsupported(format!("{what}: a resource belongs to another wgpu::Instance")))
+            }
+            _ => resume_unwind(panic),
+        }
+    })
+}
+
+/// The same. In a browser there is one instance.
+#[cfg(target_arch = "wasm32")]
+fn refusing_other_instances<T>(_: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+    build()
 }
 
 /// What `build` returns, and what the device will have to say. Whatever else happens before that is known lies outside

@@ -14,11 +14,11 @@ pub(crate) fn check_buffer(
 ) -> Result<()> {
     if buffer.size() < bytes {
         let value = format!("a buffer of {} bytes", buffer.size());
-        return Err(Error::Parameter { name, value, expected: format!("{bytes} bytes are needed") });
+        return Err(Error::Resource { name, value, expected: format!("{bytes} bytes are needed") });
     }
     if !buffer.usage().contains(usage) {
         let value = format!("a buffer with the usages {:?}", buffer.usage());
-        return Err(Error::Parameter { name, value, expected: format!("it needs {usage:?}") });
+        return Err(Error::Resource { name, value, expected: format!("it needs {usage:?}") });
     }
     Ok(())
 }
@@ -32,7 +32,7 @@ pub(crate) fn check_texture(
     Size { width, height }: Size,
     usage: wgpu::TextureUsages,
 ) -> Result<()> {
-    let refuse = |value, expected| Err(Error::Parameter { name, value, expected });
+    let refuse = |value, expected| Err(Error::Resource { name, value, expected });
     if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
         let value = format!("a texture of {:?} with {} samples", texture.dimension(), texture.sample_count());
         return refuse(value, "it must be a plain one of two dimensions".into());
@@ -46,4 +46,16 @@ pub(crate) fn check_texture(
         return refuse(format!("a texture with the usages {:?}", texture.usage()), format!("it needs {usage:?}"));
     }
     Ok(())
+}
+
+/// The error of a view that passed [`check_texture`] and that the device refuses, with the properties of a view that wgpu
+/// does not tell.
+pub(crate) fn refused_view(name: &'static str, error: Error) -> Error {
+    let Error::Unsupported(reason) = error else { return error };
+    let reason = reason.strip_prefix(name).and_then(|reason| reason.strip_prefix(": ")).unwrap_or(&reason);
+    Error::Resource {
+        name,
+        value: format!("a view that cannot be used ({reason})"),
+        expected: "it must show one layer and one mip level in two dimensions, on the device of this matcher".into(),
+    }
 }

@@ -4,19 +4,21 @@
 //! error messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to
 //! [`MAX_PIXELS`] where a codec expands them.
 //!
-//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `cli`. PFM, calibrations, PLY,
+//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `files`. PFM, calibrations, PLY,
 //! tables, homographies and colour maps are always available.
 
-#[cfg(feature = "cli")]
+#[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod atomic;
 pub mod calibration;
 pub mod color;
 pub mod csv;
-#[cfg(feature = "cli")]
+#[cfg(feature = "files")]
 pub mod disparities;
-#[cfg(feature = "cli")]
+#[cfg(feature = "files")]
 pub mod disparity_png;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod figure;
 pub mod homography;
 #[cfg(feature = "pictures")]
@@ -26,7 +28,7 @@ pub mod load;
 pub mod pfm;
 pub mod picture;
 pub mod ply;
-#[cfg(feature = "cli")]
+#[cfg(feature = "files")]
 pub mod png;
 
 pub use calibration::Calibration;

@@ -1,11 +1,31 @@
 //! Colour pictures in memory.
 
-use crate::image::{Luma, Plane, luma_of};
+use crate::{
+    error::{Result, check},
+    image::{Luma, Plane, Size, luma_of},
+};
 
 /// A colour picture: red, green, blue and alpha, 8 bits each. Alpha is ignored.
 pub type Picture = Plane<[u8; 4]>;
 
 impl Picture {
+    /// A picture of `size` from the bytes of its pixels, red, green, blue and alpha, row by row.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] unless `rgba` holds four bytes per pixel.
+    pub fn from_rgba8(size: impl Into<Size>, rgba: &[u8]) -> Result<Self> {
+        let size = size.into();
+        let (pixels, rest) = rgba.as_chunks();
+        let expected = format!("{size} pixels need {} bytes", 4 * size.pixels());
+        check(
+            rest.is_empty() && pixels.len() as u64 == size.pixels(),
+            "rgba",
+            format_args!("{} bytes", rgba.len()),
+            expected,
+        )?;
+        Self::new(size, pixels.to_vec())
+    }
+
     /// The bytes of the picture, four per pixel, row by row, as for an `Rgba8Unorm` texture or a buffer.
     pub fn rgba(&self) -> &[u8] {
         self.data().as_flattened()

@@ -44,7 +44,7 @@ pub fn strips(Size { width, height }: Size, disparities: u32, bytes: u64) -> Res
             ),
             needed: row_bytes * u64::from(3 * OVERLAP),
             limit: bytes,
-            way_out: "search fewer disparities, scale the pictures down, or use --method hsad".into(),
+            way_out: "search fewer disparities, scale the pictures down, or use the method hsad".into(),
         });
     }
     let step = most as u32 - 2 * OVERLAP;

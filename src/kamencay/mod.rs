@@ -36,21 +36,23 @@
 
 mod alikeness;
 mod config;
-mod grid;
-pub mod kernels;
-mod links;
-mod matcher;
-mod method;
-mod segment_disparity;
-mod segments;
+pub(crate) mod grid;
+pub(crate) mod kernels;
+pub(crate) mod links;
+pub(crate) mod matcher;
+pub(crate) mod method;
+pub(crate) mod segment_disparity;
+pub(crate) mod segments;
 mod surface;
 
 pub use config::{KamencayConfig, KamencayParameters};
-pub use grid::{FAR, MAX_MESSAGE_BYTES, OVERLAP, Strip};
+pub(crate) use grid::{FAR, MAX_MESSAGE_BYTES, OVERLAP, Strip};
 pub use kernels::{ModeSeeking, Smoothness, WindowCost};
-pub use links::{LinkWeights, Links};
-pub use matcher::{compute, compute_within};
-pub use method::described;
-pub(crate) use method::{Problem, Solver, solve};
+pub use links::LinkWeights;
+pub(crate) use links::Links;
+pub use matcher::compute;
+pub(crate) use matcher::compute_within;
+pub(crate) use method::{Problem, Solver, described, solve};
 pub use segment_disparity::Conclusion;
-pub use segments::{Segmentation, Segments};
+pub use segments::Segmentation;
+pub(crate) use segments::Segments;

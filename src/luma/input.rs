@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, try_recording},
+    gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, refused_view, try_recording},
     image::Size,
 };
 
@@ -73,13 +73,13 @@ impl Input {
                 if format.remove_srgb_suffix() != own.remove_srgb_suffix() {
                     let value = format!("a view in the format {format:?}");
                     let expected = format!("the texture has {own:?}, and its views that with or without sRGB");
-                    return Err(Error::Parameter { name, value, expected });
+                    return Err(Error::Resource { name, value, expected });
                 }
                 (view, format)
             }
         };
         let Some(texel) = TexelFormat::new(format) else {
-            return Err(Error::Parameter {
+            return Err(Error::Resource {
                 name,
                 value: format!("a texture of format {format:?}"),
                 expected: format!("it must be one of {:?}", TexelFormat::ALL),
@@ -91,7 +91,8 @@ impl Input {
             let dispatch = compiled.prepare(size, texel, view, luma);
             Ok((compiled, dispatch))
         })
-        .await?;
+        .await
+        .map_err(|error| refused_view(name, error))?;
         // Only now that nothing is wrong with it.
         kernel.get_or_init(|| compiled);
         Self(Conversion::Run(dispatch)).tried(gpu, name).await

@@ -4,7 +4,7 @@
 //! has `ceil(width / 4)` words, and what lies beyond the width is 0.
 
 mod input;
-pub mod kernels;
+pub(crate) mod kernels;
 mod packed;
 
 pub use input::{Input, Source};

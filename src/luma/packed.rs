@@ -1,8 +1,8 @@
 //! Packed luma: one byte per pixel, four pixels per `u32`.
 
 use crate::{
-    error::{Error, Result},
-    gpu::{Gpu, guarded, storage_buffer},
+    error::{Result, check},
+    gpu::{Gpu, check_buffer, guarded, storage_buffer},
     image::{Luma, Size},
 };
 
@@ -15,33 +15,23 @@ pub fn packed_bytes(size: impl Into<Size>) -> u64 {
 /// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
 pub const MAX_SIDE: u32 = 1 << 19;
 
-fn refuse(size: Size, expected: String) -> Result<()> {
-    Err(Error::Parameter { name: "the picture", value: format!("{size} pixels"), expected })
-}
-
 /// Refuses sizes that no kernel could work on.
 pub(crate) fn check_size(size: Size) -> Result<()> {
-    let Size { width, height } = size;
-    if width.min(height) == 0 || width.max(height) > MAX_SIDE {
-        return refuse(size, format!("its sides must be 1 to {MAX_SIDE}"));
-    }
-    Ok(())
+    let sides = [size.width, size.height];
+    let expected = format!("its sides must be 1 to {MAX_SIDE}");
+    check(
+        sides.iter().all(|side| (1..=MAX_SIDE).contains(side)),
+        "the picture",
+        format_args!("{size} pixels"),
+        expected,
+    )
 }
 
 /// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
 /// may read.
 pub(crate) fn check_packed(luma: &wgpu::Buffer, size: Size) -> Result<()> {
     check_size(size)?;
-    let bytes = packed_bytes(size);
-    if luma.size() < bytes {
-        let given = luma.size();
-        return refuse(size, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
-    }
-    if !luma.usage().contains(wgpu::BufferUsages::STORAGE) {
-        let value = format!("a buffer with the usages {:?}", luma.usage());
-        return Err(Error::Parameter { name: "packed luma", value, expected: "it needs STORAGE".into() });
-    }
-    Ok(())
+    check_buffer("packed luma", luma, packed_bytes(size), wgpu::BufferUsages::STORAGE)
 }
 
 /// Packs a picture as the kernels read it.

@@ -2,7 +2,7 @@
 
 use crate::{
     disparity::DisparityRange,
-    error::{Error, Result},
+    error::{Result, check},
 };
 
 /// Parameters of [`match_features`](super::match_features): how descriptors of two views are matched, and which matches
@@ -38,29 +38,17 @@ impl MatchConfig {
     /// Checks all parameters.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the accepted range, for a value outside it.
+    /// [`crate::Error::Parameter`] with the accepted range, for a value outside it.
     pub fn validate(&self) -> Result<()> {
-        let check = |ok: bool, name, value: String, expected: &str| {
-            if ok { Ok(()) } else { Err(Error::Parameter { name, value, expected: expected.into() }) }
-        };
-        check(
-            self.ratio > 0.0 && self.ratio <= 1.0,
-            "ratio",
-            self.ratio.to_string(),
-            "it must be above 0 and at most 1",
-        )?;
+        check(self.ratio > 0.0 && self.ratio <= 1.0, "ratio", self.ratio, "it must be above 0 and at most 1")?;
         if let Some(max_dy) = self.max_dy {
-            check(
-                max_dy >= 0.0 && max_dy.is_finite(),
-                "max_dy",
-                max_dy.to_string(),
-                "it must be a number of pixels from 0 up",
-            )?;
+            let expected = "it must be a number of pixels from 0 up";
+            check(max_dy >= 0.0 && max_dy.is_finite(), "max_dy", max_dy, expected)?;
         }
         if let Some(range) = self.disparities {
             DisparityRange::new(range.min, range.count)?;
         }
-        check(self.strongest != Some(0), "strongest", "0".into(), "it must be at least 1")
+        check(self.strongest != Some(0), "strongest", 0, "it must be at least 1")
     }
 
     /// The configuration for exchanged views: the disparity range is negated.

@@ -39,6 +39,8 @@ impl fmt::Display for ThinSupport {
     }
 }
 
+impl std::error::Error for ThinSupport {}
+
 impl From<ThinSupport> for Error {
     fn from(thin: ThinSupport) -> Self {
         Self::NoRange { reason: thin.to_string() }

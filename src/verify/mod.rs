@@ -11,13 +11,22 @@ mod dice;
 mod golden_hash;
 pub mod goldens;
 mod trial;
+#[doc(hidden)]
 pub mod trials;
 
-pub use array::{Array, Comparison, Outliers, Tolerance, Values};
+#[doc(hidden)]
+pub use array::{Array, Values};
+pub use array::{Comparison, Outliers, Tolerance};
+#[doc(hidden)]
 pub use bench::Bench;
-pub use case::{Case, MAX_SIDE, Outcome, compare};
+#[doc(hidden)]
+pub use case::compare;
+pub use case::{Case, MAX_SIDE, Outcome};
+#[doc(hidden)]
 pub use dice::{Dice, smooth_noise};
-pub use trial::{Subject, Trial};
+pub use trial::Subject;
+#[doc(hidden)]
+pub use trial::Trial;
 pub use trials::subjects;
 
 use crate::{

@@ -18,7 +18,7 @@ use std::{
 
 use devtools::Browser;
 use hsad::{
-    backend::Backend,
+    Backend,
     config::Preset,
     gpu::DeviceChoice,
     io::{Picture, load},

@@ -26,6 +26,14 @@ impl Application {
         static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
         let instance =
             INSTANCE.get_or_init(|| wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle()));
+        Self::on(instance, required_features, required_limits)
+    }
+
+    pub fn of_instance(instance: &wgpu::Instance) -> Self {
+        Self::on(instance, Features::empty(), Limits::downlevel_defaults())
+    }
+
+    fn on(instance: &wgpu::Instance, required_features: Features, required_limits: Limits) -> Self {
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
         let adapter = adapter.expect("these tests need a device; lavapipe is one");
         let descriptor = wgpu::DeviceDescriptor { required_features, required_limits, ..Default::default() };

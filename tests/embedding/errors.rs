@@ -9,7 +9,10 @@ use hsad::{
     gpu::{REQUIRED_LIMITS, block_on},
     image::Size,
     luma::{Input, Source},
-    wgpu::{Buffer, BufferUsages, Features, Limits, TextureFormat, TextureUsages},
+    wgpu::{
+        Buffer, BufferUsages, Features, Instance, InstanceDescriptor, Limits, TextureFormat, TextureUsages,
+        TextureViewDescriptor, TextureViewDimension,
+    },
 };
 
 use crate::application::{Application, config, pair};
@@ -95,7 +98,9 @@ fn luma_that_no_kernel_can_read() {
     let small = application.buffer(1196, BufferUsages::STORAGE);
     let elsewhere = Application::new();
     let foreign = elsewhere.buffer(BYTES, BufferUsages::STORAGE);
-    for (luma, expected) in [(&unusable, "needs STORAGE"), (&small, "than the 1196 given"), (&foreign, "device")] {
+    for (luma, expected) in
+        [(&unusable, "needs BufferUsages(STORAGE)"), (&small, "1200 bytes are needed"), (&foreign, "device")]
+    {
         let input = block_on(Input::new(gpu, SIZE, Source::Texture(&view), luma)).expect_err("an error");
         let detector = block_on(detector.input(luma)).expect_err("an error");
         for error in [input, detector] {
@@ -104,6 +109,44 @@ fn luma_that_no_kernel_can_read() {
     }
     application.assert_quiet();
     elsewhere.assert_quiet();
+}
+
+/// A view with layers, and resources of another instance, which wgpu answers by a panic.
+#[test]
+fn views_and_instances_that_will_not_do() {
+    let application = Application::new();
+    let matcher = Matcher::new(&application.gpu, SIZE, &config()).unwrap();
+    let rgba = TextureFormat::Rgba8Unorm;
+    let plain = application.texture(rgba, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
+    let layers = TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
+    let layers = plain.texture().create_view(&layers);
+    let error = matcher.inputs(Source::Texture(&layers), Source::Texture(&plain)).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "the left view is a view that cannot be used (Texture binding 1 expects dimension = D2, but given a view with \
+         dimension = D2Array), but it must show one layer and one mip level in two dimensions, on the device of this matcher"
+    );
+
+    let foreign = Application::of_instance(&Instance::new(InstanceDescriptor::new_without_display_handle()));
+    // Instances number their resources alike; only a number that the other instance does not know is recognised.
+    let foreign: Vec<_> = (0..1000).map(|_| foreign.texture(rgba, SIZE, TextureUsages::TEXTURE_BINDING, &[])).collect();
+    let last = Source::Texture(&foreign[foreign.len() - 1]);
+    let error = matcher.inputs(Source::Texture(&plain), last).unwrap_err().to_string();
+    assert!(error.starts_with("the right view") && error.contains("another wgpu::Instance"), "{error}");
+    // The matcher is as it was.
+    matcher.inputs(Source::Texture(&plain), Source::Texture(&plain)).unwrap();
+    application.assert_quiet();
+}
+
+#[test]
+#[should_panic(expected = "the inputs were prepared for another matcher")]
+fn inputs_of_another_matcher() {
+    let application = Application::new();
+    let [one, other] = [(); 2].map(|()| Matcher::new(&application.gpu, SIZE, &config()).unwrap());
+    let view = application.texture(TextureFormat::R8Unorm, SIZE, TextureUsages::TEXTURE_BINDING, &[]);
+    let inputs = other.inputs(Source::Texture(&view), Source::Texture(&view)).unwrap();
+    let readback = block_on(one.readback()).unwrap();
+    application.bench().run(|encoder| one.record(encoder, &inputs, readback.outputs()));
 }
 
 /// An error about the size of a picture names the limit that it exceeds.

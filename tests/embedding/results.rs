@@ -2,12 +2,15 @@
 
 use hsad::{
     config::Preset,
-    cpu::dense::{compute, map_texture},
-    dense::{Brightness, Dense, DenseConfig, Destination, Matcher, kernels::MapTexel},
+    dense::{Brightness, Dense, DenseConfig, Destination, Matcher},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::block_on,
     image::{Luma, Size},
+    internals::{
+        cpu::dense::{compute, map_texture},
+        dense::MapTexel,
+    },
     luma::{Source, pack},
     wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
 };
@@ -54,10 +57,7 @@ fn textures_in_and_out_in_bands_and_not() {
                 let view = map.create_view(&wgpu::TextureViewDescriptor::default());
                 let confidences = bench.output(SIZE.width.div_ceil(4) * SIZE.height).unwrap();
                 let outputs = matcher.outputs(Destination::Texture(&view), Some(&confidences)).unwrap();
-                bench.run(|encoder| {
-                    inputs.record(encoder);
-                    matcher.record(encoder, &outputs);
-                });
+                bench.run(|encoder| matcher.record(encoder, &inputs, &outputs));
                 let what = format!("{texel:?} in bands of {band_rows}, {:?}", config.parameters.aggregation);
                 match texel {
                     MapTexel::FixedPoint => {
@@ -94,8 +94,7 @@ fn frames_take_turns_in_one_encoder() {
     });
     bench.run(|encoder| {
         for (inputs, outputs, ..) in &prepared {
-            inputs.record(encoder);
-            matcher.record(encoder, outputs);
+            matcher.record(encoder, inputs, outputs);
         }
     });
     for ([left, right], (.., map, confidences)) in frames.iter().zip(&prepared) {
@@ -126,7 +125,8 @@ fn a_view_may_have_another_format_than_its_texture() {
     });
     let [left, right] = textures.each_ref().map(|view| Source::TextureAs(view, srgb));
     let inputs = matcher.inputs(left, right).unwrap();
-    bench.run(|encoder| inputs.record(encoder));
+    let readback = block_on(matcher.readback()).unwrap();
+    bench.run(|encoder| matcher.record(encoder, &inputs, readback.outputs()));
     for (luma, view) in matcher.luma().into_iter().zip(&views) {
         assert_eq!(bench.download::<u32>(luma).unwrap(), pack(view));
     }
@@ -154,8 +154,7 @@ fn recording_creates_nothing_and_submits_nothing() {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let before = existing(&gpu.device);
         for _ in 0..2 {
-            inputs.record(&mut encoder);
-            matcher.record(&mut encoder, &outputs);
+            matcher.record(&mut encoder, &inputs, &outputs);
         }
         let commands = encoder.finish();
         assert_eq!(existing(&gpu.device), before);
@@ -268,7 +267,7 @@ fn a_map_goes_to_a_buffer_that_can_be_mapped() {
     let bytes = 4 * u64::from(SIZE.width) * u64::from(SIZE.height);
     let map = application.buffer(bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
     let outputs = matcher.outputs(Destination::Buffer(&map), None).unwrap();
-    application.bench().run(|encoder| matcher.record(encoder, &outputs));
+    application.bench().run(|encoder| matcher.record_luma(encoder, &outputs));
     map.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let expected = compute(&left, &right, &config()).unwrap();

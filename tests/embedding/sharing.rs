@@ -4,12 +4,12 @@ use std::thread;
 
 use hsad::{
     config::Preset,
-    cpu::dense::compute,
     dense::{self, Destination, Inputs, MapReadback, Matcher, Outputs},
     disparity::DisparityRange,
     features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
     gpu::{Gpu, block_on},
     image::{Luma, Size},
+    internals::cpu::dense::compute,
     luma::{Input, Source},
     wgpu::{Features, Limits, PipelineCacheDescriptor, TextureFormat, TextureUsages},
 };

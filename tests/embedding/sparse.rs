@@ -2,7 +2,7 @@
 
 use hsad::{
     dense::Matcher,
-    features::{DESCRIPTOR_LENGTH, Detector, FeatureConfig, collect, detect, keypoints::Keypoint},
+    features::{DESCRIPTOR_LENGTH, Detector, FeatureConfig, Keypoint, collect, detect},
     gpu::block_on,
     luma::Source,
     verify::smooth_noise,
@@ -25,9 +25,10 @@ fn features_of_a_texture_are_read_from_their_buffers() {
     let features = FeatureConfig { upright: false, max_features: 5000, ..FeatureConfig::default() };
     let detector = block_on(Detector::new(gpu, size, &features)).unwrap();
     let input = block_on(detector.input(matcher.luma()[0])).unwrap();
+    let map = block_on(matcher.readback()).unwrap();
     let readback = block_on(detector.readback()).unwrap();
     bench.run(|encoder| {
-        inputs.record(encoder);
+        matcher.record(encoder, &inputs, map.outputs());
         detector.record(encoder, &input);
         detector.record_readback(encoder, &readback);
     });

@@ -3,7 +3,7 @@
 use std::{path::Path, sync::OnceLock};
 
 use hsad::{
-    features::{FeatureConfig, keypoints::Keypoint},
+    features::{FeatureConfig, Keypoint},
     gpu::{DeviceChoice, Gpu},
     image::Luma,
     io::Picture,

@@ -1,8 +1,7 @@
 //! The suite itself: it must be able to fail.
 
 use hsad::{
-    Result,
-    error::Error,
+    Error, Result,
     image::Size,
     verify::{Array, Bench, Case, Subject, Trial},
 };

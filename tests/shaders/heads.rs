@@ -7,7 +7,7 @@ use std::{
     path::Path,
 };
 
-use hsad::gpu::Stage;
+use hsad::internals::Stage;
 
 /// The shared parts: name and text.
 type Parts = BTreeMap<String, String>;
@@ -115,7 +115,7 @@ fn constant_mistakes(stage: &Stage, parts: &Parts) -> Vec<String> {
 
 #[test]
 fn imports_are_needed() {
-    let (stages, parts) = (hsad::stages(), shared_parts());
+    let (stages, parts) = (hsad::internals::stages(), shared_parts());
     let shaders: BTreeMap<_, _> = stages.iter().map(|stage| (stage.source, stage.name)).collect();
     let texts = shaders.iter().map(|(text, name)| (*name, *text)).chain(parts.iter().map(|(n, t)| (&**n, &**t)));
     let mistakes: Vec<_> = texts.flat_map(|(name, text)| import_mistakes(name, text, &parts)).collect();
@@ -129,7 +129,8 @@ fn imports_are_needed() {
 #[test]
 fn constants_are_listed_and_used() {
     let parts = shared_parts();
-    let mistakes: BTreeSet<_> = hsad::stages().iter().flat_map(|stage| constant_mistakes(stage, &parts)).collect();
+    let mistakes: BTreeSet<_> =
+        hsad::internals::stages().iter().flat_map(|stage| constant_mistakes(stage, &parts)).collect();
     assert!(mistakes.is_empty(), "{mistakes:#?}");
 }
 

@@ -14,8 +14,9 @@ use std::{
 };
 
 use hsad::{
-    features::keypoints::Keypoint,
-    gpu::{Binding, Limit, Member, REQUIRED_LIMITS, ShaderType, Shape, Stage},
+    features::Keypoint,
+    gpu::{Limit, REQUIRED_LIMITS},
+    internals::{Binding, Member, ShaderType, Shape, Stage},
     wgpu::{Limits, TextureFormat},
 };
 use naga::{
@@ -44,7 +45,7 @@ fn modules() -> &'static [(Stage, Validated)] {
             let module = valid(&stage);
             (stage, module)
         };
-        on_all_processors(hsad::stages(), with_module)
+        on_all_processors(hsad::internals::stages(), with_module)
     })
 }
 
@@ -236,7 +237,7 @@ fn stages_are_named_the_same_everywhere() {
             shaders.push(name);
         }
     }
-    let mut names: Vec<_> = hsad::stages().iter().map(|stage| stage.name.to_owned()).collect();
+    let mut names: Vec<_> = hsad::internals::stages().iter().map(|stage| stage.name.to_owned()).collect();
     shaders.sort();
     names.sort();
     names.dedup();
@@ -304,7 +305,7 @@ fn required_limits_are_those_that_some_shader_needs() {
 /// The comparison itself must be able to fail.
 #[test]
 fn a_changed_copy_disagrees() {
-    let good = hsad::luma::kernels::luma::stage();
+    let good = hsad::internals::luma::luma::stage();
     let changed = |change: &dyn Fn(&mut Stage)| {
         let mut stage = good.clone();
         change(&mut stage);

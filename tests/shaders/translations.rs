@@ -12,7 +12,7 @@ use std::{
     sync::Mutex,
 };
 
-use hsad::gpu::Stage;
+use hsad::internals::Stage;
 use naga::{
     Module, ShaderStage,
     back::{glsl, hlsl, msl, spv},
@@ -131,7 +131,7 @@ fn every_shader_can_be_told_in_every_language() {
 #[test]
 fn what_a_language_lacks_is_seen() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let module = valid(&hsad::luma::kernels::luma::stage()).expect("checked by another test");
+    let module = valid(&hsad::internals::luma::luma::stage()).expect("checked by another test");
     let refuse = |target: &Target| Target { translate: |_, _| Err("no such thing".into()), ..*target };
     for target in &TARGETS {
         assert_eq!(objection(&module, target, folder.path()), None);

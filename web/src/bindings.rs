@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use hsad::{
-    Error,
-    backend::Backend,
+    Backend, Error,
     config::{Config, Preset},
     disparity::{NONE, SCALE, coverage},
     gpu::DeviceChoice,

@@ -11,8 +11,7 @@ use std::{
 
 use clap::Args;
 use hsad::{
-    Error, Result,
-    backend::Backend,
+    Backend, Error, Result,
     eval::{Judged, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
     gpu::block_on,
     io::{atomic::write_whole, png},

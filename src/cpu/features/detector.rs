@@ -11,8 +11,8 @@ use crate::{
         nonmax::{Extremum, candidates, integer_threshold, locate},
         orientation::orientation,
     },
-    error::Result,
-    features::{Feature, FeatureConfig, too_many},
+    error::{Error, Result},
+    features::{Feature, FeatureConfig},
     image::Luma,
 };
 
@@ -21,14 +21,14 @@ use crate::{
 /// A picture too small for the filters has none.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`], or if there are more
+/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`]; [`crate::Error::TooManyFeatures`] if there are more
 /// than `max_features` points.
 pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     config.validate()?;
     let integral = IntegralImage::new(luma);
     let extrema = extrema(&integral, config);
     if extrema.len() > config.max_features as usize {
-        return Err(too_many(extrema.len(), config.max_features));
+        return Err(Error::TooManyFeatures { found: extrema.len(), room: config.max_features });
     }
     Ok(extrema.into_par_iter().map(|extremum| feature(&integral, extremum, config.upright)).collect())
 }
@@ -97,7 +97,7 @@ mod tests {
         let count = detect(&picture, &FeatureConfig::default()).unwrap().len() as u32;
         let limited = |max_features| detect(&picture, &FeatureConfig { max_features, ..Default::default() });
         assert_eq!(limited(count).unwrap().len() as u32, count);
-        assert!(matches!(limited(count - 1), Err(crate::Error::Parameter { name: "max_features", .. })));
+        assert!(matches!(limited(count - 1), Err(Error::TooManyFeatures { .. })));
     }
 
     #[test]

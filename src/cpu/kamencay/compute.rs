@@ -27,7 +27,7 @@ pub fn compute(left: &Picture, right: &Picture, config: &KamencayConfig) -> Resu
 /// What [`crate::kamencay::compute_within`] computes, on the CPU.
 ///
 /// # Errors
-/// As [`kamencay_compute`].
+/// As [`compute`].
 pub fn compute_within(left: &Picture, right: &Picture, config: &KamencayConfig, message_bytes: u64) -> Result<Dense> {
     // The twins wait for nothing.
     pollster::block_on(solve(left, right, config, message_bytes, &mut Twins))

@@ -1,7 +1,7 @@
 //! Conditions: synthetic changes of the second view, each with a strength and exact ground truth for the positions.
 //!
 //! A changed picture is the same bytes for the same seed on every machine: only integers, `f64` arithmetic and
-//! functions of `libm` are used, which are arithmetic themselves (see [`crate::filter`]).
+//! functions of `libm` are used, which are arithmetic themselves.
 
 mod brightness;
 mod cover;

@@ -43,7 +43,7 @@ pub struct Belief(Kernel);
 pub struct GridBuffers<'b> {
     /// The data costs.
     pub costs: &'b wgpu::Buffer,
-    /// The weights of the links: see [`super::Links`].
+    /// The weights of the links: see [`crate::kamencay::LinkWeights`].
     pub links: &'b wgpu::Buffer,
     /// The messages in the grid of half the size, where a turn asks for them; else any other buffer.
     pub parents: &'b wgpu::Buffer,

@@ -1,13 +1,13 @@
 //! Block matching.
 
 use hsad::{
-    cpu::dense::CellPlane,
-    dense::{
-        Aggregation, DenseConfig, Interpolation, Search, View,
-        kernels::{CELL, Tile},
-    },
+    dense::{Aggregation, DenseConfig, Interpolation, Search, View},
     disparity::{DisparityRange, SCALE},
     image::{Luma, Plane, Size},
+    internals::{
+        cpu::dense::CellPlane,
+        dense::{CELL, Tile},
+    },
     verify::trials::BlockMatchTrial,
 };
 

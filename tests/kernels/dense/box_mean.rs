@@ -3,10 +3,12 @@
 use std::ops::Range;
 
 use hsad::{
-    cpu::dense::box_mean,
-    dense::kernels::{BoxMean, VolumeBand},
     disparity::DisparityRange,
     image::Size,
+    internals::{
+        cpu::dense::box_mean,
+        dense::{BoxMean, VolumeBand},
+    },
 };
 
 use crate::common::*;

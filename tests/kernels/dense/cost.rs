@@ -1,10 +1,10 @@
 //! The matching cost.
 
 use hsad::{
-    cpu::dense::census,
     dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::{Plane, Size},
+    internals::cpu::dense::census,
     verify::{Values, trials::CostTrial},
 };
 

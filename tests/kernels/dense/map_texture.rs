@@ -1,7 +1,7 @@
 use hsad::{
-    dense::kernels::MapTexel,
     disparity::{DisparityMap, NONE, NONE_IN_PIXELS, SCALE},
     image::{Plane, Size},
+    internals::dense::MapTexel,
     verify::trials::MapTextureTrial,
 };
 

@@ -3,16 +3,16 @@
 use std::{sync::mpsc::channel, thread, time::Duration};
 
 use hsad::{
+    Error,
     config::Preset,
-    cpu::dense::compute,
     dense::{
         self, Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Destination,
-        Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View, kernels::CELL,
+        Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
-    error::Error,
     gpu::Gpu,
     image::{Luma, Size},
+    internals::{cpu::dense::compute, dense::CELL},
     luma::pack,
     verify::trials::DenseTrial,
     wgpu,
@@ -121,8 +121,8 @@ fn twice_in_one_encoder_and_after_garbage() {
         matcher.outputs(Destination::Buffer(disparities), Some(confidences)).unwrap()
     });
     bench().run(|encoder| {
-        matcher.record(encoder, &outputs[0]);
-        matcher.record(encoder, &outputs[1]);
+        matcher.record_luma(encoder, &outputs[0]);
+        matcher.record_luma(encoder, &outputs[1]);
     });
     for [disparities, confidences] in &maps {
         assert_same("disparities", &download::<i32>(disparities), expected.disparity.data());

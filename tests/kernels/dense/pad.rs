@@ -1,8 +1,9 @@
 //! Padding.
 
 use hsad::{
-    dense::{Brightness, kernels::PadParams},
+    dense::Brightness,
     image::{Luma, Size},
+    internals::dense::PadParams,
     verify::trials::PadTrial,
 };
 

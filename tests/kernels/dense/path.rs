@@ -1,8 +1,9 @@
 //! A path of semi-global matching.
 
 use hsad::{
-    dense::{Direction, Penalties},
+    dense::Penalties,
     image::{Plane, Size},
+    internals::dense::Direction,
     verify::trials::PathTrial,
 };
 

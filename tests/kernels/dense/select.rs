@@ -1,9 +1,10 @@
 //! From the costs of all paths to disparities.
 
 use hsad::{
-    dense::{Direction, Interpolation, Penalties},
+    dense::{Interpolation, Penalties},
     disparity::{DisparityRange, SCALE},
     image::{Plane, Size},
+    internals::dense::Direction,
     verify::trials::SelectTrial,
 };
 

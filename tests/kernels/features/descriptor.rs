@@ -1,9 +1,9 @@
 use std::f32::consts::PI;
 
 use hsad::{
-    cpu::features::{haar::Place, integral::IntegralImage, orientation::orientation},
-    features::{DESCRIPTOR_LENGTH, keypoints::Keypoint},
+    features::{DESCRIPTOR_LENGTH, Keypoint},
     image::Luma,
+    internals::cpu::features::{haar::Place, integral::IntegralImage, orientation::orientation},
     verify::{Values, trials::DescriptorTrial},
 };
 

@@ -1,7 +1,9 @@
 use hsad::{
-    cpu::features::{integral::IntegralImage, integral_rows::integral_rows},
-    features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
     image::{Luma, Plane},
+    internals::{
+        cpu::features::{integral::IntegralImage, integral_rows::integral_rows},
+        features::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
+    },
     verify::trials::ColumnsTrial,
 };
 

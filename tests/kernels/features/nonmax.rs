@@ -1,13 +1,10 @@
 use hsad::{
-    features::{
-        FeatureConfig,
-        kernels::{
-            hessian::{Grid, LAYERS},
-            nonmax::integer_threshold,
-        },
-        keypoints::Keypoint,
-    },
+    features::{FeatureConfig, Keypoint},
     image::Size,
+    internals::features::{
+        hessian::{Grid, LAYERS},
+        nonmax::integer_threshold,
+    },
     verify::trials::NonmaxTrial,
 };
 
@@ -92,9 +89,9 @@ fn the_earlier_of_equals_wins() {
     // The layer comes before row and column.
     assert_eq!(index(maxima(0, &[((31, 31, 1), 1000), ((30, 30, 2), 1000)])), [late]);
     // Layer 0 has no maxima of its own, but beats those of layer 1.
-    assert_eq!(index(maxima(0, &[((30, 30, 1), 1000), ((31, 31, 0), 1000)])), []);
+    assert_eq!(index(maxima(0, &[((30, 30, 1), 1000), ((31, 31, 0), 1000)])), [0_u32; 0]);
     assert_eq!(index(maxima(0, &[((30, 30, 2), 1000), ((31, 31, 3), 1000)])), [64 * 64 + early]);
-    assert_eq!(index(maxima(0, &[((30, 30, 2), 1000), ((31, 31, 3), 1001)])), []);
+    assert_eq!(index(maxima(0, &[((30, 30, 2), 1000), ((31, 31, 3), 1001)])), [0_u32; 0]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 use std::f32::consts::PI;
 
-use hsad::{features::keypoints::Keypoint, image::Luma, verify::trials::OrientationTrial};
+use hsad::{features::Keypoint, image::Luma, verify::trials::OrientationTrial};
 
 use crate::common::{assert_twin, bench, keypoint, keypoints_of, picture, pictures};
 

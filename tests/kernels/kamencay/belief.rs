@@ -3,7 +3,8 @@
 use hsad::{
     dense::Brightness,
     image::{Plane, Size},
-    kamencay::{LinkWeights, Links, Segmentation, Segments, Smoothness, Strip, described, kernels::Turn},
+    internals::kamencay::{Links, Segments, Strip, Turn, described},
+    kamencay::{LinkWeights, Segmentation, Smoothness},
     verify::{Values, trials::BeliefTrial},
 };
 

@@ -4,7 +4,8 @@ use hsad::{
     dense::{Brightness, Difference},
     disparity::DisparityRange,
     image::{Plane, Size},
-    kamencay::{Strip, WindowCost, described},
+    internals::kamencay::{Strip, described},
+    kamencay::WindowCost,
     verify::{Values, trials::BeliefCostTrial},
 };
 

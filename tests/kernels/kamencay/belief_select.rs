@@ -2,7 +2,7 @@
 
 use hsad::{
     image::Size,
-    kamencay::kernels::Winner,
+    internals::kamencay::Winner,
     verify::{Values, trials::BeliefSelectTrial},
 };
 

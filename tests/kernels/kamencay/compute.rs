@@ -1,12 +1,15 @@
 //! The hybrid method as a whole, in step with the twins.
 
 use hsad::{
-    cpu::kamencay::{compute, compute_within},
+    Error,
     dense::{Brightness, View},
     disparity::{DisparityRange, SCALE},
-    error::Error,
     gpu::Gpu,
     image::Size,
+    internals::{
+        self,
+        cpu::kamencay::{compute, compute_within},
+    },
     io::Picture,
     kamencay::{self, KamencayConfig},
     wgpu,
@@ -85,7 +88,7 @@ fn strips_are_those_of_the_twins_and_hardly_show() {
     let whole = compute(&left, &right, &config).unwrap();
     for rows in [48, 60, 130] {
         let bytes = 16 * 130 * 5 * rows;
-        let actual = block_on(kamencay::compute_within(gpu(), &left, &right, &config, bytes)).unwrap();
+        let actual = block_on(internals::kamencay::compute_within(gpu(), &left, &right, &config, bytes)).unwrap();
         let expected = compute_within(&left, &right, &config, bytes).unwrap();
         assert_same("strips", actual.disparity.data(), expected.disparity.data());
         assert_same("strips", actual.confidence.data(), expected.confidence.data());
@@ -93,7 +96,7 @@ fn strips_are_those_of_the_twins_and_hardly_show() {
         let others = pixels.filter(|(strip, whole)| strip != whole).count();
         assert!(others * 100 < whole.disparity.data().len(), "{rows} rows: {others} pixels differ");
     }
-    let error = block_on(kamencay::compute_within(gpu(), &left, &right, &config, 1000)).unwrap_err();
+    let error = block_on(internals::kamencay::compute_within(gpu(), &left, &right, &config, 1000)).unwrap_err();
     assert!(matches!(error, Error::TooLarge { .. }), "{error}");
 }
 

@@ -1,6 +1,6 @@
 use hsad::{
-    cpu::luma::Texels,
     image::{Plane, Size},
+    internals::cpu::luma::Texels,
     luma::{TexelFormat, pack},
     verify::{Dice, trials::LumaTextureTrial},
     wgpu::TextureFormat,

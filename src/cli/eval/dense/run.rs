@@ -3,8 +3,7 @@
 use std::time::Instant;
 
 use hsad::{
-    Result,
-    backend::Backend,
+    Backend, Result,
     config::Config,
     disparity::{fixed_point, in_pixels},
     eval::scene::{Scene, SceneFiles},

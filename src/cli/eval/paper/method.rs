@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 use hsad::{
-    Result,
-    backend::Backend,
+    Backend, Result,
     config::{self, Config, Preset},
     dense::Dense,
     disparity::pixels,

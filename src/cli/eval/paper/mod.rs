@@ -16,8 +16,7 @@ use std::{
 
 use clap::Args;
 use hsad::{
-    Error,
-    backend::Backend,
+    Backend, Error,
     eval::{conditions::Kind, scene::SceneFiles},
 };
 use serde_json::json;

@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use glam::DVec2;
 use hsad::{
-    Result,
-    backend::Backend,
+    Backend, Result,
     dense::View,
     eval::{
         Truth,
