@@ -127,6 +127,8 @@ mod error;
 pub mod eval;
 pub mod features;
 mod filter;
+#[cfg(not(target_arch = "wasm32"))]
+mod fnv;
 pub mod gpu;
 pub mod image;
 #[cfg(feature = "verify")]
@@ -158,3 +160,12 @@ pub use image::{Luma, Size};
 pub use io::Picture;
 pub use pair::Pair;
 pub use {glam, wgpu};
+
+/// The Rust of the README and of the page about embedding, compiled.
+#[cfg(doctest)]
+mod pages {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/embedding.md")]
+    struct Embedding;
+}

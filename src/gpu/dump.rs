@@ -2,6 +2,8 @@
 
 use std::{fs, io, path::Path, path::PathBuf};
 
+use crate::fnv::fnv1a;
+
 /// Writes `text` of stage `name` to the folder that `HSAD_DUMP_WGSL` names, if it is set.
 pub(super) fn dump(name: &str, text: &str) {
     let Some(folder) = std::env::var_os("HSAD_DUMP_WGSL") else { return };
@@ -14,27 +16,14 @@ pub(super) fn dump(name: &str, text: &str) {
 /// of their own, and the same variant is one file however often it is compiled.
 fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
-    let file = folder.join(format!("{name}-{:016x}.wgsl", fnv_1a(text.as_bytes())));
+    let file = folder.join(format!("{name}-{:016x}.wgsl", fnv1a(text.bytes())));
     fs::write(&file, text)?;
     Ok(file)
-}
-
-/// Fowler, Noll and Vo: FNV-1a of 64 bits.
-fn fnv_1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Values of the algorithm's authors (draft-eastlake-fnv).
-    #[test]
-    fn hashes_are_those_of_fnv_1a() {
-        assert_eq!(fnv_1a(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(fnv_1a(b"a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(fnv_1a(b"foobar"), 0x8594_4171_f739_67e8);
-    }
 
     #[test]
     fn a_text_is_one_file_in_a_new_folder() {

@@ -88,7 +88,7 @@ fn more_than_there_is_room_for_is_an_error_that_says_so() {
     let room = all as u32 - 1;
     let error = block_on(detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }))
         .unwrap_err();
-    assert!(matches!(error, Error::Parameter { name: "max_features", .. }), "{error}");
+    assert!(matches!(error, Error::TooManyFeatures { .. }), "{error}");
     let text = error.to_string();
     assert!(
         text.contains(&room.to_string()) && text.contains(&all.to_string()) && text.contains("threshold"),
