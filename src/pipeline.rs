@@ -2,6 +2,8 @@
 
 use web_time::{Duration, Instant};
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     config::{Config, Method},
@@ -9,13 +11,12 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
+    image::Size,
     io::Picture,
     kamencay::KamencayConfig,
     pair::Pair,
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::{gpu::block_on, image::Size};
 
 /// Points are looked for in pictures of at most this many pixels; larger ones are reduced first.
 const MAX_SPARSE_PIXELS: u64 = 1 << 21;

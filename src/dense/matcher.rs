@@ -10,6 +10,8 @@ use super::{
     plan::{BandLimits, Plan, WordCopy, blocks, costs},
     readback::MapReadback,
 };
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
 use crate::{
     disparity::DisparityMap,
     error::{Error, Result},
@@ -17,11 +19,9 @@ use crate::{
         Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded,
         refused_view, storage_buffer, try_recording,
     },
-    image::{Luma, Plane},
+    image::{Luma, Plane, Size},
     luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
 };
-#[cfg(not(target_arch = "wasm32"))]
-use crate::{gpu::block_on, image::Size};
 
 /// A disparity for each pixel of the reference view, and how far it can be trusted.
 #[derive(Clone, Debug, PartialEq, Eq)]
