@@ -20,12 +20,12 @@ shader_struct! {
     }
 }
 
-/// What is known of the other view.
+/// The form of the other view's disparities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckedAgainst {
-    /// A fixed-point disparity a pixel.
+    /// One fixed-point disparity per pixel.
     Disparities,
-    /// The claims of [`super::Claim`], where index 0 is this disparity.
+    /// The claims of [`super::Claim`]; the field is the disparity of index 0, in pixels.
     Claims(i32),
 }
 
@@ -37,7 +37,7 @@ pub struct Consistency {
 }
 
 impl Consistency {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(others: CheckedAgainst) -> Stage {
         Stage {
             name: "consistency",
@@ -55,13 +55,13 @@ impl Consistency {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, others: CheckedAgainst) -> Self {
         Self { kernel: Kernel::new(gpu, &Self::stage(others)), others }
     }
 
-    /// Takes away from the first `rows` of `matches` of `view` what the other view's disparities contradict by more than
-    /// `max_difference` / 256 px.
+    /// Drops from the first `rows` rows of `matches` of `view` the disparities that differ by more than
+    /// `max_difference` / 256 px from those of the other view.
     pub fn prepare(
         &self,
         matches: MapBuffer<'_>,

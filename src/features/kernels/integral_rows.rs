@@ -30,7 +30,7 @@ pub fn stage() -> Stage {
 pub struct IntegralRows(Kernel);
 
 impl IntegralRows {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

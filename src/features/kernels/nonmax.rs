@@ -44,7 +44,7 @@ pub fn integer_threshold(threshold: f32) -> i32 {
 pub struct Nonmax(Kernel);
 
 impl Nonmax {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

@@ -32,7 +32,7 @@ pub fn stage() -> Stage {
 pub struct Orientation(Kernel);
 
 impl Orientation {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

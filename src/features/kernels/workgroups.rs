@@ -21,7 +21,7 @@ pub fn stage() -> Stage {
 pub struct Workgroups(Kernel);
 
 impl Workgroups {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

@@ -68,7 +68,7 @@ impl Belief {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, smoothness: &Smoothness, fours: u32) -> Self {
         Self(Kernel::new(gpu, &Self::stage(smoothness, fours)))
     }

@@ -42,7 +42,7 @@ shader_struct! {
 pub struct BeliefCost(Kernel);
 
 impl BeliefCost {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(cost: &WindowCost) -> Stage {
         let side = 2 * cost.radius + 1;
         Stage {
@@ -65,7 +65,7 @@ impl BeliefCost {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, cost: &WindowCost) -> Self {
         Self(Kernel::new(gpu, &Self::stage(cost)))
     }

@@ -21,7 +21,7 @@ shader_struct! {
 pub struct BeliefReduce(Kernel);
 
 impl BeliefReduce {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "belief_reduce",
@@ -35,7 +35,7 @@ impl BeliefReduce {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }

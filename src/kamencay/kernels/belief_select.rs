@@ -57,7 +57,7 @@ shader_struct! {
 pub struct BeliefSelect(Kernel);
 
 impl BeliefSelect {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "belief_select",
@@ -71,7 +71,7 @@ impl BeliefSelect {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }

@@ -33,7 +33,7 @@ shader_struct! {
 pub struct MeanShift(Kernel);
 
 impl MeanShift {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(seeking: &ModeSeeking) -> Stage {
         Stage {
             name: "mean_shift",
@@ -50,7 +50,7 @@ impl MeanShift {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, seeking: &ModeSeeking) -> Self {
         Self(Kernel::new(gpu, &Self::stage(seeking)))
     }

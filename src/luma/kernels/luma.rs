@@ -29,7 +29,7 @@ pub fn stage() -> Stage {
 pub struct RgbaToLuma(Kernel);
 
 impl RgbaToLuma {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

@@ -63,7 +63,7 @@ pub fn stage() -> Stage {
 pub struct LumaTexture(Kernel);
 
 impl LumaTexture {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }

@@ -104,7 +104,7 @@ pub struct BlockMatchTrial {
 }
 
 impl BlockMatchTrial {
-    fn matched(&self, bench: &Bench<'_>, wanted: ResultKind) -> Result<Vec<u32>> {
+    fn matched(&self, bench: &Bench<'_>, kind: ResultKind) -> Result<Vec<u32>> {
         let (gpu, Size { width, height }) = (bench.gpu, self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
         // The twin's, so that this is about one kernel.
@@ -117,7 +117,7 @@ impl BlockMatchTrial {
             None => Ranges::whole(gpu, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
-        let others = match (self.config.parameters.consistency, wanted) {
+        let others = match (self.config.parameters.consistency, kind) {
             (Some(limit), ResultKind::Matches) => Some((self.others()?, limit)),
             _ => None,
         };
@@ -129,9 +129,9 @@ impl BlockMatchTrial {
             max_difference: *limit,
         });
         let map = MapLayout { width, rows: height };
-        let words = if wanted == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
+        let words = if kind == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
         let matches = bench.output(words)?;
-        let kernel = BlockMatch::new(gpu, &self.config.parameters, self.view, wanted, self.tile);
+        let kernel = BlockMatch::new(gpu, &self.config.parameters, self.view, kind, self.tile);
         let dispatch = kernel.prepare(&layout, &texture, &ranges, others, MapBuffer { buffer: &matches, layout: map });
         bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)

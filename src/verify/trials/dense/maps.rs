@@ -6,8 +6,8 @@ use crate::{
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            CheckedAgainst, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture,
-            Residual, Support, Views, WeightedMedian,
+            CheckedAgainst, ComparedViews, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel,
+            MapTexture, Residual, Support, WeightedMedian,
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -177,7 +177,7 @@ impl Trial for ResidualTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.disparities.size());
         let [left, right] = [bench.upload_luma(&self.views[0])?, bench.upload_luma(&self.views[1])?];
-        let views = Views {
+        let views = ComparedViews {
             luma: [&left, &right],
             brightness: &uniform_buffer(gpu, "brightness", &self.brightness),
             reference: self.reference,

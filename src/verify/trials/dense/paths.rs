@@ -339,7 +339,7 @@ impl Trial for SelectTrial {
         let selection = Selection {
             stored: self.stored.len() as u32,
             interpolation: self.interpolation,
-            wanted: ResultKind::Matches,
+            kind: ResultKind::Matches,
             keys: true,
             uniqueness: self.uniqueness,
         };
