@@ -1,9 +1,9 @@
-//! Features on their way back to the host.
+//! Features copied back to the host.
 
 use super::{DESCRIPTOR_LENGTH, Feature, collect, keypoints::Keypoint, too_many};
 use crate::{error::Result, gpu::Readback};
 
-/// Memory of the host for what a detector finds in a frame: see [`super::Detector::readback`].
+/// Staging buffers for the features of one frame: see [`super::Detector::readback`].
 #[derive(Debug)]
 pub struct FeatureReadback {
     pub(super) capacity: u32,
@@ -13,11 +13,12 @@ pub struct FeatureReadback {
 }
 
 impl FeatureReadback {
-    /// The features, sorted by octave, layer, row and column, once the recorded work was submitted and is done. The future
-    /// drives the device itself. Until the future is finished, nothing else may be submitted that copies to this memory.
+    /// Waits for the submitted work and returns the features, sorted by octave, layer, row and column. The future polls
+    /// the device itself. Until it is finished, no other copy to these buffers may be submitted.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] where more was found than there is room for; [`crate::Error::DeviceLost`].
+    /// [`crate::Error::Parameter`] if more features were found than [`super::FeatureConfig::max_features`];
+    /// [`crate::Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
         let found = self.count.read::<u32>(1).await?[0];
         if found > self.capacity {

@@ -1,4 +1,4 @@
-//! The text that the shader compiler is given, written to a folder: `HSAD_DUMP_WGSL`, see [`super`].
+//! Dumps of the WGSL that the shader compiler gets: `HSAD_DUMP_WGSL`, see [`super`].
 
 use std::{fs, io, path::Path, path::PathBuf};
 
@@ -10,8 +10,8 @@ pub(super) fn dump(name: &str, text: &str) {
     }
 }
 
-/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Variants of one stage have names
-/// of their own, and the same variant is one file however often it is compiled.
+/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Each variant of a stage has its
+/// own file, written again each time it is compiled.
 fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let file = folder.join(format!("{name}-{:016x}.wgsl", fnv_1a(text.as_bytes())));
@@ -19,7 +19,7 @@ fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
     Ok(file)
 }
 
-/// Fowler, Noll and Vo: FNV-1a of 64 bits.
+/// The 64-bit FNV-1a hash of Fowler, Noll and Vo.
 fn fnv_1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
@@ -28,7 +28,7 @@ fn fnv_1a(bytes: &[u8]) -> u64 {
 mod tests {
     use super::*;
 
-    /// Values of the algorithm's authors (draft-eastlake-fnv).
+    /// Hashes by the algorithm's authors (draft-eastlake-fnv).
     #[test]
     fn hashes_are_those_of_fnv_1a() {
         assert_eq!(fnv_1a(b""), 0xcbf2_9ce4_8422_2325);

@@ -16,7 +16,7 @@ shader_struct! {
     }
 }
 
-/// The kernel that halves a grid.
+/// The kernel that sums data costs for the grid of half the size.
 #[derive(Debug)]
 pub struct BeliefReduce(Kernel);
 
@@ -40,7 +40,8 @@ impl BeliefReduce {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Adds up the costs of a `fine` grid of `size` with so many `fours` of disparities a node.
+    /// Sums the costs of a `fine` grid of `size`, with `fours` groups of four disparities per node, into the `coarse`
+    /// grid.
     pub fn prepare(
         &self,
         Size { width, height }: Size,
