@@ -1,4 +1,4 @@
-//! The dense half in one call.
+//! Dense matching in one call.
 
 use super::{
     block_match, box_mean, cell_ranges, census, claim, consistency, cost, fill, half_consistency, halve, path,
@@ -14,7 +14,7 @@ use crate::{
     image::{Luma, Plane},
 };
 
-/// What [`crate::dense::compute`] computes, on the CPU.
+/// [`crate::dense::compute`] on the CPU.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`].
@@ -64,8 +64,8 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
     }
 }
 
-/// Block matching of a pair where one of half the size, made of the `unchanged` pictures, shows something; confirmed by
-/// the other view at half the size.
+/// Block matching of a pair within the ranges found at half size, confirmed by the other view at half size. The
+/// half-size pictures are made of the `unchanged` ones, before the change of brightness.
 fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &DenseConfig) -> Dense {
     let [left_half, right_half] = unchanged.map(halve);
     let right_half = right_half.map(|&luma| config.brightness.apply(luma));
@@ -80,7 +80,7 @@ fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &Den
     dense
 }
 
-/// A map after all that `refinement` asks for.
+/// The map after all steps of `refinement`.
 fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
     let Dense { disparity: mut map, confidence } = support(dense, residuals, refinement.support);
     for median in refinement.before() {
@@ -96,7 +96,7 @@ fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refin
     Dense { disparity: map, confidence }
 }
 
-/// The costs along all paths through one view; those of the pixels themselves, where there are none.
+/// The costs along all paths through one view; without paths, the matching costs themselves.
 fn all_paths(
     left: &Luma,
     right: &Luma,

@@ -6,8 +6,8 @@ use crate::{
     image::Size,
 };
 
-/// Takes away what the other view contradicts: the partner of a pixel, at the nearest whole
-/// disparity, must exist and must have a disparity that differs by at most `max_difference` / 256 px.
+/// Drops the disparities that the other view contradicts: the partner of a pixel, at the nearest whole disparity, must
+/// exist and have a disparity that differs by at most `max_difference` / 256 px.
 pub fn consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
         let other = others.get(partner, y);
@@ -15,8 +15,9 @@ pub fn consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_dif
     });
 }
 
-/// The same with the other view's whole disparities at half the size: twice that of the partner there, or of the pixel to
-/// its left or right, must differ by at most `max_difference` / 256 px and the pixel that lies between two of them.
+/// Drops the disparities that the half-size map of the other view contradicts: twice the whole disparity of the
+/// half-size partner, or of the pixel to its left or right, must differ by at most `max_difference` / 256 px plus 1 px,
+/// since twice a whole half-size disparity is even.
 pub fn half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
         (-1..=1).any(|i| {
@@ -26,7 +27,8 @@ pub fn half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, ma
     });
 }
 
-/// Takes away what is not confirmed: a disparity, the column of the partner in the other view, and the row.
+/// Drops unconfirmed disparities. The arguments of `is_confirmed` are the disparity, the partner's column in the other
+/// view, and the row.
 fn keep_confirmed(dense: &mut Dense, view: View, is_confirmed: impl Fn(i32, u32, u32) -> bool) {
     let Size { width, height } = dense.disparity.size();
     for y in 0..height {
@@ -65,8 +67,9 @@ mod tests {
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
         assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
 
-        // At half the size. The partner of 3 is 2, there 1: an odd disparity lies between even ones. That of 4 is 1, there 0,
-        // and its neighbour has another disparity. That of 5 is 3, there 1, and its neighbour has half the disparity.
+        // At half size. Pixel 3 has partner 2, half-size pixel 1: an odd disparity lies between even ones. Pixel 4 has
+        // partner 1, half-size pixel 0, and its neighbour has another disparity. Pixel 5 has partner 3, half-size pixel
+        // 1, and its neighbour has half the disparity.
         let mut dense =
             Dense { disparity: plane(&[NONE, NONE, NONE, 256, 800, 512]), confidence: Plane::filled((6, 1), 9) };
         half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 256, NONE]), 0);

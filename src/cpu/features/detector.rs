@@ -1,4 +1,4 @@
-//! The whole sparse half on the CPU: a picture in, interest points out.
+//! Detection and description of interest points on the CPU.
 
 use rayon::prelude::*;
 
@@ -16,13 +16,13 @@ use crate::{
     image::Luma,
 };
 
-/// Finds and describes the interest points of a picture, by octave, interval, row and column.
+/// Finds and describes the interest points of a picture, sorted by octave, interval, row and column.
 ///
-/// A picture too small for the filters has none.
+/// A picture too small for the filters has no interest points.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`], or if there are more
-/// than `max_features` points.
+/// [`crate::Error::Parameter`] if `config` is out of range (see [`FeatureConfig::validate`]), or if there are more than
+/// `max_features` points.
 pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     config.validate()?;
     let integral = IntegralImage::new(luma);

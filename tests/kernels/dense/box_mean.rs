@@ -41,7 +41,7 @@ fn the_twin_averages_the_same() {
     }
 }
 
-/// Every side, with the largest sums.
+/// Covers every side, with the largest sums.
 #[test]
 fn no_quotient_is_off() {
     for side in (1..=31).step_by(2) {
@@ -70,8 +70,8 @@ fn by_hand() {
     // Four disparities of 3x2 pixels: ramps along the row and along the column, a lone pixel, a constant.
     let pixel = |x: u8, y: u8| [10 * x, 30 * y, if (x, y) == (2, 0) { 90 } else { 0 }, 255];
     let costs: Vec<u8> = (0..2).flat_map(|y| (0..3).flat_map(move |x| pixel(x, y))).collect();
-    // Along the row 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column 0 0 30 is 10, 0 30 30 is 20.
-    // The lone one is in its row's mean once beside it and twice at the edge: 30, 60; and so in the columns'.
+    // Means along the row: 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column: 0 0 30 is 10, 0 30 30 is 20.
+    // The lone pixel counts once in its row beside it and twice at the edge: 30, 60; likewise in the columns.
     let expected =
         [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]];
     assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 4), expected.concat());

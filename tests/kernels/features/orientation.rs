@@ -52,7 +52,7 @@ fn keypoints_at_and_beyond_the_edge_are_in_range() {
     }
 }
 
-/// More keypoints than one row of workgroups holds: none is left out.
+/// More keypoints than one row of workgroups: none is left out.
 #[test]
 fn every_keypoint_of_many_gets_its_own() {
     let picture = Luma::from_fn((61, 61), |x, _| (4 * x) as u8);
@@ -74,7 +74,7 @@ fn equals_the_twin() {
     assert!(total > 1000, "{total}");
 }
 
-/// Beyond edges, at any scale.
+/// Covers places beyond the edges, at any scale.
 #[test]
 fn equals_the_twin_anywhere() {
     let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0]).collect();
