@@ -26,7 +26,7 @@ impl Backend {
     /// Opens the backend of `choice`.
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
         block_on(Self::open_async(choice))
@@ -35,7 +35,7 @@ impl Backend {
     /// The asynchronous [`Backend::open`].
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
         match choice {
             DeviceChoice::Cpu => Ok(Self::Cpu),
@@ -73,7 +73,7 @@ impl Backend {
     /// The interest points of a single picture; see [`crate::pair::Pair::features`] for both views of a pair.
     ///
     /// # Errors
-    /// As [`crate::features::detect`].
+    /// See [`crate::features::detect`].
     pub async fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self {
             Self::Gpu(gpu) => features::detect(gpu, luma, config).await,
@@ -84,7 +84,7 @@ impl Backend {
     /// The disparity map of a pair by Kamencay's method, which uses the colours of the pictures.
     ///
     /// # Errors
-    /// As [`kamencay::compute`].
+    /// See [`kamencay::compute`].
     pub async fn kamencay(&self, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
         match self {
             Self::Gpu(gpu) => kamencay::compute(gpu, left, right, config).await,

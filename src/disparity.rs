@@ -82,7 +82,7 @@ impl DisparityRange {
     /// A range from its smallest to its largest disparity, both included, in whole pixels.
     ///
     /// # Errors
-    /// As [`Self::new`]; also if `last` is below `first`.
+    /// See [`Self::new`]; also if `last` is below `first`.
     pub fn inclusive(first: i32, last: i32) -> Result<Self> {
         let count = i64::from(last) - i64::from(first) + 1;
         Self::new(first, u32::try_from(count).unwrap_or(0))

@@ -80,7 +80,7 @@ impl<'b> Pair<'b> {
     /// The interest points of both views.
     ///
     /// # Errors
-    /// As [`crate::features::detect`].
+    /// See [`crate::features::detect`].
     pub async fn features(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
         let Some(OnDevice { gpu, luma: [left, right] }) = &self.device else {
             let detect = |view| cpu::features::detector::detect(view, config);
@@ -93,7 +93,7 @@ impl<'b> Pair<'b> {
     /// Dense matching: a disparity and a confidence for each pixel of the reference view.
     ///
     /// # Errors
-    /// As [`crate::dense::compute`].
+    /// See [`crate::dense::compute`].
     pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
         match &self.device {
             Some(OnDevice { gpu, luma }) => {

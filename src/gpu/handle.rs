@@ -51,7 +51,7 @@ impl Gpu {
     /// The asynchronous [`Gpu::open`].
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
         let mut adapters = adapters().await;
         if adapters.is_empty() {

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The matching costs of each pixel of `reference`, padded to a multiple of four disparities. Both views come from
-/// [`super::census`]; a pixel without a partner is compared with the nearest pixel of the row.
+/// [`super::census()`]; a pixel without a partner is compared with the nearest pixel of the row.
 pub fn cost([reference, other]: [&Plane<u32>; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
     let Size { width, height } = reference.size();
     let at = |plane: &Plane<u32>, x: i64, y: u32| plane.get_clamped(x, i64::from(y));

@@ -192,7 +192,7 @@ impl DenseParameters {
         }
     }
 
-    /// As [`DenseConfig::validate`].
+    /// See [`DenseConfig::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         match &self.aggregation {
             Aggregation::Sad { side, .. } => {

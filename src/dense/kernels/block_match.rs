@@ -195,7 +195,7 @@ impl Layout {
     /// The layout of rows `first_row` to `first_row + rows` of a picture of `size`, for a kernel of `tile`.
     ///
     /// # Errors
-    /// As [`DenseConfig::searched`].
+    /// See [`DenseConfig::searched`].
     pub fn new(
         Size { width, height }: Size,
         first_row: u32,

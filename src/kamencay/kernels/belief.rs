@@ -45,7 +45,7 @@ pub struct Belief(Kernel);
 pub struct GridBuffers<'b> {
     /// Data costs, from [`super::BeliefCost`] or [`super::BeliefReduce`].
     pub costs: &'b wgpu::Buffer,
-    /// Weights of the links: see [`super::Links`].
+    /// Weights of the links: see [`crate::kamencay::Links`].
     pub links: &'b wgpu::Buffer,
     /// Messages of the grid of half the size, if the turn reads them; otherwise any other buffer.
     pub parents: &'b wgpu::Buffer,

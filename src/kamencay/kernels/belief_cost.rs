@@ -71,7 +71,7 @@ impl BeliefCost {
     }
 
     /// Writes the data costs of `strip`: the pixels of `left` against those of `right`, views of `size` from
-    /// [`super::described`].
+    /// [`crate::kamencay::described`].
     pub fn prepare(
         &self,
         Size { width, height }: Size,
