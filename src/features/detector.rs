@@ -183,25 +183,25 @@ impl Detector {
             count
         })
         .await?;
-        let found = count.read::<u32>(1).await?[0];
-        if found > list.capacity() {
-            return Err(too_many(found as usize, list.capacity()));
+        let keypoint_count = count.read::<u32>(1).await?[0];
+        if keypoint_count > list.capacity() {
+            return Err(too_many(keypoint_count as usize, list.capacity()));
         }
-        if found == 0 {
+        if keypoint_count == 0 {
             return Ok(Vec::new());
         }
-        let found = found as usize;
+        let keypoint_count = keypoint_count as usize;
         // Each call has its own staging buffers, so that several threads can read.
         let (keypoints, descriptors) = submit(gpu, |encoder| {
-            let keypoints = Readback::new(gpu, "keypoints", (found * size_of::<Keypoint>()) as u64);
-            let descriptors = Readback::new(gpu, "descriptors", (found * size_of::<Values>()) as u64);
+            let keypoints = Readback::new(gpu, "keypoints", (keypoint_count * size_of::<Keypoint>()) as u64);
+            let descriptors = Readback::new(gpu, "descriptors", (keypoint_count * size_of::<Values>()) as u64);
             keypoints.record(encoder, list.keypoints());
             descriptors.record(encoder, &self.descriptors);
             (keypoints, descriptors)
         })
         .await?;
-        let keypoints = keypoints.read::<Keypoint>(found).await?;
-        let descriptors = descriptors.read::<Values>(found).await?;
+        let keypoints = keypoints.read::<Keypoint>(keypoint_count).await?;
+        let descriptors = descriptors.read::<Values>(keypoint_count).await?;
         Ok(collect(&keypoints, &descriptors))
     }
 }

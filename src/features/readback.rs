@@ -20,12 +20,12 @@ impl FeatureReadback {
     /// [`crate::Error::Parameter`] if more features were found than [`super::FeatureConfig::max_features`];
     /// [`crate::Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
-        let found = self.count.read::<u32>(1).await?[0];
-        if found > self.capacity {
-            return Err(too_many(found as usize, self.capacity));
+        let keypoint_count = self.count.read::<u32>(1).await?[0];
+        if keypoint_count > self.capacity {
+            return Err(too_many(keypoint_count as usize, self.capacity));
         }
-        let keypoints = self.keypoints.read::<Keypoint>(found as usize).await?;
-        let descriptors = self.descriptors.read::<[f32; DESCRIPTOR_LENGTH]>(found as usize).await?;
+        let keypoints = self.keypoints.read::<Keypoint>(keypoint_count as usize).await?;
+        let descriptors = self.descriptors.read::<[f32; DESCRIPTOR_LENGTH]>(keypoint_count as usize).await?;
         Ok(collect(&keypoints, &descriptors))
     }
 }

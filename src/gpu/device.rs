@@ -48,14 +48,14 @@ pub(super) async fn adapters() -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// The index of the adapter that `wanted` names: by index, or the first adapter whose name contains it.
-pub(super) fn find(infos: &[wgpu::AdapterInfo], wanted: &str) -> Option<usize> {
-    if let Ok(index) = wanted.parse::<usize>() {
+/// The index of the adapter called `name`: an index, or part of a name, of which the first match counts.
+pub(super) fn find(infos: &[wgpu::AdapterInfo], name: &str) -> Option<usize> {
+    if let Ok(index) = name.parse::<usize>() {
         return (index < infos.len()).then_some(index);
     }
-    let wanted = wanted.trim().to_lowercase();
-    if wanted.is_empty() {
+    let name = name.trim().to_lowercase();
+    if name.is_empty() {
         return None;
     }
-    infos.iter().position(|info| info.name.to_lowercase().contains(&wanted))
+    infos.iter().position(|info| info.name.to_lowercase().contains(&name))
 }

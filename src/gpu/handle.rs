@@ -59,10 +59,10 @@ impl Gpu {
         }
         let index = match choice {
             DeviceChoice::Best => 0,
-            DeviceChoice::Named(wanted) => {
+            DeviceChoice::Named(name) => {
                 let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
-                find(&infos, wanted).ok_or_else(|| Error::NoSuchDevice {
-                    wanted: wanted.clone(),
+                find(&infos, name).ok_or_else(|| Error::NoSuchDevice {
+                    wanted: name.clone(),
                     available: (0..).zip(&infos).map(|(i, info)| format!("{i}: {}, ", info.name)).collect::<String>()
                         + "cpu",
                 })?

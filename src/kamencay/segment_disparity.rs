@@ -71,9 +71,9 @@ pub(super) fn conclude(
                 None => {
                     dense.disparity.set(x, y, alone * SCALE);
                     if row[x as usize].is_some() && winners.get(x, y).margin() > 0 {
-                        let sure = certainty(winners.get(x, y).margin());
+                        let certainty = certainty(winners.get(x, y).margin());
                         let alike = alikeness(views, (x, y), alone);
-                        dense.confidence.set(x, y, confidence(segment.agreement, sure, alike));
+                        dense.confidence.set(x, y, confidence(segment.agreement, certainty, alike));
                     }
                 }
             }
@@ -186,8 +186,8 @@ mod tests {
             let dense = conclude(0, other);
             assert_eq!(dense.disparity.data(), [0; 7]);
             // Four of seven pixels agree; certainty 50 / (50 + 64).
-            let sure = 1 + (2 * (127 * 4 / 7 + 127 * 50 / 114 + alike) / 3) as u8;
-            assert_eq!(dense.confidence.data(), [sure, sure, 0, sure, 0, sure, 0]);
+            let expected = 1 + (2 * (127 * 4 / 7 + 127 * 50 / 114 + alike) / 3) as u8;
+            assert_eq!(dense.confidence.data(), [expected, expected, 0, expected, 0, expected, 0]);
         }
         let loose = Conclusion { confirmation: 1, least_confirmed: 2, tolerance: 1 };
         let dense = super::conclude(&winners, &segments, range, &loose, [&view, &flat]);

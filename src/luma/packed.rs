@@ -33,8 +33,8 @@ pub(crate) fn check_packed(luma: &wgpu::Buffer, size: Size) -> Result<()> {
     check_size(size)?;
     let bytes = packed_bytes(size);
     if luma.size() < bytes {
-        let given = luma.size();
-        return refuse(size, format!("its packed luma, {bytes} bytes, is more than the {given} given"));
+        let actual = luma.size();
+        return refuse(size, format!("its packed luma, {bytes} bytes, is more than the {actual} given"));
     }
     if !luma.usage().contains(wgpu::BufferUsages::STORAGE) {
         let value = format!("a buffer with the usages {:?}", luma.usage());

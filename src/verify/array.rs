@@ -194,21 +194,23 @@ impl Comparison {
     pub fn new(actual: &Array, expected: &Array) -> Self {
         let Array { name, tolerance, .. } = *expected;
         let mut comparison = Self { name, tolerance, count: 0, off: 0, largest: 0.0, fault: None };
-        let (values, wanted) = (&actual.values, &expected.values);
-        if (actual.name, values.kind(), values.len()) != (name, wanted.kind(), wanted.len()) {
+        let (actual_values, expected_values) = (&actual.values, &expected.values);
+        if (actual.name, actual_values.kind(), actual_values.len())
+            != (name, expected_values.kind(), expected_values.len())
+        {
             let of = |array: &Array| format!("{} {} {}", array.values.len(), array.name, array.values.kind());
             comparison.fault = Some(format!("there are {}, not {}", of(actual), of(expected)));
             return comparison;
         }
         let group = tolerance.group();
         let (mut first, mut first_beyond) = (None, None);
-        for start in (0..wanted.len()).step_by(group) {
-            let thing = start..(start + group).min(wanted.len());
+        for start in (0..expected_values.len()).step_by(group) {
+            let indices = start..(start + group).min(expected_values.len());
             let mut off = None;
             // The value that is off by more than an outlier may be.
             let mut beyond = None;
-            for index in thing.clone() {
-                let (difference, near) = compare(values, wanted, index, tolerance);
+            for index in indices.clone() {
+                let (difference, near) = compare(actual_values, expected_values, index, tolerance);
                 // NaN exceeds any number, and no later value replaces it.
                 if difference.is_nan() || difference > comparison.largest {
                     comparison.largest = difference;
@@ -220,7 +222,7 @@ impl Comparison {
                     beyond = beyond.or(Some(index));
                 }
             }
-            if !length_kept(values, wanted, thing, tolerance) {
+            if !length_kept(actual_values, expected_values, indices, tolerance) {
                 off = off.or(Some(start));
                 beyond = beyond.or(off);
             }
@@ -231,7 +233,7 @@ impl Comparison {
         }
         let too_many = first.filter(|_| comparison.off > tolerance.allowed(comparison.count));
         if let Some(index) = first_beyond.or(too_many) {
-            let (is, should, off) = (values.text(index), wanted.text(index), comparison.off);
+            let (is, should, off) = (actual_values.text(index), expected_values.text(index), comparison.off);
             comparison.fault = Some(format!("{name}: value {index} is {is}, not {should}; {off} are off"));
         }
         comparison
@@ -273,11 +275,11 @@ fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Toleranc
 }
 
 /// Whether a group has the right length as a vector, where the tolerance limits that.
-fn length_kept(actual: &Values, expected: &Values, thing: Range<usize>, tolerance: Tolerance) -> bool {
+fn length_kept(actual: &Values, expected: &Values, group: Range<usize>, tolerance: Tolerance) -> bool {
     let Tolerance::Within { length: Some(limit), .. } = tolerance else {
         return true;
     };
-    let length = |values: &Values| thing.clone().map(|index| values.number(index).powi(2)).sum::<f64>().sqrt();
+    let length = |values: &Values| group.clone().map(|index| values.number(index).powi(2)).sum::<f64>().sqrt();
     (length(actual) - length(expected)).abs() <= limit.into()
 }
 

@@ -88,17 +88,17 @@ fn import_mistakes(name: &str, text: &str, parts: &Parts) -> Vec<String> {
 /// The constants of a stage that a text uses and does not list, or lists and does not use, or that no text uses.
 fn constant_mistakes(stage: &Stage, parts: &Parts) -> Vec<String> {
     let mut mistakes = Vec::new();
-    let given: BTreeSet<_> = stage.constants.iter().map(|(name, _)| *name).collect();
+    let constants: BTreeSet<_> = stage.constants.iter().map(|(name, _)| *name).collect();
     let mut used_anywhere = BTreeSet::new();
     for (name, text) in with_imports(stage.name, stage.source, parts) {
         let words = words(text);
-        let used: BTreeSet<_> = given.intersection(&words).copied().collect();
+        let used: BTreeSet<_> = constants.intersection(&words).copied().collect();
         let listed = listed(text);
         for constant in used.iter().filter(|used| !listed.contains_key(**used)) {
             mistakes.push(format!("{name} does not list {constant}"));
         }
         for (constant, meaning) in listed {
-            if !given.contains(constant) {
+            if !constants.contains(constant) {
                 mistakes.push(format!("{name} lists {constant}, which Rust does not give {}", stage.name));
             } else if !used.contains(constant) {
                 mistakes.push(format!("{name} lists {constant} and does not use it"));
@@ -109,7 +109,7 @@ fn constant_mistakes(stage: &Stage, parts: &Parts) -> Vec<String> {
         }
         used_anywhere.extend(used);
     }
-    mistakes.extend(given.difference(&used_anywhere).map(|unused| format!("{} does not use {unused}", stage.name)));
+    mistakes.extend(constants.difference(&used_anywhere).map(|unused| format!("{} does not use {unused}", stage.name)));
     mistakes
 }
 

@@ -28,20 +28,21 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
     let right = &right.map(|&luma| config.brightness.apply(luma));
     let view = config.reference;
     let mut dense;
-    let others;
+    let other_disparities;
     match &config.parameters.aggregation {
         Aggregation::Sad { search: Search::Whole, .. } => {
             dense = block_match(left, right, view, &config, None);
-            others = config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
+            other_disparities =
+                config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
         }
         Aggregation::Sad { search: Search::CoarseToFine, .. } => {
             dense = coarse_to_fine([left, right], unchanged, &config);
-            others = None;
+            other_disparities = None;
         }
         Aggregation::Costs(costs) => {
             let paths = all_paths(left, right, view, &config, costs);
             dense = select(&paths, left.size(), &config);
-            others = config.parameters.consistency.map(|_| match costs.cross_check {
+            other_disparities = config.parameters.consistency.map(|_| match costs.cross_check {
                 CrossCheck::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
                 CrossCheck::Searched => {
                     let paths = all_paths(left, right, view.other(), &config, costs);
@@ -51,8 +52,8 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
             });
         }
     }
-    if let (Some(max_difference), Some(others)) = (config.parameters.consistency, others) {
-        consistency(&mut dense, view, &others, max_difference);
+    if let (Some(max_difference), Some(other_disparities)) = (config.parameters.consistency, other_disparities) {
+        consistency(&mut dense, view, &other_disparities, max_difference);
     }
     match &config.parameters.refinement {
         Some(refinement) => {
@@ -74,8 +75,8 @@ fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &Den
     let ranges = cell_ranges(&map, left.size(), config.range);
     let mut dense = block_match(left, right, view, config, Some(&ranges));
     if let Some(max_difference) = config.parameters.consistency {
-        let others = winners(&left_half, &right_half, view.other(), &half, None);
-        half_consistency(&mut dense, view, &others, max_difference);
+        let other_disparities = winners(&left_half, &right_half, view.other(), &half, None);
+        half_consistency(&mut dense, view, &other_disparities, max_difference);
     }
     dense
 }

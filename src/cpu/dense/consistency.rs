@@ -8,9 +8,9 @@ use crate::{
 
 /// Drops the disparities that the other view contradicts: the partner of a pixel, at the nearest whole disparity, must
 /// exist and have a disparity that differs by at most `max_difference` / 256 px.
-pub fn consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+pub fn consistency(dense: &mut Dense, view: View, other_disparities: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
-        let other = others.get(partner, y);
+        let other = other_disparities.get(partner, y);
         other != NONE && disparity.abs_diff(other) <= max_difference
     });
 }
@@ -18,10 +18,10 @@ pub fn consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_dif
 /// Drops the disparities that the half-size map of the other view contradicts: twice the whole disparity of the
 /// half-size partner, or of the pixel to its left or right, must differ by at most `max_difference` / 256 px plus 1 px,
 /// since twice a whole half-size disparity is even.
-pub fn half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+pub fn half_consistency(dense: &mut Dense, view: View, other_disparities: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
         (-1..=1).any(|i| {
-            let other = others.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
+            let other = other_disparities.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
             other != NONE && disparity.abs_diff(2 * other) <= max_difference + HALF_GRAIN
         })
     });
@@ -62,8 +62,8 @@ mod tests {
         let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
         let mut dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
         // Partners: 0 of 0; 0 of 1; 1 of 2 (300 is nearest to one pixel); 1 of 3; outside.
-        let others = plane(&[40, 260, NONE, 0, 0, 0]);
-        consistency(&mut dense, View::Left, &others, 40);
+        let other_disparities = plane(&[40, 260, NONE, 0, 0, 0]);
+        consistency(&mut dense, View::Left, &other_disparities, 40);
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
         assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
 

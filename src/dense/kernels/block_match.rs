@@ -126,14 +126,14 @@ impl BlockMatch {
     }
 
     /// Matches the padded `planes` of `layout` at the disparities of `ranges`. The map goes to the beginning of
-    /// `matches`; winners have no confidences. With `others`, a match that the other view's winners contradict is
+    /// `matches`; winners have no confidences. With a `confirming` map, a match that the other view's winners contradict is
     /// dropped.
     pub fn prepare(
         &self,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
-        others: Option<ConfirmingMap<'_>>,
+        confirming: Option<ConfirmingMap<'_>>,
         matches: MapBuffer<'_>,
     ) -> Dispatch {
         let [reference_start, searched_start] = layout.starts(self.view);
@@ -149,15 +149,15 @@ impl BlockMatch {
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset: matches.layout.confidence_offset(),
-            max_difference: others.map_or(u32::MAX, |others| others.max_difference + self.grain),
-            others_first_row: others.map_or(0, |others| others.first_row),
-            others_width: others.map_or(1, |others| others.width),
+            max_difference: confirming.map_or(u32::MAX, |confirming| confirming.max_difference + self.grain),
+            others_first_row: confirming.map_or(0, |confirming| confirming.first_row),
+            others_width: confirming.map_or(1, |confirming| confirming.width),
         };
         let Tile { quads, height, across, down } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
         // The binding needs a texture even without winners of the other view.
-        let others = others.map_or(planes, |others| others.words);
-        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &others.view, matches.buffer], groups)
+        let confirming_words = confirming.map_or(planes, |confirming| confirming.words);
+        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &confirming_words.view, matches.buffer], groups)
     }
 }
 

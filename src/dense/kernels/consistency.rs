@@ -33,12 +33,12 @@ pub enum CheckedAgainst {
 #[derive(Debug)]
 pub struct Consistency {
     kernel: Kernel,
-    others: CheckedAgainst,
+    checked_against: CheckedAgainst,
 }
 
 impl Consistency {
     /// Source, bindings and constants of the kernel.
-    pub fn stage(others: CheckedAgainst) -> Stage {
+    pub fn stage(checked_against: CheckedAgainst) -> Stage {
         Stage {
             name: "consistency",
             source: include_str!("../../../shaders/dense/consistency.wgsl"),
@@ -49,15 +49,15 @@ impl Consistency {
                 ("SCALE", SCALE.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
                 ("NONE", NONE.into()),
-                ("CLAIMS", (others != CheckedAgainst::Disparities).into()),
+                ("CLAIMS", (checked_against != CheckedAgainst::Disparities).into()),
                 ("INDEX_BITS", SUM_INDEX_BITS.into()),
             ],
         }
     }
 
     /// Compiles the kernel.
-    pub fn new(gpu: &Gpu, others: CheckedAgainst) -> Self {
-        Self { kernel: Kernel::new(gpu, &Self::stage(others)), others }
+    pub fn new(gpu: &Gpu, checked_against: CheckedAgainst) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(checked_against)), checked_against }
     }
 
     /// Drops from the first `rows` rows of `matches` of `view` the disparities that differ by more than
@@ -68,9 +68,9 @@ impl Consistency {
         rows: u32,
         view: View,
         max_difference: u32,
-        others: &wgpu::Buffer,
+        other_disparities: &wgpu::Buffer,
     ) -> Dispatch {
-        let min_disparity = match self.others {
+        let min_disparity = match self.checked_against {
             CheckedAgainst::Disparities => 0,
             CheckedAgainst::Claims(min_disparity) => min_disparity,
         };
@@ -78,6 +78,6 @@ impl Consistency {
         let direction = view.direction();
         let params = Params { width, rows, direction, max_difference, confidence_offset, min_disparity };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.kernel.dispatch(&params, &[others, matches.buffer], groups)
+        self.kernel.dispatch(&params, &[other_disparities, matches.buffer], groups)
     }
 }

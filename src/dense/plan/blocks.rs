@@ -60,7 +60,7 @@ pub(in crate::dense) fn plan(
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, tile)?;
-        let (ranges, others) = match &coarse {
+        let (ranges, confirming) = match &coarse {
             None => (&whole_range, None),
             Some(coarse) => coarse.plan(&mut plan, &pad, &block_match, (first_row, rows))?,
         };
@@ -68,11 +68,11 @@ pub(in crate::dense) fn plan(
             plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
-        let others = match &other_winners {
-            None => others,
+        let confirming = match &other_winners {
+            None => confirming,
             Some(view) => Some(view.plan(&mut plan, (&layout, &planes.1), ranges, 0)),
         };
-        plan.run(block_match.prepare(&layout, &planes.1, ranges, others, matches));
+        plan.run(block_match.prepare(&layout, &planes.1, ranges, confirming, matches));
         plan.hand_out(matches, first_row, rows);
     }
     if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {

@@ -96,13 +96,13 @@ impl Coarse {
             plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
-        let others = self
+        let confirming = self
             .other_winners
             .as_ref()
             .map(|other| other.plan(plan, (&layout, &self.planes.1), &self.whole, band.map_start));
         let map = MapBuffer { buffer: &self.map, layout: MapLayout { width: band.map_width, rows: band.map_rows } };
         plan.run(block_match.prepare(&layout, &self.planes.1, &self.whole, None, map));
         plan.run(self.cell_ranges.prepare(&band, &self.map, &self.ranges.buffer));
-        Ok((&self.ranges, others))
+        Ok((&self.ranges, confirming))
     }
 }

@@ -87,8 +87,8 @@ pub(in crate::dense) fn plan(
             side.match_band(&mut plan, &workspace, index);
         }
         let matches = MapBuffer { buffer: &reference.matches, layout };
-        if let Some((max_difference, consistency, others)) = &check {
-            let others = match others {
+        if let Some((max_difference, consistency, source)) = &check {
+            let other_disparities = match source {
                 OtherSource::Searched(other) => &other.matches,
                 OtherSource::Claimed(claim, claims) => {
                     plan.clear(claims);
@@ -96,7 +96,7 @@ pub(in crate::dense) fn plan(
                     claims
                 }
             };
-            plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, others));
+            plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, other_disparities));
         }
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
     }

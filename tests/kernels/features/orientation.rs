@@ -13,8 +13,8 @@ fn at(picture: &Luma, points: &[[f32; 3]]) -> OrientationTrial {
 fn orientations(picture: &Luma, points: &[[f32; 3]]) -> Vec<f32> {
     let trial = at(picture, points);
     let oriented = trial.oriented(&bench()).unwrap();
-    for (found, given) in oriented.iter().zip(&trial.keypoints) {
-        assert_eq!(Keypoint { orientation: given.orientation, ..*found }, *given, "only the orientation is written");
+    for (found, input) in oriented.iter().zip(&trial.keypoints) {
+        assert_eq!(Keypoint { orientation: input.orientation, ..*found }, *input, "only the orientation is written");
     }
     oriented.into_iter().map(|keypoint| keypoint.orientation).collect()
 }

@@ -164,15 +164,15 @@ impl NonmaxTrial {
     /// Outputs of the trial, with `found` keypoints found. If more are found than fit in the list, which of them are
     /// kept is not determined.
     fn arrays(&self, found: u32, keypoints: &[Keypoint]) -> Vec<Array> {
-        let kept = if found > self.config.max_features { &[] } else { keypoints };
+        let listed = if found > self.config.max_features { &[] } else { keypoints };
         let samples = |k: &Keypoint| [k.octave, k.index, k.response.cast_unsigned(), k.orientation.to_bits()];
         let places = |k: &Keypoint| [k.x, k.y, k.scale];
         vec![
             Array::exact("number found", vec![found]),
-            Array::exact("octave, index, response, orientation", kept.iter().flat_map(samples).collect::<Vec<_>>()),
+            Array::exact("octave, index, response, orientation", listed.iter().flat_map(samples).collect::<Vec<_>>()),
             Array {
                 name: "x, y, scale",
-                values: kept.iter().flat_map(places).collect::<Vec<_>>().into(),
+                values: listed.iter().flat_map(places).collect::<Vec<_>>().into(),
                 tolerance: PLACES,
             },
         ]
