@@ -1,4 +1,4 @@
-//! What computes: a device, or the CPU twins.
+//! Where the computation runs: on a GPU, or on the CPU twins.
 
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;
@@ -13,29 +13,29 @@ use crate::{
     kamencay::{self, KamencayConfig},
 };
 
-/// What computes: a device, or the CPU twins.
+/// Where the computation runs: on a GPU, or on the CPU twins.
 #[derive(Debug)]
 pub enum Backend {
-    /// The kernels on a device.
+    /// The kernels, on a device.
     Gpu(Gpu),
-    /// The CPU twins, which take longer and need nothing. Dense results are the same bytes.
+    /// The CPU twins: slower, but without any device. Dense results are bit for bit those of the kernels.
     Cpu,
 }
 
 impl Backend {
-    /// Opens what was asked for.
+    /// Opens the backend of `choice`.
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
         block_on(Self::open_async(choice))
     }
 
-    /// As [`Backend::open`], awaited.
+    /// The asynchronous [`Backend::open`].
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
         match choice {
             DeviceChoice::Cpu => Ok(Self::Cpu),
@@ -51,7 +51,7 @@ impl Backend {
         }
     }
 
-    /// The graphics interface it is reached by.
+    /// The graphics API of the device, or "none".
     pub fn api(&self) -> String {
         match self {
             Self::Gpu(gpu) => gpu.info().backend.to_string(),
@@ -59,7 +59,7 @@ impl Backend {
         }
     }
 
-    /// The driver and its version.
+    /// The driver and its version, or "none".
     pub fn driver(&self) -> String {
         match self {
             Self::Gpu(gpu) => {
@@ -70,10 +70,10 @@ impl Backend {
         }
     }
 
-    /// The interest points of one picture alone; for those of a pair there is [`crate::pair::Pair::features`].
+    /// The interest points of a single picture; see [`crate::pair::Pair::features`] for both views of a pair.
     ///
     /// # Errors
-    /// As [`crate::features::detect`].
+    /// See [`crate::features::detect`].
     pub async fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self {
             Self::Gpu(gpu) => features::detect(gpu, luma, config).await,
@@ -81,10 +81,10 @@ impl Backend {
         }
     }
 
-    /// The disparities of a pair by Kamencay's method, which sees the colours of the pictures.
+    /// The disparity map of a pair by Kamencay's method, which uses the colours of the pictures.
     ///
     /// # Errors
-    /// As [`kamencay::compute`].
+    /// See [`kamencay::compute`].
     pub async fn kamencay(&self, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
         match self {
             Self::Gpu(gpu) => kamencay::compute(gpu, left, right, config).await,

@@ -5,34 +5,34 @@ use crate::{
     image::Plane,
 };
 
-/// Steps of a fixed-point disparity in a pixel: 1/256 px, so that a KITTI 16-bit PNG loses nothing.
+/// Fixed-point steps per pixel: disparities are in 1/256 px, so that KITTI 16-bit PNGs are kept exactly.
 pub const SCALE: i32 = 256;
 
-/// The fixed-point disparity that says 'none here'. Zero is a disparity like any other.
+/// The sentinel of a pixel without disparity. Zero is a disparity like any other.
 pub const NONE: i32 = i32::MIN;
 
-/// The number that says 'none here' in a texture of disparities in pixels: [`NONE`] / [`SCALE`], below every disparity.
-/// A number, since shaders need not know infinities or what is not a number.
+/// The sentinel in a texture of disparities in pixels: [`NONE`] / [`SCALE`], below every disparity. It is finite
+/// because WGSL does not guarantee infinities and NaN.
 pub const NONE_IN_PIXELS: f32 = NONE as f32 / SCALE as f32;
 
-/// A disparity a pixel, in 1/256 px, or [`NONE`].
+/// One disparity per pixel, in 1/256 px, or [`NONE`].
 ///
 /// In the left view's map, pixel `(x, y)` with disparity `d` corresponds to `(x - d, y)` of the
 /// right view; in the right view's map, `(x, y)` corresponds to `(x + d, y)` of the left.
 pub type DisparityMap = Plane<i32>;
 
-/// A fixed-point disparity in pixels, or `None`.
+/// Converts a fixed-point disparity to pixels; `None` for [`NONE`].
 pub fn pixels(disparity: i32) -> Option<f32> {
     (disparity != NONE).then(|| disparity as f32 / SCALE as f32)
 }
 
-/// The nearest fixed-point disparity of one in pixels (halves away from 0); [`NONE`] for what is not finite.
+/// Converts a disparity in pixels to fixed point, rounded, halves away from 0; [`NONE`] for infinities and NaN.
 pub fn fixed_point(pixels: f32) -> i32 {
-    // A cast saturates, at one end at NONE itself.
+    // The cast saturates; its lower end is NONE itself.
     if pixels.is_finite() { ((pixels * SCALE as f32).round() as i32).max(NONE + 1) } else { NONE }
 }
 
-/// A map in pixels, +inf where there is [`NONE`].
+/// Converts a map to pixels, with +inf for [`NONE`].
 pub fn in_pixels(map: &DisparityMap) -> Plane<f32> {
     map.map(|&d| pixels(d).unwrap_or(f32::INFINITY))
 }
@@ -47,15 +47,15 @@ pub fn coverage(map: &DisparityMap) -> f64 {
 pub struct DisparityRange {
     /// The smallest disparity, in pixels; may be negative.
     pub min: i32,
-    /// How many disparities there are, at least 1.
+    /// Number of disparities, at least 1.
     pub count: u32,
 }
 
 impl DisparityRange {
-    /// The largest magnitude of a disparity that is accepted, in pixels.
+    /// Largest accepted magnitude of a disparity, in pixels.
     pub const LIMIT: i32 = 1 << 20;
 
-    /// The `count` disparities from `min` on.
+    /// A range of `count` disparities from `min`, in whole pixels.
     ///
     /// # Errors
     /// [`Error::Parameter`] if `count` is 0 or an end lies beyond [`Self::LIMIT`].
@@ -79,21 +79,21 @@ impl DisparityRange {
         Ok(Self { min, count })
     }
 
-    /// From the smallest to the largest disparity, both included.
+    /// A range from its smallest to its largest disparity, both included, in whole pixels.
     ///
     /// # Errors
-    /// As [`Self::new`]; also if `last` is below `first`.
+    /// See [`Self::new`]; also if `last` is below `first`.
     pub fn inclusive(first: i32, last: i32) -> Result<Self> {
         let count = i64::from(last) - i64::from(first) + 1;
         Self::new(first, u32::try_from(count).unwrap_or(0))
     }
 
-    /// The largest disparity.
+    /// The largest disparity, in pixels.
     pub fn last(&self) -> i32 {
         self.min + (self.count - 1) as i32
     }
 
-    /// Whether `disparity` (whole pixels) is one of the range.
+    /// Whether `disparity`, in whole pixels, lies in the range.
     pub fn contains(&self, disparity: i32) -> bool {
         (self.min..=self.last()).contains(&disparity)
     }

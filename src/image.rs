@@ -1,4 +1,4 @@
-//! Planes of values, and luma, the only picture that the kernels see.
+//! Planes of values, and luma, the picture format of the kernels.
 
 use crate::error::{Error, Result};
 pub use crate::size::Size;
@@ -21,8 +21,8 @@ pub const fn luma_of([red, green, blue]: [u8; 3]) -> u8 {
     ((77 * red as u32 + 150 * green as u32 + 29 * blue as u32 + 128) >> 8) as u8
 }
 
-/// A picture smaller by a whole `factor`: the rounded mean of each block of `factor` x `factor` pixels, or of what the
-/// picture has of it.
+/// Downscales by an integer `factor`: each pixel is the rounded mean of a block of `factor` x `factor` pixels, cut off
+/// at the edges of the picture.
 ///
 /// # Panics
 /// If `factor` is 0.
@@ -58,7 +58,7 @@ impl<T> Plane<T> {
         Ok(Self { size, data })
     }
 
-    /// The value of `f(x, y)` everywhere.
+    /// A plane of the values `f(x, y)`, called row by row.
     ///
     /// # Panics
     /// If a side is 0.
@@ -80,7 +80,7 @@ impl<T> Plane<T> {
         self.size.height
     }
 
-    /// Width and height.
+    /// Width and height, in pixels.
     pub fn size(&self) -> Size {
         self.size
     }
@@ -90,30 +90,30 @@ impl<T> Plane<T> {
         &self.data
     }
 
-    /// All values, row by row, to be changed.
+    /// All values, row by row, mutable.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// All values, row by row.
+    /// Unwraps the values, row by row.
     pub fn into_data(self) -> Vec<T> {
         self.data
     }
 
-    /// Row `y`.
+    /// The values of row `y`.
     pub fn row(&self, y: u32) -> &[T] {
         let width = self.size.width as usize;
         &self.data[y as usize * width..][..width]
     }
 
-    /// A plane of the same size with `f` of each value.
+    /// Applies `f` to each value.
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Plane<U> {
         Plane { size: self.size, data: self.data.iter().map(f).collect() }
     }
 }
 
 impl<T: Copy> Plane<T> {
-    /// `value` everywhere.
+    /// A plane with `value` everywhere.
     ///
     /// # Panics
     /// If a side is 0.
@@ -133,7 +133,7 @@ impl<T: Copy> Plane<T> {
         self.data[y as usize * self.size.width as usize + x as usize] = value;
     }
 
-    /// The value at the pixel of the plane that is nearest to `(x, y)`: the edge goes on for ever.
+    /// The value at `(x, y)`, with coordinates clamped to the plane.
     pub fn get_clamped(&self, x: i64, y: i64) -> T {
         let x = x.clamp(0, i64::from(self.size.width) - 1) as u32;
         let y = y.clamp(0, i64::from(self.size.height) - 1) as u32;

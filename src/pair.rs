@@ -1,4 +1,4 @@
-//! Two views ready for work: their luma, where the work is done.
+//! A pair of views as luma, on the backend that matches them.
 
 use crate::{
     backend::Backend,
@@ -21,7 +21,7 @@ pub struct Pair<'b> {
     device: Option<OnDevice<'b>>,
 }
 
-/// Packed luma, left and right, on a device.
+/// Packed luma of both views on a device.
 #[derive(Debug)]
 struct OnDevice<'b> {
     gpu: &'b Gpu,
@@ -29,10 +29,10 @@ struct OnDevice<'b> {
 }
 
 impl<'b> Pair<'b> {
-    /// Brings two pictures to the backend and turns them into luma there.
+    /// Uploads two pictures to the backend and converts them to luma there.
     ///
     /// # Errors
-    /// [`Error::SizesDiffer`]; [`Error::Unsupported`] for a limit that the device lacks; [`Error::TooLarge`],
+    /// [`Error::SizesDiffer`]; [`Error::Unsupported`] if the device lacks a limit; [`Error::TooLarge`],
     /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
     pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
         if left.size() != right.size() {
@@ -57,7 +57,7 @@ impl<'b> Pair<'b> {
         (&self.left, &self.right)
     }
 
-    /// The pair smaller by a whole `factor`, each pixel the mean of a block.
+    /// Downscales the pair by an integer `factor`: each pixel is the mean of a block.
     ///
     /// # Errors
     /// [`Error::TooLarge`], [`Error::OutOfMemory`].
@@ -72,7 +72,7 @@ impl<'b> Pair<'b> {
         Ok(Self { backend: self.backend, left, right, device })
     }
 
-    /// Width and height of both views.
+    /// Width and height of both views, in pixels.
     pub fn size(&self) -> Size {
         self.left.size()
     }
@@ -80,7 +80,7 @@ impl<'b> Pair<'b> {
     /// The interest points of both views.
     ///
     /// # Errors
-    /// As [`crate::features::detect`].
+    /// See [`crate::features::detect`].
     pub async fn features(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
         let Some(OnDevice { gpu, luma: [left, right] }) = &self.device else {
             let detect = |view| cpu::features::detector::detect(view, config);
@@ -90,10 +90,10 @@ impl<'b> Pair<'b> {
         Ok([detector.detect(left).await?, detector.detect(right).await?])
     }
 
-    /// A disparity for each pixel of the reference view.
+    /// Dense matching: a disparity and a confidence for each pixel of the reference view.
     ///
     /// # Errors
-    /// As [`crate::dense::compute`].
+    /// See [`crate::dense::compute`].
     pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
         match &self.device {
             Some(OnDevice { gpu, luma }) => {
@@ -104,7 +104,7 @@ impl<'b> Pair<'b> {
     }
 }
 
-/// The luma of a picture, on the device and on the host. The colours of a large picture get there in bands of rows:
+/// Converts a picture to luma, on the device and on the host. Large pictures are uploaded in bands of rows, since
 /// colours take four times the memory of luma.
 async fn luma_on(gpu: &Gpu, kernel: &RgbaToLuma, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
     let Size { width, height } = picture.size();

@@ -1,4 +1,5 @@
-//! The regression suite itself, without a device: it covers every kernel, its inputs are reproducible, its hashes hold.
+//! The verification suite itself, without a device: it covers every kernel, its inputs are reproducible, its hashes
+//! match.
 #![cfg(feature = "verify")]
 
 use std::collections::BTreeSet;
@@ -29,7 +30,7 @@ fn a_case_is_the_same_each_time() {
     }
 }
 
-/// A map of a few flat pieces would hide what is wrong with penalties, checks and filters.
+/// A map of a few flat pieces would hide errors of penalties, checks and filters.
 #[test]
 fn pipelines_have_something_to_decide() {
     let dense = ["fast", "balanced", "quality", "paper"];
@@ -41,7 +42,7 @@ fn pipelines_have_something_to_decide() {
     }
 }
 
-/// Where this fails and the twins are meant to have changed, `cargo run --example goldens` makes the hashes anew.
+/// If this fails after an intended change of the twins, `cargo run --example goldens` computes the hashes again.
 #[test]
 fn the_twins_leave_what_is_stored() {
     let (stored, current) = (goldens::text(), goldens::current().unwrap());
@@ -49,13 +50,13 @@ fn the_twins_leave_what_is_stored() {
         assert_eq!(stored, current);
     }
     assert_eq!(stored.lines().count(), current.lines().count());
-    // Orientations come with the exact rest of the keypoint; descriptors are nothing but floats.
+    // Orientations are stored with the exact members of the keypoint; descriptors have floats only.
     let without = |name: &str| !stored.lines().any(|line| line.starts_with(&format!("{name} ")));
     let without: Vec<_> = subjects().map(|subject| subject.name).filter(|name| without(name)).collect();
     assert_eq!(without, ["descriptor"]);
 }
 
-/// What the thing from value `at` of `good` on, which has tolerances, could be instead if a kernel were wrong.
+/// Wrong values for the group at value `at` of `good`, an array with tolerances.
 fn garbage(good: &Array, at: usize) -> Vec<Vec<f32>> {
     let (Values::F32(values), Tolerance::Within { angles, group, length, outliers, .. }) =
         (&good.values, good.tolerance)
@@ -71,7 +72,7 @@ fn garbage(good: &Array, at: usize) -> Vec<Vec<f32>> {
     if length.is_some() && thing.iter().any(|&value| value != 0.0) {
         let times = |factor: f32| thing.iter().map(|value| factor * value).collect();
         garbage.extend([0.0, 0.98, 2.0].map(times));
-        // As long as it should be, and another one: only where an orientation can be another one, that can be right.
+        // The right length, but another vector: valid only where an orientation can be another one.
         if outliers.is_none_or(|outliers| outliers.difference < 0.1) {
             garbage.extend([times(-1.0), [&thing[5..], &thing[..5]].concat()]);
         }
@@ -79,7 +80,7 @@ fn garbage(good: &Array, at: usize) -> Vec<Vec<f32>> {
     garbage
 }
 
-/// As many things as may be off are no room for any that nothing explains, wherever it stands and however few there are.
+/// Accepted outliers leave no room for an inexplicable group, wherever it is and however few there are.
 #[test]
 fn garbage_in_one_thing_is_noticed() {
     let inexact = ["nonmax", "orientation", "descriptor", "features"];
@@ -105,7 +106,7 @@ fn garbage_in_one_thing_is_noticed() {
             {
                 assert!(noticed(at, &thing), "{case:?}, {} from {at} on: {thing:?}", good.name);
             }
-            // A little off: only where there are many, and something may be.
+            // Slightly off: accepted only if outliers are, and among enough groups.
             let Values::F32(values) = &good.values else { unreachable!("what has a tolerance is a float") };
             let mut thing = values[..group].to_vec();
             thing[0] += 0.04;
@@ -118,11 +119,11 @@ fn garbage_in_one_thing_is_noticed() {
             }
         }
     }
-    // There are some of either kind.
+    // Arrays of both kinds occur.
     assert!(without_outliers > 20 && with_outliers > 2, "{without_outliers} {with_outliers}");
 }
 
-/// Whatever a device was chosen by, a shell gives it back.
+/// A shell passes the device's name on unchanged, whatever its characters.
 #[test]
 fn the_command_names_the_device() {
     let case = Case::new("pad", (17, 13), 5).unwrap();

@@ -1,7 +1,7 @@
-//! The CPU twins: every stage written from its definition, for reading, with no GPU in sight.
+//! The CPU twins: every stage written from its definition, for reading, without a GPU.
 //!
-//! The twins are what the kernels are tested against, and what computes where there is no adapter. Integer stages equal
-//! their kernels bit for bit. A twin has its stage's name: `cpu::dense::census` is the twin of `shaders/dense/census.wgsl`.
+//! Kernels are tested against the twins, and the twins compute where there is no adapter. Integer stages equal their
+//! kernels bit for bit. A twin has its stage's name: `cpu::dense::census` is the twin of `shaders/dense/census.wgsl`.
 
 pub mod dense;
 pub mod features;

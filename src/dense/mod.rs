@@ -1,12 +1,11 @@
-//! The dense half (paper, step 5): a disparity for every pixel.
+//! Dense matching (paper, step 5): a disparity for every pixel.
 //!
-//! Blocks: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views; coarse to fine, both
-//! are matched at half the size before, the reference view to tell for each cell of the picture which disparities are
-//! worth searching, the other one to confirm what is found, and only the reference view at the whole size.
-//! Semi-globally: padding -> census -> cost -> mean over a window, if wanted -> paths -> selection of one view or
-//! both; without paths it is block matching by those costs. Then, for either:
-//! left-right consistency -> residuals and support -> medians and filling. All of it is integer arithmetic and equals
-//! the CPU twins bit for bit.
+//! Block matching: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views. Coarse to
+//! fine, both views are matched at half the size first: the reference view gives each cell of the picture the
+//! disparities worth searching, the other view confirms matches; only the reference view is matched at full size.
+//! Semi-global matching: padding -> census -> cost -> optional mean over a window -> paths -> selection, of one view or
+//! both; without paths it is block matching by these costs. Both then go on: left-right consistency -> residuals and
+//! support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for bit.
 
 pub(crate) mod config;
 mod inputs;

@@ -1,24 +1,26 @@
-//! What to look for, and what is found.
+//! Parameters of interest points, and the interest points themselves.
 
 use crate::error::{Result, check, check_range};
 
-/// Values in a descriptor.
+/// Number of values of a descriptor.
 pub const DESCRIPTOR_LENGTH: usize = 64;
 
-/// How interest points are found and described.
+/// Parameters of detection and description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureConfig {
-    /// Octaves of filter sizes, 1 to 5. Each has four intervals: 9 15 21 27, 15 27 39 51,
-    /// 27 51 75 99, 51 99 147 195, 99 195 291 387.
+    /// Octaves, 1 to 5; 5 by default. Each has four filter sizes, in pixels: 9 15 21 27, 15 27 39 51, 27 51 75 99, 51
+    /// 99 147 195, 99 195 291 387.
     pub octaves: u32,
-    /// Sampling step of the first octave in pixels, 1 or 2; it doubles with each octave.
+    /// Sampling step of the first octave, 1 or 2 pixels; 1 by default. It doubles with each octave.
     pub step: u32,
-    /// The least determinant of the Hessian, on OpenSURF's scale (grey values 0 to 1). OpenSURF's own
-    /// default is 0.0004; the default here finds nearly twice the matches, of which more are right.
+    /// Least determinant of the Hessian, above 0 and at most 1, on OpenSURF's scale (grey values 0 to 1); 0.0001 by
+    /// default. OpenSURF's own default is 0.0004; the default here finds nearly twice the matches, and a larger share
+    /// of them is right.
     pub threshold: f32,
-    /// Leave the orientation at 0: better for rectified pairs, where nothing is rotated.
+    /// Whether orientations stay 0, the default: better for rectified pairs, where nothing is rotated.
     pub upright: bool,
-    /// Room for this many interest points; more of them is an error, never a silent cut.
+    /// Capacity of the keypoint list, 1 to 1,048,576; 65,536 by default. More interest points are an error, never a
+    /// silent cut.
     pub max_features: u32,
 }
 
@@ -29,7 +31,7 @@ impl Default for FeatureConfig {
 }
 
 impl FeatureConfig {
-    /// Refuses what no kernel could work with.
+    /// Checks that all values lie in their ranges.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the accepted range.
@@ -53,8 +55,7 @@ pub struct Feature {
     pub x: f32,
     /// Row of its centre in pixels.
     pub y: f32,
-    /// Scale: the standard deviation, in pixels, of the Gaussian that the filter stands for
-    /// (1.2 for the 9x9 filter).
+    /// Scale, in pixels: the standard deviation of the Gaussian that the filter approximates (1.2 for the 9x9 filter).
     pub scale: f32,
     /// Determinant of the Hessian at the sample, on OpenSURF's scale.
     pub response: f32,
@@ -62,6 +63,6 @@ pub struct Feature {
     pub dark: bool,
     /// Direction of the dominant gradient in radians, 0 to 2 pi, x to y; 0 in upright mode.
     pub orientation: f32,
-    /// 64 values of unit length, or all 0 where the surroundings are flat.
+    /// 64 values, of unit length as a vector, or all 0 where the surroundings are flat.
     pub descriptor: [f32; DESCRIPTOR_LENGTH],
 }

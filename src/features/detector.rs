@@ -1,4 +1,4 @@
-//! The whole sparse half for pictures of one size.
+//! The detector: all stages of sparse features, for pictures of one size.
 
 use super::{
     DESCRIPTOR_LENGTH, Feature, FeatureConfig,
@@ -23,9 +23,9 @@ use crate::{
 
 /// Finds and describes the interest points of pictures of one size, with all memory allocated once.
 ///
-/// What it finds stays on the device, in [`Self::keypoints`] and [`Self::descriptors`], for kernels of the application to
-/// read, or to be copied to the host by a [`Self::readback`] that nothing has to wait for. [`Self::read`] copies no more than was
-/// found, and waits.
+/// The results stay on the device, in [`Self::keypoints`] and [`Self::descriptors`], for the application's own kernels.
+/// A [`Self::readback`] copies them to the host without waiting; [`Self::read`] copies only as many as were found, and
+/// waits.
 #[derive(Debug)]
 pub struct Detector {
     gpu: Gpu,
@@ -36,11 +36,11 @@ pub struct Detector {
     descriptors: wgpu::Buffer,
     size: Size,
     integral_rows: IntegralRows,
-    /// From the sums along the rows to the descriptors, in order.
+    /// All dispatches after the row sums, in order.
     dispatches: Vec<Dispatch>,
 }
 
-/// A picture that a [`Detector`] reads: see [`Detector::input`].
+/// A picture bound to a [`Detector`]: see [`Detector::input`].
 #[derive(Debug)]
 pub struct DetectorInput {
     dispatch: Dispatch,
@@ -57,8 +57,8 @@ impl Detector {
     /// The device's adapter needs [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`].
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] where `config` is out of range, [`crate::Error::TooLarge`] where the device
-    /// cannot bind a buffer of the size needed, [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`].
+    /// [`Error::Parameter`] if `config` is out of range, [`Error::TooLarge`] if the device cannot bind a
+    /// buffer of the size needed, [`Error::OutOfMemory`], [`Error::Unsupported`].
     pub async fn new(gpu: &Gpu, size: impl Into<Size>, config: &FeatureConfig) -> Result<Self> {
         let size = size.into();
         config.validate()?;
@@ -96,12 +96,12 @@ impl Detector {
         .await
     }
 
-    /// Prepares the reading of `luma`, a packed picture of the detector's size (see [`crate::luma`]) in a buffer with
-    /// `STORAGE`; the input holds on to the buffer.
+    /// Binds `luma`, a packed picture of the detector's size (see [`crate::luma`]) in a buffer with usage `STORAGE`.
+    /// The input keeps the buffer alive.
     ///
     /// # Errors
-    /// [`crate::Error::Resource`] for a buffer that does not hold such a picture; [`crate::Error::Unsupported`] with what
-    /// else the device has against it.
+    /// [`Error::Resource`] if the buffer is too small or lacks the usage; [`Error::Unsupported`] with
+    /// any other validation error of the device.
     pub async fn input(&self, luma: &wgpu::Buffer) -> Result<DetectorInput> {
         check_packed(luma, self.size)?;
         let prepare = || Ok(self.integral_rows.prepare(self.size, luma, &self.integral));
@@ -111,34 +111,34 @@ impl Detector {
         Ok(input)
     }
 
-    /// The features of `luma`: prepared, submitted and read.
+    /// Detects the features of `luma`: binds it, submits all stages and reads the results.
     ///
     /// # Errors
-    /// Those of [`Self::input`] and [`Self::read`].
+    /// See [`Self::input`] and [`Self::read`].
     pub async fn detect(&self, luma: &wgpu::Buffer) -> Result<Vec<Feature>> {
         let input = self.input(luma).await?;
         submit(&self.gpu, |encoder| self.record(encoder, &input)).await?;
         self.read().await
     }
 
-    /// Bytes of device memory that this detector holds, besides the picture: mostly those for
-    /// [`FeatureConfig::max_features`] descriptors.
+    /// Device memory of this detector without the picture, in bytes: mostly that of [`FeatureConfig::max_features`]
+    /// descriptors.
     pub fn memory(&self) -> u64 {
         let buffers = [&self.integral, self.list.found(), self.list.keypoints(), &self.groups, &self.descriptors];
         buffers.into_iter().chain(&self.responses).map(wgpu::Buffer::size).sum()
     }
 
-    /// How many keypoints were found, and what they are.
+    /// The keypoints and their number.
     pub fn keypoints(&self) -> &KeypointList {
         &self.list
     }
 
-    /// The descriptors: [`DESCRIPTOR_LENGTH`] values of `f32` for each keypoint, in the order of the list.
+    /// The descriptors: [`DESCRIPTOR_LENGTH`] `f32` per keypoint, in the order of the list.
     pub fn descriptors(&self) -> &wgpu::Buffer {
         &self.descriptors
     }
 
-    /// Records everything from the integral image of `input` to the descriptors. What was found before is overwritten.
+    /// Records all stages from the integral image of `input` to the descriptors. The previous results are overwritten.
     ///
     /// # Panics
     /// If `input` was prepared for another detector.
@@ -149,11 +149,12 @@ impl Detector {
         self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
     }
 
-    /// Memory of the host for the features of a frame, prepared once, for an application that does not want to wait: for as
-    /// many frames in flight there are as many. It has room for [`FeatureConfig::max_features`], all of which is copied.
+    /// Allocates staging buffers for the features of one frame, for applications that must not wait; allocate one
+    /// readback per frame in flight. Its size is that of [`FeatureConfig::max_features`] features, and all of it is
+    /// copied.
     ///
     /// # Errors
-    /// [`crate::Error::OutOfMemory`], [`crate::Error::DeviceLost`].
+    /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
     pub async fn readback(&self) -> Result<FeatureReadback> {
         let gpu = &self.gpu;
         guarded(gpu, "the features", || {
@@ -168,20 +169,20 @@ impl Detector {
         .await
     }
 
-    /// Records the copy of what was found, after [`Self::record`].
+    /// Records the copy of the features to `readback`, after [`Self::record`].
     pub fn record_readback(&self, encoder: &mut wgpu::CommandEncoder, readback: &FeatureReadback) {
         readback.count.record(encoder, self.list.found());
         readback.keypoints.record(encoder, self.list.keypoints());
         readback.descriptors.record(encoder, &self.descriptors);
     }
 
-    /// Waits for the recorded work, once submitted, and returns the features that were found, sorted by octave,
-    /// layer, row and column.
+    /// Waits for the submitted work and returns the features, sorted by octave, layer, row and column.
     ///
-    /// Only as much is copied as was found, which takes two submissions.
+    /// Copies only the features found, which takes two submissions.
     ///
     /// # Errors
-    /// [`crate::Error::TooManyFeatures`] where more was found than there is room for; [`crate::Error::DeviceLost`].
+    /// [`Error::TooManyFeatures`] if more features were found than [`FeatureConfig::max_features`];
+    /// [`Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
         let (gpu, list) = (&self.gpu, &self.list);
         let count = submit(gpu, |encoder| {
@@ -190,30 +191,30 @@ impl Detector {
             count
         })
         .await?;
-        let found = count.read::<u32>(1).await?[0];
-        if found > list.capacity() {
-            return Err(Error::TooManyFeatures { found: found as usize, room: list.capacity() });
+        let keypoint_count = count.read::<u32>(1).await?[0];
+        if keypoint_count > list.capacity() {
+            return Err(Error::TooManyFeatures { found: keypoint_count as usize, room: list.capacity() });
         }
-        if found == 0 {
+        if keypoint_count == 0 {
             return Ok(Vec::new());
         }
-        let found = found as usize;
-        // Staging of its own for each call, so that several threads may read.
+        let keypoint_count = keypoint_count as usize;
+        // Each call has its own staging buffers, so that several threads can read.
         let (keypoints, descriptors) = submit(gpu, |encoder| {
-            let keypoints = Readback::new(gpu, "keypoints", (found * size_of::<Keypoint>()) as u64);
-            let descriptors = Readback::new(gpu, "descriptors", (found * size_of::<Values>()) as u64);
+            let keypoints = Readback::new(gpu, "keypoints", (keypoint_count * size_of::<Keypoint>()) as u64);
+            let descriptors = Readback::new(gpu, "descriptors", (keypoint_count * size_of::<Values>()) as u64);
             keypoints.record(encoder, list.keypoints());
             descriptors.record(encoder, &self.descriptors);
             (keypoints, descriptors)
         })
         .await?;
-        let keypoints = keypoints.read::<Keypoint>(found).await?;
-        let descriptors = descriptors.read::<Values>(found).await?;
+        let keypoints = keypoints.read::<Keypoint>(keypoint_count).await?;
+        let descriptors = descriptors.read::<Values>(keypoint_count).await?;
         Ok(collect(&keypoints, &descriptors))
     }
 }
 
-/// The features of the keypoints of a list, each with its descriptor, sorted by octave, layer, row and column.
+/// Combines keypoints and their descriptors to features, sorted by octave, layer, row and column.
 pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]]) -> Vec<Feature> {
     let mut features: Vec<_> = keypoints.iter().zip(descriptors).collect();
     features.sort_unstable_by_key(|(keypoint, _)| keypoint.key());
@@ -222,16 +223,16 @@ pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]])
 
 /// Finds and describes the interest points of one picture.
 ///
-/// For more than one picture of a size, a [`Detector`] does the preparations once.
+/// For several pictures of one size, create a [`Detector`] once.
 ///
 /// # Errors
-/// Those of [`Detector::new`] and [`Detector::read`].
+/// See [`Detector::new`] and [`Detector::read`].
 pub async fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
     let buffer = upload(gpu, picture).await?;
     Detector::new(gpu, picture.size(), config).await?.detect(&buffer).await
 }
 
-/// Submits what `record` records; what it returns.
+/// Submits the commands that `record` encodes, and returns its result.
 async fn submit<T>(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> T) -> Result<T> {
     guarded(gpu, "finding interest points", || {
         let mut encoder = gpu.encoder("features");

@@ -1,4 +1,4 @@
-//! Keypoints as the kernels see them: a list that grows by an atomic counter.
+//! Keypoints on the device: a list with an atomic counter.
 
 use crate::{
     error::Result,
@@ -6,34 +6,34 @@ use crate::{
 };
 
 shader_struct! {
-    /// A maximum of the determinant, as found on the device; `shaders/shared/keypoint.wgsl`.
+    /// A maximum of the determinant, as the device writes it; `shaders/shared/keypoint.wgsl`.
     #[derive(PartialEq)]
     pub struct Keypoint {
-        /// Column in pixels.
+        /// Column, in pixels.
         pub x: f32,
-        /// Row in pixels.
+        /// Row, in pixels.
         pub y: f32,
-        /// Scale in pixels; 1.2 for the 9x9 filter.
+        /// Scale, in pixels; 1.2 for the 9x9 filter.
         pub scale: f32,
-        /// Radians, 0 to 2 pi; 0 until it is known, and in upright mode.
+        /// Orientation, in radians, 0 to 2 pi; 0 before the orientation stage and in upright mode.
         pub orientation: f32,
-        /// The response word of the sample: `determinant << 1 | (trace > 0)`.
+        /// Response of the sample: `determinant << 1 | (trace > 0)`.
         pub response: i32,
-        /// The octave.
+        /// Octave, from 0.
         pub octave: u32,
-        /// The sample within its octave: `((layer - 1) * rows + row) * columns + column` of the grid.
+        /// Index of the sample in its octave: `((layer - 1) * rows + row) * columns + column` of the grid.
         pub index: u32,
     }
 }
 
 impl Keypoint {
-    /// What the final list is sorted by; no two keypoints of a picture share it.
+    /// The sort key of the final list, unique within a picture.
     pub fn key(&self) -> (u32, u32) {
         (self.octave, self.index)
     }
 }
 
-/// Keypoints in a row of workgroups, where each has a workgroup of its own.
+/// Workgroups per row of a dispatch with one workgroup per keypoint.
 pub(crate) const DISPATCH_WIDTH: u32 = 256;
 
 shader_struct! {
@@ -47,7 +47,7 @@ shader_struct! {
 /// The uniform of `orientation.wgsl` and `descriptor.wgsl`.
 pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 
-/// Room for the keypoints of a picture, on the device, in buffers with `STORAGE`, `COPY_SRC` and `COPY_DST`.
+/// The keypoints of a picture on the device, in buffers with usages `STORAGE`, `COPY_SRC` and `COPY_DST`.
 #[derive(Debug)]
 pub struct KeypointList {
     found: wgpu::Buffer,
@@ -56,10 +56,10 @@ pub struct KeypointList {
 }
 
 impl KeypointList {
-    /// Room for `capacity` of them.
+    /// Allocates a list of `capacity` keypoints.
     ///
     /// # Errors
-    /// [`crate::Error::TooLarge`] where the device could not bind it.
+    /// [`crate::Error::TooLarge`] if the device cannot bind the list.
     pub fn new(gpu: &Gpu, capacity: u32) -> Result<Self> {
         let bytes = u64::from(capacity) * size_of::<Keypoint>() as u64;
         Ok(Self {
@@ -69,7 +69,7 @@ impl KeypointList {
         })
     }
 
-    /// One word: how many were found, also where that is more than the capacity.
+    /// One `u32`: the number of keypoints found, which can exceed the capacity.
     pub fn found(&self) -> &wgpu::Buffer {
         &self.found
     }
@@ -79,7 +79,7 @@ impl KeypointList {
         &self.keypoints
     }
 
-    /// How many there is room for.
+    /// Capacity of the list, in keypoints.
     pub fn capacity(&self) -> u32 {
         self.capacity
     }

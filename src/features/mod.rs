@@ -1,4 +1,4 @@
-//! The sparse half (paper, steps 2-4): interest points of a picture, each with a descriptor.
+//! Sparse features (paper, steps 2-4): interest points of a picture, each with a descriptor.
 //!
 //! luma -> integral image -> determinant of the Hessian -> non-maximum suppression -> orientation
 //! -> descriptor. Bay, Ess, Tuytelaars, Van Gool: 'Speeded-Up Robust Features (SURF)', CVIU 110,

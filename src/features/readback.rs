@@ -1,4 +1,4 @@
-//! Features on their way back to the host.
+//! Features copied back to the host.
 
 use super::{DESCRIPTOR_LENGTH, Feature, collect, keypoints::Keypoint};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     gpu::Readback,
 };
 
-/// Memory of the host for what a detector finds in a frame: see [`super::Detector::readback`].
+/// Staging buffers for the features of one frame: see [`super::Detector::readback`].
 #[derive(Debug)]
 pub struct FeatureReadback {
     pub(super) capacity: u32,
@@ -16,18 +16,19 @@ pub struct FeatureReadback {
 }
 
 impl FeatureReadback {
-    /// The features, sorted by octave, layer, row and column, once the recorded work was submitted and is done. The future
-    /// drives the device itself. Until the future is finished, nothing else may be submitted that copies to this memory.
+    /// Waits for the submitted work and returns the features, sorted by octave, layer, row and column. The future polls
+    /// the device itself. Until it is finished, no other copy to these buffers may be submitted.
     ///
     /// # Errors
-    /// [`Error::TooManyFeatures`] where more was found than there is room for; [`Error::DeviceLost`].
+    /// [`Error::TooManyFeatures`] if more features were found than [`super::FeatureConfig::max_features`];
+    /// [`Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
-        let found = self.count.read::<u32>(1).await?[0];
-        if found > self.capacity {
-            return Err(Error::TooManyFeatures { found: found as usize, room: self.capacity });
+        let keypoint_count = self.count.read::<u32>(1).await?[0];
+        if keypoint_count > self.capacity {
+            return Err(Error::TooManyFeatures { found: keypoint_count as usize, room: self.capacity });
         }
-        let keypoints = self.keypoints.read::<Keypoint>(found as usize).await?;
-        let descriptors = self.descriptors.read::<[f32; DESCRIPTOR_LENGTH]>(found as usize).await?;
+        let keypoints = self.keypoints.read::<Keypoint>(keypoint_count as usize).await?;
+        let descriptors = self.descriptors.read::<[f32; DESCRIPTOR_LENGTH]>(keypoint_count as usize).await?;
         Ok(collect(&keypoints, &descriptors))
     }
 }

@@ -1,16 +1,16 @@
-//! Which adapter to use.
+//! The choice of an adapter.
 
 use std::str::FromStr;
 
-/// The device that someone asks for.
+/// The requested device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum DeviceChoice {
-    /// The best adapter there is: discrete, then integrated, then virtual, then software.
+    /// The best adapter: discrete, then integrated, then virtual, then software.
     #[default]
     Best,
-    /// By index in [`list_adapters`], or by part of the name, whatever the case.
+    /// An adapter by its index in [`list_adapters`], or by part of its name, ignoring case.
     Named(String),
-    /// No GPU: the CPU twins.
+    /// No adapter: the CPU twins.
     Cpu,
 }
 
@@ -26,8 +26,8 @@ impl FromStr for DeviceChoice {
     }
 }
 
-/// What each adapter says of itself, the best first: an index here is an index for [`DeviceChoice::Named`]. A browser shows
-/// one adapter at most.
+/// Describes the adapters, the best first; an index here is an index for [`DeviceChoice::Named`]. A browser shows at
+/// most one adapter.
 pub async fn list_adapters() -> Vec<wgpu::AdapterInfo> {
     adapters().await.iter().map(wgpu::Adapter::get_info).collect()
 }
@@ -37,7 +37,7 @@ pub(super) async fn adapters() -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.retain(|a| a.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS));
-    // Stable, so that adapters of one kind keep the driver's order.
+    // The sort is stable: adapters of one kind keep the driver's order.
     adapters.sort_by_key(|a| match a.get_info().device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
@@ -48,14 +48,14 @@ pub(super) async fn adapters() -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// The adapter that `wanted` names: an index, or part of exactly the first name that holds it.
-pub(super) fn find(infos: &[wgpu::AdapterInfo], wanted: &str) -> Option<usize> {
-    if let Ok(index) = wanted.parse::<usize>() {
+/// The index of the adapter called `name`: an index, or part of a name, of which the first match counts.
+pub(super) fn find(infos: &[wgpu::AdapterInfo], name: &str) -> Option<usize> {
+    if let Ok(index) = name.parse::<usize>() {
         return (index < infos.len()).then_some(index);
     }
-    let wanted = wanted.trim().to_lowercase();
-    if wanted.is_empty() {
+    let name = name.trim().to_lowercase();
+    if name.is_empty() {
         return None;
     }
-    infos.iter().position(|info| info.name.to_lowercase().contains(&wanted))
+    infos.iter().position(|info| info.name.to_lowercase().contains(&name))
 }

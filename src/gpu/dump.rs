@@ -1,4 +1,4 @@
-//! The text that the shader compiler is given, written to a folder: `HSAD_DUMP_WGSL`, see [`super`].
+//! Dumps of the WGSL that the shader compiler gets: `HSAD_DUMP_WGSL`, see [`super`].
 
 use std::{fs, io, path::Path, path::PathBuf};
 
@@ -12,8 +12,8 @@ pub(super) fn dump(name: &str, text: &str) {
     }
 }
 
-/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Variants of one stage have names
-/// of their own, and the same variant is one file however often it is compiled.
+/// Writes `text` to `<folder>/<name>-<FNV-1a of text>.wgsl`, and creates the folder. Each variant of a stage has its
+/// own file, written again each time it is compiled.
 fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let file = folder.join(format!("{name}-{:016x}.wgsl", fnv1a(text.bytes())));

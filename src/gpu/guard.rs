@@ -1,9 +1,9 @@
-//! What the device has to say about what is created on it, as an [`Error`] instead of a call of the application's handler.
+//! Error scopes: errors of the device as an [`Error`] instead of a call of the application's handler.
 
 use super::Gpu;
 use crate::error::{Error, Result};
 
-/// Whether the device creates nothing any more, which it does not say by itself.
+/// Whether the device is lost, which wgpu does not report by itself: nothing can be created on it any more.
 #[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let usage = wgpu::BufferUsages::COPY_SRC;
@@ -11,24 +11,25 @@ fn is_lost(device: &wgpu::Device) -> bool {
     device.create_buffer(&probe).get_mapped_range_mut(..).is_err()
 }
 
-/// The same. A browser creates as if nothing had happened, and says it only where results are to be read.
+/// Always false in a browser, which reports a lost device only when results are read.
 #[cfg(target_arch = "wasm32")]
 fn is_lost(_: &wgpu::Device) -> bool {
     false
 }
 
-/// Runs `build`, which creates things on a device, and turns what the device has to say about it
-/// into an [`Error`] instead of a call of the application's error handler.
+/// Runs `build`, which creates resources on the device, and turns errors of the device into an [`Error`] instead of a
+/// call of the application's error handler.
 pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let ((built, lost), said) = scoped(&gpu.device, || (refusing_other_instances(what, build), is_lost(&gpu.device)));
+    let ((built, lost), reports) =
+        scoped(&gpu.device, || (refusing_other_instances(what, build), is_lost(&gpu.device)));
     let mut errors = Vec::new();
-    for error in said {
+    for error in reports {
         errors.extend(error.await);
     }
     if errors.iter().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
         return Err(Error::OutOfMemory(what.into()));
     }
-    // Before what else is said then: it is about what was not created.
+    // A lost device comes before the validation errors that follow from it.
     if lost {
         return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
     }
@@ -67,8 +68,8 @@ fn refusing_other_instances<T>(_: &str, build: impl FnOnce() -> Result<T>) -> Re
     build()
 }
 
-/// What `build` returns, and what the device will have to say. Whatever else happens before that is known lies outside
-/// the scopes: they have ended.
+/// Returns the result of `build`, and futures of the device's errors. The scopes are closed before those futures are
+/// awaited, so that they catch no error of other work.
 fn scoped<T>(device: &wgpu::Device, build: impl FnOnce() -> T) -> (T, [impl Future<Output = Option<wgpu::Error>>; 3]) {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -77,8 +78,8 @@ fn scoped<T>(device: &wgpu::Device, build: impl FnOnce() -> T) -> (T, [impl Futu
     (built, [internal.pop(), memory.pop(), validation.pop()])
 }
 
-/// Records what is never submitted: what the device would have to say when a caller records it, it says here. A buffer of
-/// another device, for one, cannot be told otherwise.
+/// Records commands that are never submitted, so that validation errors come here and not when a caller records them. A
+/// buffer of another device, for example, is only noticed this way.
 pub(crate) async fn try_recording(gpu: &Gpu, what: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<()> {
     guarded(gpu, what, || {
         let mut encoder = gpu.encoder("trial");

@@ -1,12 +1,12 @@
-//! The handle that everything on a device is built with.
+//! The handle of a device.
 
 use super::device::{DeviceChoice, adapters, find};
 use crate::error::{Error, Result};
 
-/// A device and its queue, with the pipeline cache of the application if there is one: everything that computes on a
-/// device is built with a `Gpu`.
+/// A device, its queue, and optionally the application's pipeline cache. Everything that computes on a device is
+/// created with a `Gpu`.
 ///
-/// An application with a device of its own wraps its handles, which are cheap to clone:
+/// An application with its own device wraps its handles, which are cheap to clone:
 ///
 /// ```
 /// use hsad::{Gpu, wgpu};
@@ -21,37 +21,37 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The device's queue.
     pub queue: wgpu::Queue,
-    /// The cache that compiled kernels are taken from and put into; of the same device.
+    /// The pipeline cache for kernels, of the same device.
     pub cache: Option<wgpu::PipelineCache>,
 }
 
 impl Gpu {
-    /// Wraps a device and its queue. Without the queue of another device nothing works, and wgpu reports that only to the
-    /// device's handler of uncaptured errors.
+    /// Wraps a device and its own queue. With the queue of another device nothing works, and wgpu reports that only to
+    /// the device's handler of uncaptured errors.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         Self { device, queue, cache: None }
     }
 
-    /// The same handle with an application's pipeline cache.
+    /// Adds the application's pipeline cache.
     #[must_use]
     pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
         Self { cache: Some(cache), ..self }
     }
 
-    /// Opens the chosen adapter, with the adapter's own limits for the size of buffers.
+    /// Opens the chosen adapter, with its own limits for buffer sizes and the downlevel defaults for all others.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`], [`Error::NoSuchDevice`] (which lists those that exist), or
-    /// [`Error::Unsupported`] where the adapter refuses. [`DeviceChoice::Cpu`] is no adapter.
+    /// [`Error::NoAdapter`]; [`Error::NoSuchDevice`], which lists the adapters; [`Error::Unsupported`] if the adapter
+    /// refuses. [`DeviceChoice::Cpu`] is no adapter.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
         super::block_on(Self::open_async(choice))
     }
 
-    /// As [`Gpu::open`], awaited.
+    /// The asynchronous [`Gpu::open`].
     ///
     /// # Errors
-    /// As [`Gpu::open`].
+    /// See [`Gpu::open`].
     pub async fn open_async(choice: &DeviceChoice) -> Result<Self> {
         let mut adapters = adapters().await;
         if adapters.is_empty() {
@@ -59,10 +59,10 @@ impl Gpu {
         }
         let index = match choice {
             DeviceChoice::Best => 0,
-            DeviceChoice::Named(wanted) => {
+            DeviceChoice::Named(name) => {
                 let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
-                find(&infos, wanted).ok_or_else(|| Error::NoSuchDevice {
-                    wanted: wanted.clone(),
+                find(&infos, name).ok_or_else(|| Error::NoSuchDevice {
+                    wanted: name.clone(),
                     available: (0..).zip(&infos).map(|(i, info)| format!("{i}: {}, ", info.name)).collect::<String>()
                         + "cpu",
                 })?
@@ -73,8 +73,7 @@ impl Gpu {
         };
         let adapter = adapters.swap_remove(index);
         let limits = adapter.limits();
-        // Compute needs no more than the downlevel defaults, except that larger pictures fit in
-        // one piece where the adapter has the room.
+        // The kernels need only the downlevel defaults; larger buffer limits let larger pictures fit in one piece.
         let required_limits = wgpu::Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
@@ -91,19 +90,18 @@ impl Gpu {
         Ok(Self::new(device, queue))
     }
 
-    /// What the adapter says of itself.
+    /// Describes the adapter of the device.
     pub fn info(&self) -> wgpu::AdapterInfo {
         self.device.adapter_info()
     }
 
-    /// Whether the driver is lavapipe, where loads are the bottleneck, registers spill into the first cache, and few
-    /// threads that keep much are faster than many. Other drivers that compute on the CPU take minutes to compile such
-    /// kernels.
+    /// Whether the driver is lavapipe, where loads are the bottleneck, registers spill into the L1 cache, and few
+    /// threads with much state are faster than many. Other CPU drivers take minutes to compile such kernels.
     pub(crate) fn is_lavapipe(&self) -> bool {
         self.info().driver == "llvmpipe"
     }
 
-    /// An encoder for the library's own submissions.
+    /// Creates an encoder for the library's own submissions.
     pub(crate) fn encoder(&self, label: &'static str) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }

@@ -1,9 +1,9 @@
-//! Text that several shaders share, put in front of a shader before compilation.
+//! Imports: shared WGSL, put in front of a shader before compilation.
 //!
-//! A line `#import line` in a shader or in a shared part stands for `shaders/shared/line.wgsl`. Each part comes once,
-//! in the order of first mention, behind the parts that it imports itself.
+//! A line `#import line` in a shader or in a shared part includes `shaders/shared/line.wgsl`. Each part is included
+//! once, in the order of first mention, behind the parts that it imports itself.
 
-/// The table of shared parts: name and text of each.
+/// The table of shared parts: their names and texts.
 macro_rules! parts {
     ($($name:literal),* $(,)?) => {
         &[$(($name, include_str!(concat!("../../shaders/shared/", $name, ".wgsl")))),*]
@@ -24,10 +24,10 @@ const PARTS: &[(&str, &str)] = parts![
     "words",
 ];
 
-/// `source` behind the shared parts that it imports.
+/// Puts the shared parts that `source` imports in front of it.
 ///
 /// # Panics
-/// If a part is unknown, or imports itself by way of others: the shaders are ours, and a test goes through all of them.
+/// If a part is unknown, or part of an import cycle: all shaders are ours, and a test covers them.
 pub(crate) fn imported(source: &str) -> String {
     imported_from(PARTS, source)
 }
@@ -38,7 +38,8 @@ fn imported_from(parts: &[(&str, &str)], source: &str) -> String {
     out
 }
 
-/// Appends the imports of `source` that are not in `done`, then `source` itself. `chain` is what led here.
+/// Appends the imports of `source` that are not in `done`, then `source` itself. `chain` holds the imports that led
+/// here.
 fn append<'a>(
     parts: &[(&str, &'a str)],
     source: &'a str,
@@ -65,7 +66,7 @@ fn append<'a>(
     }
 }
 
-/// The part that a line names, if it is an import.
+/// The shared part that `line` imports, if any.
 fn import_of(line: &str) -> Option<&str> {
     line.strip_prefix("#import ").map(str::trim)
 }

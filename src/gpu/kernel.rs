@@ -1,4 +1,4 @@
-//! A stage's compute pipeline, and its dispatches.
+//! A compute pipeline per stage, and its dispatches.
 
 use super::{
     Gpu,
@@ -6,7 +6,7 @@ use super::{
     stage::{Binding, Stage},
 };
 
-/// What is bound: a whole buffer, or a texture.
+/// A resource that can be bound: a whole buffer, or a texture view.
 pub(crate) trait Bindable {
     fn resource(&self) -> wgpu::BindingResource<'_>;
 }
@@ -23,7 +23,7 @@ impl Bindable for wgpu::TextureView {
     }
 }
 
-/// A stage's compute pipeline on one device.
+/// The compute pipeline of a stage, on one device.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     gpu: Gpu,
@@ -91,8 +91,8 @@ impl Kernel {
         Self { gpu: gpu.clone(), name: stage.name, layout, pipeline }
     }
 
-    /// Binds a uniform buffer that holds `params`, unless these are `()`, then `bound`, in the order of the stage's bindings,
-    /// for `groups` workgroups along x, y and z.
+    /// Prepares a dispatch of `groups` workgroups along x, y and z. Binds a uniform buffer of `params`, unless that is
+    /// `()`, then `bound`, in the order of the stage's bindings.
     pub(crate) fn dispatch<P: bytemuck::NoUninit>(
         &self,
         params: &P,
@@ -102,8 +102,8 @@ impl Kernel {
         self.bind(params, bound, Groups::Known(groups))
     }
 
-    /// As [`Self::dispatch`], for as many workgroups as the first three words of `groups` say when the device
-    /// gets there.
+    /// Prepares an indirect dispatch: as [`Self::dispatch`], with the number of workgroups read from the first three
+    /// `u32`s of `groups` when the device runs it.
     pub(crate) fn dispatch_indirect<P: bytemuck::NoUninit>(
         &self,
         params: &P,
@@ -127,7 +127,7 @@ impl Kernel {
     }
 }
 
-/// A kernel with its buffers and its size: all that is left to do is to record it.
+/// A kernel with its bind group and number of workgroups, ready to be recorded.
 #[derive(Debug)]
 pub struct Dispatch {
     kernel: Kernel,
@@ -135,11 +135,11 @@ pub struct Dispatch {
     groups: Groups,
 }
 
-/// How many workgroups there are.
+/// The number of workgroups of a dispatch, along x, y and z.
 #[derive(Debug)]
 enum Groups {
     Known([u32; 3]),
-    /// As three words of a buffer say.
+    /// The first three `u32`s of a buffer.
     Indirect(wgpu::Buffer),
 }
 
@@ -149,12 +149,12 @@ impl Dispatch {
         self.kernel.name
     }
 
-    /// Records it, in a pass of its own.
+    /// Records the dispatch, in a compute pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.record_timed(encoder, None);
     }
 
-    /// The same, with the device's clock at the pass's beginning and end written where `timestamp_writes` says.
+    /// Records the dispatch, with timestamps at the beginning and the end of its pass.
     pub(crate) fn record_timed(
         &self,
         encoder: &mut wgpu::CommandEncoder,

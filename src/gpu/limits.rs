@@ -1,4 +1,4 @@
-//! What a device must offer, whatever the size of the pictures.
+//! Limits of wgpu that a device must have, independent of the size of pictures.
 
 use super::Gpu;
 use crate::error::{Error, Result};
@@ -6,11 +6,11 @@ use crate::error::{Error, Result};
 /// A limit of [`wgpu::Limits`] that the kernels need.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
-    /// Its name there.
+    /// Name of the field of [`wgpu::Limits`].
     pub name: &'static str,
-    /// The least that will do.
+    /// Least accepted value.
     pub least: u64,
-    /// What there is of it.
+    /// Reads the limit from a device's limits.
     pub of: fn(&wgpu::Limits) -> u64,
 }
 
@@ -21,8 +21,8 @@ macro_rules! limit {
     };
 }
 
-/// All that is needed; [`wgpu::Limits::downlevel_defaults`] has it. No [`wgpu::Features`] are. How large a picture may be
-/// also follows from `max_buffer_size`, `max_storage_buffer_binding_size` and `max_texture_dimension_2d`.
+/// The required limits; [`wgpu::Limits::downlevel_defaults`] has them all. No [`wgpu::Features`] are required. The
+/// largest picture also depends on `max_buffer_size`, `max_storage_buffer_binding_size` and `max_texture_dimension_2d`.
 pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_bind_groups, 1),
     limit!(max_bindings_per_bind_group, 6),
@@ -40,10 +40,10 @@ pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_compute_workgroups_per_dimension, 65_535),
 ];
 
-/// The limits that the size of a storage buffer follows from.
+/// Names of the limits on the size of a storage buffer.
 pub(crate) const BUFFER_LIMITS: &str = "max_storage_buffer_binding_size and max_buffer_size";
 
-/// Refuses a device that lacks any of them, before anything is created on it.
+/// Checks the device against [`REQUIRED_LIMITS`], before anything is created on it.
 ///
 /// # Errors
 /// [`Error::Unsupported`] with the limit's name.

@@ -1,11 +1,11 @@
-//! The part of wgpu that every stage shares: a handle on a device, kernels, buffers, and results that are read back.
+//! The wgpu layer that all stages share: the handle of a device, kernels, buffers, and readback of results.
 //!
 //! # The text that is compiled
 //!
-//! A driver is not given a shader's file: constants and imported parts stand in front of it, and loops are unrolled. With
-//! the environment variable `HSAD_DUMP_WGSL` set to a folder, which is created, each kernel that is built also writes its
-//! text there, except in browsers: `<stage>-<hash of the text>.wgsl`, so that every variant of a stage has a file. A file
-//! that cannot be written is a warning in the log and nothing more.
+//! The driver does not get a shader's file as it is: constants and imported parts are put in front of it, and loops are
+//! unrolled. If the environment variable `HSAD_DUMP_WGSL` names a folder, which is created, each compiled kernel also
+//! writes its WGSL there, as `<stage>-<hash of the text>.wgsl`, so that every variant of a stage has its own file. A
+//! failed write is only a warning in the log. Browsers write no files.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod block_on;

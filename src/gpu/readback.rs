@@ -1,4 +1,4 @@
-//! Results on their way back to the host.
+//! Readback of results through staging buffers.
 
 use std::{
     sync::{Arc, Mutex, PoisonError},
@@ -8,7 +8,7 @@ use std::{
 use super::Gpu;
 use crate::error::{Error, Result};
 
-/// A host-visible copy of a buffer's first bytes: recorded with the work, read after its submission.
+/// A staging buffer for the first bytes of a buffer: the copy is recorded with the work and read after its submission.
 #[derive(Debug)]
 pub(crate) struct Readback {
     staging: wgpu::Buffer,
@@ -16,7 +16,7 @@ pub(crate) struct Readback {
 }
 
 impl Readback {
-    /// Space for `bytes`.
+    /// Creates a staging buffer of `bytes` bytes.
     pub(crate) fn new(gpu: &Gpu, label: &'static str, bytes: u64) -> Self {
         let device = gpu.device.clone();
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
@@ -33,15 +33,15 @@ impl Readback {
         encoder.copy_buffer_to_buffer(source, 0, &self.staging, 0, Some(self.staging.size().min(source.size())));
     }
 
-    /// The buffer to copy to.
+    /// The staging buffer, the destination of copies.
     pub(crate) fn buffer(&self) -> &wgpu::Buffer {
         &self.staging
     }
 
-    /// The first `count` values, once the submitted work is done.
+    /// Waits for the submitted work and returns the first `count` values.
     ///
     /// # Errors
-    /// [`Error::DeviceLost`] where the device did not finish the work.
+    /// [`Error::DeviceLost`] if the device did not finish the work.
     pub(crate) async fn read<T: bytemuck::Pod>(&self, count: usize) -> Result<Vec<T>> {
         if count == 0 {
             return Ok(Vec::new());
@@ -57,11 +57,11 @@ impl Readback {
     }
 }
 
-/// The state of a mapping, and the task that waits for it.
+/// The state of a mapping, and the waker of the task that waits for it.
 #[derive(Default)]
 struct Mapping {
     result: Option<std::result::Result<(), String>>,
-    /// The future has its result.
+    /// Whether the future has taken the result.
     is_taken: bool,
     waiting: Option<Waker>,
 }
@@ -73,7 +73,7 @@ impl Mapping {
         mapping.result.is_none() && !mapping.is_taken
     }
 
-    /// The first result counts.
+    /// Sets the result, unless there is one already, and wakes the waiting task.
     fn finish(shared: &Mutex<Self>, result: std::result::Result<(), String>) {
         let mut mapping = shared.lock().unwrap_or_else(PoisonError::into_inner);
         if !mapping.is_taken {
@@ -85,8 +85,8 @@ impl Mapping {
     }
 }
 
-/// Maps `slice` for reading. A mapping is finished by whoever polls the device: natively the future itself sees to that,
-/// since an application need not.
+/// Maps `slice` for reading. Someone must poll the device for a mapping to finish: natively the future does, since the
+/// application need not.
 fn mapped(
     slice: wgpu::BufferSlice<'_>,
     device: &wgpu::Device,
@@ -112,8 +112,8 @@ fn mapped(
     })
 }
 
-/// Has the device finish the mapping: at once if the work is done, else on a thread that waits for it, or on this one
-/// where no thread can be had.
+/// Makes the device finish the mapping: at once if the work is done, else on a thread that waits for it, or on this
+/// thread if none can be spawned.
 #[cfg(not(target_arch = "wasm32"))]
 fn drive(device: wgpu::Device, mapping: &Arc<Mutex<Mapping>>) {
     // A lost device is reported by the wait below.
@@ -128,21 +128,21 @@ fn drive(device: wgpu::Device, mapping: &Arc<Mutex<Mapping>>) {
     }
 }
 
-/// Polls the device until the mapping is finished. A wait is for all that was submitted, so the wait is sliced: work that
-/// was submitted after the mapped buffer's must not delay the mapping.
+/// Polls the device until the mapping is finished. A wait is for everything submitted, so it is sliced to 500 us: work
+/// submitted after the mapped buffer's must not delay the mapping.
 #[cfg(not(target_arch = "wasm32"))]
 fn wait(device: &wgpu::Device, mapping: &Mutex<Mapping>) {
     const SLICE: std::time::Duration = std::time::Duration::from_micros(500);
     while Mapping::is_pending(mapping) {
         match device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SLICE) }) {
             Err(wgpu::PollError::Timeout) => {}
-            // Another thread that polls the device may be the one that delivers, a little later.
+            // Another thread that polls the device can deliver the result a little later.
             Ok(_) => std::thread::yield_now(),
             Err(error) => Mapping::finish(mapping, Err(error.to_string())),
         }
     }
 }
 
-/// A browser drives its devices itself.
+/// A browser polls its devices itself.
 #[cfg(target_arch = "wasm32")]
 fn drive(_: wgpu::Device, _: &Arc<Mutex<Mapping>>) {}

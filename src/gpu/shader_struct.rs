@@ -1,30 +1,30 @@
-//! Structs that a shader declares as well: their members, for a test that compares both.
+//! Structs that a shader declares too: their members, for a test that compares both declarations.
 
-/// What stands in a buffer, as WGSL sees it.
+/// The WGSL type of a value in a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// One value of this WGSL type.
+    /// A scalar of this WGSL type.
     Scalar(&'static str),
-    /// As many in a row; WGSL's vectors are that too.
+    /// An array of so many elements, or a WGSL vector.
     Array(u64, &'static Shape),
-    /// A struct of this many bytes.
+    /// A struct: its size in bytes and its members.
     Struct(u64, &'static [Member]),
 }
 
 /// A member of a struct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Its name, the same in WGSL and in Rust.
+    /// Name of the member, the same in WGSL and in Rust.
     pub name: &'static str,
-    /// Bytes from the struct's beginning.
+    /// Offset from the beginning of the struct, in bytes.
     pub offset: u64,
-    /// What it is.
+    /// Type of the member.
     pub shape: Shape,
 }
 
-/// What can be a shader's.
+/// A Rust type with an equivalent in WGSL.
 pub trait ShaderType {
-    /// What it is there.
+    /// The WGSL type.
     const SHAPE: Shape;
 }
 

@@ -5,35 +5,35 @@ use super::{imports::imported, shader_struct::Shape, unroll::unrolled};
 /// One binding of a kernel's only bind group, in the order of `@binding`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
-    /// A uniform buffer that holds this.
+    /// A uniform buffer of this type.
     Uniform(Shape),
-    /// A storage buffer that is only read.
+    /// A read-only storage buffer.
     Read,
-    /// A storage buffer that is written.
+    /// A read-write storage buffer.
     Write,
-    /// A storage texture of one `u32` a texel that is only read.
+    /// A read-only storage texture of one `u32` per texel.
     Words,
-    /// A texture of floats that is only read, and not sampled.
+    /// A texture of floats that is loaded, never sampled.
     Picture,
-    /// A texture of this format that is only written.
+    /// A write-only storage texture of this format.
     Map(wgpu::TextureFormat),
 }
 
-/// What a stage's kernel is made of; enough to build it, and to check it without any GPU.
+/// Source, bindings and constants of a stage: enough to compile its kernel, and to check it without a GPU.
 #[derive(Clone, Debug)]
 pub struct Stage {
-    /// The stage's name: that of its shader, its Rust file, its CPU twin and its test.
+    /// Name of the stage, shared by its shader, its Rust file, its CPU twin and its test.
     pub name: &'static str,
-    /// The shader's text, without its constants and its imports.
+    /// WGSL of the shader, without its constants and imports.
     pub source: &'static str,
     /// The buffers of bind group 0, in order.
     pub bindings: &'static [Binding],
-    /// Constants that host and shader share; written in front of the text.
+    /// Constants that host and shader share, written in front of the WGSL.
     pub constants: Vec<(&'static str, i64)>,
 }
 
 impl Stage {
-    /// The whole module: the constants, the imported parts, the shader's text, with marked loops unrolled.
+    /// The whole WGSL module: constants, imported parts, then the shader with its marked loops unrolled.
     pub fn wgsl(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.constants {

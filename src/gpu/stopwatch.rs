@@ -1,11 +1,11 @@
-//! What kernels take, by the device's own clock.
+//! Durations of kernels, by timestamps of the device.
 
 use std::time::Duration;
 
 use super::{Gpu, Readback};
 use crate::error::{Error, Result};
 
-/// A time before and one after each of some kernels.
+/// Timestamps before and after each kernel.
 pub(crate) struct Stopwatch {
     queries: wgpu::QuerySet,
     kernels: u32,
@@ -14,10 +14,10 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// For so many kernels, or the first ones that a query set has room for.
+    /// Creates timestamps for `kernels` kernels, or for as many of the first ones as a query set can hold.
     ///
     /// # Errors
-    /// [`Error::Unsupported`].
+    /// [`Error::Unsupported`] if the device lacks `TIMESTAMP_QUERY`.
     pub(crate) fn new(gpu: &Gpu, kernels: usize) -> Result<Self> {
         let device = &gpu.device;
         if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
@@ -43,7 +43,7 @@ impl Stopwatch {
         })
     }
 
-    /// Where the times of a kernel go; nowhere where there is no room for them.
+    /// The timestamp writes of a kernel; `None` beyond the capacity of the query set.
     pub(crate) fn writes(&self, kernel: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         (kernel < self.kernels).then_some(wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -52,20 +52,20 @@ impl Stopwatch {
         })
     }
 
-    /// Records how the times come to the host, after the kernels.
+    /// Records the copy of the timestamps to the host, after the kernels.
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2 * self.kernels, &self.resolved, 0);
         self.times.record(encoder, &self.resolved);
     }
 
-    /// What each kernel took, after the submission.
+    /// Returns the duration of each kernel, after the submission.
     ///
     /// # Errors
     /// [`Error::DeviceLost`].
     pub(crate) async fn read(&self, queue: &wgpu::Queue) -> Result<Vec<Duration>> {
         let ticks: Vec<u64> = self.times.read(2 * self.kernels as usize).await?;
         let seconds = f64::from(queue.get_timestamp_period()) / 1e9;
-        let took = |times: &[u64]| Duration::from_secs_f64(times[1].saturating_sub(times[0]) as f64 * seconds);
-        Ok(ticks.chunks_exact(2).map(took).collect())
+        let duration = |times: &[u64]| Duration::from_secs_f64(times[1].saturating_sub(times[0]) as f64 * seconds);
+        Ok(ticks.chunks_exact(2).map(duration).collect())
     }
 }

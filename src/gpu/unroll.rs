@@ -2,8 +2,8 @@
 //!
 //! Shader compilers differ in where they keep a small array that is indexed by a loop counter: some in registers, some
 //! in memory, at forty times the cost (Mesa 22). In an unrolled loop every index is a constant, and every compiler
-//! keeps the array in registers. So that a shader stays readable and valid WGSL, its loops stay loops in the file,
-//! marked for this pass:
+//! keeps the array in registers. Shaders stay readable and valid WGSL, since loops stay loops in the file, marked for
+//! this pass:
 //!
 //! ```wgsl
 //! for (var y = 0; y < ROWS + 1; y++) { // unroll
@@ -14,10 +14,10 @@
 //! Each iteration becomes a block of its own, with the counter's value in place of the counter's name. Unroll in small
 //! functions only: the time that naga 30 takes is quadratic in the length of a function.
 
-/// `source` with every marked loop unrolled; the bounds of loops are sums of numbers and of `constants`.
+/// Unrolls every marked loop of `source`; the bounds of loops are sums of numbers and of `constants`.
 ///
 /// # Panics
-/// If a marked loop does not have exactly the form above: the shaders are ours, and a test goes through all of them.
+/// If a marked loop does not have exactly the form above: all shaders are ours, and a test covers them.
 pub(crate) fn unrolled(source: &str, constants: &[(&str, i64)]) -> String {
     let mut out = String::with_capacity(source.len());
     let mut rest = source;

@@ -1,20 +1,20 @@
-//! Words in a texture, for kernels that read many of them here and there: software drivers load those of all lanes at
-//! once from a texture, and one after the other from a buffer. It is bound as a storage texture that is only read: that
-//! has no mip levels, whose sizes lavapipe would work out for each lane of each load.
+//! Words in a texture, for kernels with scattered reads: software drivers load the words of all lanes at once from a
+//! texture, but one after the other from a buffer. The texture is bound as a read-only storage texture, which has no
+//! mip levels; lavapipe would compute their sizes for each lane of each load.
 
 use super::Gpu;
 use crate::error::{Error, Result};
 
-/// Words of a row of the texture: the widest that every device has.
+/// Base-2 logarithm of the words per texture row: 2,048, the largest width that every device supports.
 pub(crate) const ROW_BITS: u32 = 11;
 const ROW: u32 = 1 << ROW_BITS;
 
-/// Words of a buffer that holds at least so many in whole rows of a texture.
+/// Rounds `words` up to whole texture rows.
 pub(crate) fn in_rows(words: u64) -> u64 {
     words.next_multiple_of(ROW.into())
 }
 
-/// The most words that a texture of the device holds.
+/// The most words of a texture of the device.
 pub(crate) fn most_words(gpu: &Gpu) -> u64 {
     u64::from(ROW) * u64::from(gpu.device.limits().max_texture_dimension_2d)
 }
@@ -27,10 +27,10 @@ pub struct WordTexture {
 }
 
 impl WordTexture {
-    /// For so many words.
+    /// Creates a texture of `words` words.
     ///
     /// # Errors
-    /// [`Error::TooLarge`].
+    /// [`Error::TooLarge`] if `max_texture_dimension_2d` does not allow so many words.
     pub fn new(gpu: &Gpu, label: &'static str, words: u64) -> Result<Self> {
         let limit = most_words(gpu);
         if words > limit {
@@ -59,7 +59,7 @@ impl WordTexture {
         Ok(Self { texture, view })
     }
 
-    /// Fills it with the first words of `buffer`, which has as many whole rows.
+    /// Records the copy of the first words of `buffer`, which must hold as many whole rows, to the texture.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * ROW), rows_per_image: None };
         encoder.copy_buffer_to_texture(

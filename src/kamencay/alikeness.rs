@@ -1,18 +1,19 @@
-//! How alike two views look around a pixel and its partner, on the host.
+//! Similarity of the two views around a pixel and its partner, on the host.
 
 use crate::image::{Plane, Size};
 
-/// Windows reach so far in every direction.
+/// Radius of the windows, in pixels: they are 9x9.
 const RADIUS: i64 = 4;
 
-/// How alike the windows around a pixel of the left view and its partner in the right one are, `disparity` whole pixels
-/// to its left: 127 times the normalised cross-correlation of their levels without the means, rounded down. It is 0 where
-/// that is negative, or a window is constant. Windows end at the pictures' borders; what has no partner does not count.
+/// Similarity of the 9x9 windows around a pixel of the left view and its partner in the right view, `disparity` whole
+/// pixels to the left, 0 to 127: 127 times their normalised cross-correlation, rounded down; 0 where the correlation is
+/// negative or a window is constant. Windows are cut off at the borders of the pictures, and pixels without a partner
+/// are left out.
 pub(super) fn alikeness([left, right]: [&Plane<u8>; 2], (x, y): (u32, u32), disparity: i32) -> u8 {
     let Size { width, height } = left.size();
     let (x, y, disparity) = (i64::from(x), i64::from(y), i64::from(disparity));
     let rows = (y - RADIUS).max(0)..=(y + RADIUS).min(i64::from(height) - 1);
-    // Where both the pixel and its partner are inside.
+    // Columns where both the pixel and its partner are inside.
     let first = (x - RADIUS).max(0).max(disparity);
     let last = (x + RADIUS).min(i64::from(width) - 1).min(i64::from(width) - 1 + disparity);
     let (mut count, mut sums, mut squares, mut products) = (0_i64, [0_i64; 2], [0_i64; 2], 0_i64);

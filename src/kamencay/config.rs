@@ -1,4 +1,4 @@
-//! What the hybrid method is asked to do.
+//! Parameters of Kamencay's method.
 
 use super::{Conclusion, LinkWeights, ModeSeeking, Segmentation, Smoothness, WindowCost};
 use crate::{
@@ -7,32 +7,32 @@ use crate::{
     error::{Error, Result, check_range},
 };
 
-/// More disparities make a kernel that drivers take minutes to compile.
+/// Most disparities: drivers take minutes to compile the kernel for more.
 const MAX_DISPARITIES: u32 = 512;
 
-/// The parameters of the method, whatever the pair.
+/// Parameters of the method that do not depend on the pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KamencayParameters {
     /// Mean-shift filtering of the reference view.
     pub mean_shift: ModeSeeking,
-    /// Which filtered pixels make a segment.
+    /// Segmentation of the filtered view.
     pub segmentation: Segmentation,
-    /// How pixels of the two views are compared.
+    /// The data cost of a pixel and its partner.
     pub cost: WindowCost,
-    /// What it costs that neighbours have other disparities.
+    /// The smoothness cost of neighbours with different disparities.
     pub smoothness: Smoothness,
-    /// How that depends on the picture.
+    /// The weights of links between neighbours, which scale the smoothness cost by the picture.
     pub links: LinkWeights,
-    /// Grids, each of half the size of the last, 1 to 6.
+    /// Number of grids, 1 to 6, each of half the size of the previous one; 5 by default.
     pub levels: u32,
-    /// Turns on each of them, 2 to 100; in each one half of the nodes sends.
+    /// Number of turns per grid, 2 to 100; 6 by default. In each turn one half of the nodes sends messages.
     pub turns: u32,
-    /// From beliefs to the disparities of segments.
+    /// The disparities of segments from beliefs.
     pub conclusion: Conclusion,
 }
 
 impl Default for KamencayParameters {
-    /// What gave the least error on Art, Cones and Teddy together.
+    /// The values of least total error on Art, Cones and Teddy (Middlebury).
     fn default() -> Self {
         Self {
             mean_shift: ModeSeeking { radius: 5, range: 10, turns: 10 },
@@ -51,29 +51,29 @@ impl Default for KamencayParameters {
     }
 }
 
-/// The hybrid method on a pair.
+/// Parameters of Kamencay's method for a pair.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KamencayConfig {
-    /// The disparities to search.
+    /// The disparities to search, in whole pixels, at most 512 after clipping to the width.
     pub range: DisparityRange,
-    /// The view whose pixels get a disparity, and which is segmented.
+    /// The reference view, which is segmented and whose pixels get a disparity; left by default.
     pub reference: View,
-    /// What makes the right view as bright as the left one, channel by channel, before pixels are compared.
+    /// The change of the right view's brightness, per channel, before pixels are compared; none by default.
     pub brightness: Brightness,
-    /// All else.
+    /// The parameters that do not depend on the pair.
     pub parameters: KamencayParameters,
 }
 
 impl KamencayConfig {
-    /// The left view as the reference, its brightness taken as it is, and the default parameters.
+    /// The left view as the reference, no change of brightness, and the default parameters.
     pub fn new(range: DisparityRange) -> Self {
         Self { range, reference: View::Left, brightness: Brightness::SAME, parameters: KamencayParameters::default() }
     }
 
-    /// The disparities that are searched in a picture of this width: see [`DenseConfig::searched`].
+    /// The searched disparities in a picture `width` pixels wide: see [`DenseConfig::searched`].
     ///
     /// # Errors
-    /// [`Error::Parameter`] where there are none, or more than a kernel is made for.
+    /// [`Error::Parameter`] if no disparity gives any pixel a partner, or if there are more than 512.
     pub fn searched(&self, width: u32) -> Result<DisparityRange> {
         let range = DenseConfig::new(self.range).searched(width)?;
         if range.count > MAX_DISPARITIES {
@@ -88,7 +88,7 @@ impl KamencayConfig {
         Ok(range)
     }
 
-    /// Refuses what no kernel could work with.
+    /// Checks that all values lie in their ranges.
     ///
     /// # Errors
     /// [`Error::Parameter`] with the accepted range.
@@ -100,7 +100,7 @@ impl KamencayConfig {
 }
 
 impl KamencayParameters {
-    /// As [`KamencayConfig::validate`].
+    /// Checks the parameters: see [`KamencayConfig::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         let Self { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } = self;
         for (name, value, first, last) in [

@@ -1,34 +1,34 @@
-//! The grids of belief propagation: strips of the picture, each halved again and again.
+//! The grids of belief propagation: strips of the picture, halved repeatedly.
 
 use crate::{
     error::{Error, Result},
     image::Size,
 };
 
-/// More than any belief: the data cost of a disparity beyond the last, which only fills a word.
+/// A sentinel above any belief: the data cost of padding beyond the last disparity, which fills a word.
 pub const FAR: u32 = 0xffff;
 
-/// The messages of a strip take at most these bytes: what a device must be able to bind at least. It is not the
-/// device's own limit, so that the strips, which do show in the result, are the same everywhere.
+/// Most bytes of a strip's messages: the binding size that every device has. The limit does not depend on the device,
+/// so that strips, which affect the result, are the same everywhere.
 pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
 
-/// Rows that a strip sees beyond those that it decides, above and below.
+/// Halo rows of a strip, above and below the rows that it decides.
 pub const OVERLAP: u32 = 16;
 
-/// Rows of the picture.
+/// A strip of rows of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Strip {
-    /// The first one.
+    /// First row of the strip.
     pub first_row: u32,
-    /// How many.
+    /// Number of rows.
     pub rows: u32,
 }
 
-/// Strips with the rows among theirs that each decides, for pictures of `size` with so many `disparities`: one strip
-/// where its messages take at most `bytes`.
+/// The strips of a picture of `size` with `disparities` disparities, each with the rows that it decides; a single strip
+/// if its messages take at most `bytes`.
 ///
 /// # Errors
-/// [`Error::TooLarge`] where not even as many rows as two strips share fit.
+/// [`Error::TooLarge`] if `bytes` does not hold three times [`OVERLAP`] rows.
 pub fn strips(Size { width, height }: Size, disparities: u32, bytes: u64) -> Result<Vec<(Strip, Strip)>> {
     let row_bytes = 16 * u64::from(width) * u64::from(disparities.div_ceil(4));
     let most = bytes / row_bytes;
@@ -57,7 +57,7 @@ pub fn strips(Size { width, height }: Size, disparities: u32, bytes: u64) -> Res
     Ok((0..height).step_by(step as usize).map(strip).collect())
 }
 
-/// The sizes of the grids of a strip, from the finest on: each half the last, rounded up.
+/// The sizes of a strip's grids, finest first: each half the previous one, rounded up.
 pub fn levels(size: Size, count: u32) -> Vec<Size> {
     let sizes = std::iter::successors(Some(size), |&Size { width, height }| {
         (width.max(height) > 1).then_some(Size::new(width.div_ceil(2), height.div_ceil(2)))

@@ -1,29 +1,29 @@
-//! How strongly neighbours hold together, on the host.
+//! The weights of links between neighbours, on the host.
 
 use super::{Segments, Strip};
 use crate::image::{Plane, Size};
 
-/// How the weight of a link, 16 at most, depends on the picture: `16 halving / (halving + change)`, rounded down,
-/// where the mean of the three channels changes by so much.
+/// The weight of a link, 0 to 16: `16 halving / (halving + change)`, rounded down, where `change` is the mean
+/// difference of the three channels, in grey levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinkWeights {
-    /// The change that halves the weight, in grey levels.
+    /// The change that halves the weight, 1 to 255 grey levels; 8 by default.
     pub halving: u32,
-    /// No link weighs less because of a change.
+    /// Lower bound of the weight, 0 to 16; 2 by default.
     pub least: u32,
-    /// No link inside of a segment weighs less.
+    /// Lower bound of the weight inside a segment, 0 to 16; 8 by default.
     pub inside: u32,
-    /// No link across the outline of a segment weighs more.
+    /// Upper bound of the weight across the outline of a segment, 0 to 16; 4 by default.
     pub across: u32,
 }
 
-/// The weights of the links of a grid: to the right in the lowest byte, downwards in the next. Those that lead
-/// outside are 0.
+/// The weights of a grid's links: to the right in the lowest byte, downwards in the next. Links that lead outside weigh
+/// 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Links(Plane<u32>);
 
 impl Links {
-    /// The links of a strip of a view as [`super::described`] leaves it.
+    /// The links of a strip of a view from [`super::described`].
     pub fn new(view: &Plane<u32>, segments: &Segments, strip: Strip, weights: LinkWeights) -> Self {
         let labels = segments.labels();
         let weight = |a: (u32, u32), b: (u32, u32)| {
@@ -46,8 +46,7 @@ impl Links {
         Self(Plane::from_fn((view.width(), strip.rows), link))
     }
 
-    /// The links of the grid of half the size: the rounded mean of those that lead from one block of 2x2 nodes to
-    /// the next.
+    /// The links of the grid of half the size: the rounded mean of the links between two blocks of 2x2 nodes.
     #[must_use]
     pub fn reduced(&self) -> Self {
         let Size { width, height } = self.0.size();
@@ -68,7 +67,7 @@ impl Links {
         Self(Plane::from_fn((width.div_ceil(2), height.div_ceil(2)), link))
     }
 
-    /// A word a node.
+    /// The packed weights, one `u32` per node.
     pub fn words(&self) -> &Plane<u32> {
         &self.0
     }

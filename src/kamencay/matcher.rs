@@ -1,4 +1,4 @@
-//! The hybrid method on a device.
+//! Kamencay's method on a device.
 
 use super::{
     KamencayConfig, Links, MAX_MESSAGE_BYTES, Problem, Solver, Strip,
@@ -13,21 +13,21 @@ use crate::{
     io::Picture,
 };
 
-/// Matches a pair on `gpu`.
+/// Matches a pair on `gpu` by Kamencay's method.
 ///
 /// # Errors
-/// [`crate::Error::SizesDiffer`]; [`crate::Error::Parameter`] for a configuration that cannot be;
-/// [`crate::Error::TooLarge`] for rows too wide for a strip, or a picture that the device cannot bind; and what the
-/// device says.
+/// [`crate::Error::SizesDiffer`]; [`crate::Error::Parameter`] if `config` is out of range; [`crate::Error::TooLarge`]
+/// if a strip cannot hold enough rows of this width, or the device cannot bind the picture;
+/// [`crate::Error::OutOfMemory`], [`crate::Error::Unsupported`], [`crate::Error::DeviceLost`].
 pub async fn compute(gpu: &Gpu, left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
     compute_within(gpu, left, right, config, MAX_MESSAGE_BYTES).await
 }
 
-/// As [`compute`], in strips whose messages take at most `message_bytes`, of which no more than
-/// [`MAX_MESSAGE_BYTES`] count: less memory for more work, and a slightly different result.
+/// [`compute`] in strips whose messages take at most `message_bytes`, or [`MAX_MESSAGE_BYTES`] if that is less. Smaller
+/// strips need less memory and more work, and change the result slightly.
 ///
 /// # Errors
-/// As [`compute`].
+/// See [`compute`].
 pub async fn compute_within(
     gpu: &Gpu,
     left: &Picture,
@@ -38,7 +38,7 @@ pub async fn compute_within(
     solve(left, right, config, message_bytes, &mut OnDevice { gpu, prepared: None }).await
 }
 
-/// The kernels and the views, once they are there.
+/// The solver on a device, with kernels and views from their first use on.
 struct OnDevice<'g> {
     gpu: &'g Gpu,
     prepared: Option<Prepared>,
@@ -106,7 +106,7 @@ impl Solver for OnDevice<'_> {
                 .iter()
                 .map(|&(size, _)| storage_buffer(gpu, "data costs", 8 * u64::from(fours) * nodes(size)))
                 .collect::<Result<Vec<_>>>()?;
-            // A grid's messages are needed until those of the next finer one have been sent once.
+            // The messages of a grid are needed until the next finer grid has sent once.
             let messages = grids
                 .iter()
                 .take(2)
@@ -144,7 +144,7 @@ impl Solver for OnDevice<'_> {
     }
 }
 
-/// Runs `dispatches`, then reads `result`.
+/// Submits `dispatches` and the copy of `result` to `readback`.
 fn submit(gpu: &Gpu, dispatches: &[Dispatch], result: &wgpu::Buffer, readback: &Readback) {
     let mut encoder = gpu.encoder("Kamencay's method");
     for dispatch in dispatches {

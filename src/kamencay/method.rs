@@ -1,4 +1,4 @@
-//! The order of things, for kernels and twins alike.
+//! The sequence of steps, common to kernels and CPU twins.
 
 use super::{
     KamencayConfig, KamencayParameters, Links, MAX_MESSAGE_BYTES, Segments, Strip,
@@ -14,28 +14,27 @@ use crate::{
     io::Picture,
 };
 
-/// What is to be solved: with the right view as the reference both are exchanged and mirrored, so that the left one
-/// always is.
+/// A matching problem. With the right view as the reference, both views are exchanged and mirrored, so that the left
+/// one is always the reference.
 pub(crate) struct Problem {
-    /// The views as [`described`] leaves them.
+    /// Both views, from [`described`].
     pub(crate) left: Plane<u32>,
     pub(crate) right: Plane<u32>,
     pub(crate) range: DisparityRange,
     pub(crate) parameters: KamencayParameters,
 }
 
-/// Who does the work on pictures and volumes: a device, or the twins.
+/// The steps on pictures and volumes: kernels, or their CPU twins.
 pub(crate) trait Solver {
-    /// The left view filtered by mean shift.
+    /// Filters the left view by mean shift.
     async fn modes(&mut self, problem: &Problem) -> Result<Plane<u32>>;
 
-    /// The winners of a strip's pixels after belief propagation on grids of these sizes and with these links, the
-    /// finest first.
+    /// Returns the winners of a strip's pixels, after belief propagation on `grids`, sizes with links, finest first.
     async fn winners(&mut self, problem: &Problem, strip: Strip, grids: &[(Size, Links)]) -> Result<Vec<Winner>>;
 }
 
-/// Red, green, blue and the gradient of each pixel after a change of brightness, from the lowest byte of a word on.
-/// The gradient is the difference of the lumas of the two neighbours in the row, -127 to 127, plus 128.
+/// Packs red, green, blue and gradient of each pixel, after a change of brightness, into one `u32`, from the lowest
+/// byte on. The gradient is the difference of luma of the two neighbours in the row, clamped to -127..127, plus 128.
 pub fn described(picture: &Picture, brightness: Brightness) -> Plane<u32> {
     let picture = picture.map(|&[red, green, blue, _]| [red, green, blue].map(|level| brightness.apply(level)));
     let last = picture.width() - 1;
@@ -47,7 +46,7 @@ pub fn described(picture: &Picture, brightness: Brightness) -> Plane<u32> {
     })
 }
 
-/// The luma of what [`described`] makes.
+/// The luma of a view from [`described`].
 fn luma_plane(view: &Plane<u32>) -> Plane<u8> {
     view.map(|word| {
         let [red, green, blue, _] = word.to_le_bytes();
@@ -60,7 +59,7 @@ fn mirrored<T: Copy>(plane: &Plane<T>) -> Plane<T> {
     Plane::from_fn(plane.size(), |x, y| plane.get(last - x, y))
 }
 
-/// The disparities of a pair.
+/// Computes the disparity map of a pair.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`], [`Error::TooLarge`], and what the solver reports.
@@ -83,7 +82,7 @@ pub(crate) async fn solve(
     let problem = match config.reference {
         View::Left => Problem { left, right, range, parameters },
         View::Right => {
-            // Mirroring turns the gradients' signs as well, in both views alike.
+            // Mirroring also negates the gradients, in both views alike.
             Problem { left: mirrored(&right), right: mirrored(&left), range, parameters }
         }
     };
@@ -94,9 +93,9 @@ pub(crate) async fn solve(
         let links = Links::new(&problem.left, &segments, strip, parameters.links);
         let links = std::iter::successors(Some(links), |links| Some(links.reduced()));
         let grids: Vec<_> = levels(Size::new(width, strip.rows), parameters.levels).into_iter().zip(links).collect();
-        let found = solver.winners(&problem, strip, &grids).await?;
+        let strip_winners = solver.winners(&problem, strip, &grids).await?;
         let first = ((decided.first_row - strip.first_row) * width) as usize;
-        winners.extend_from_slice(&found[first..][..(decided.rows * width) as usize]);
+        winners.extend_from_slice(&strip_winners[first..][..(decided.rows * width) as usize]);
     }
     let winners = Plane::new((width, height), winners)?;
     let views = [&problem.left, &problem.right].map(luma_plane);

@@ -1,4 +1,4 @@
-//! From the beliefs of pixels to the disparities of segments, on the host.
+//! The disparities of segments from the beliefs of pixels, on the host.
 
 use std::collections::BTreeMap;
 
@@ -14,30 +14,31 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// How the segments' disparities are found, and what they do to those of their pixels.
+/// Parameters of the disparities of segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conclusion {
-    /// The largest difference from the best claim to a pixel's partner for which the other view confirms a
-    /// disparity, in pixels.
+    /// Left-right consistency: the largest accepted difference from the best claim to a pixel's partner, in pixels; 0
+    /// by default.
     pub confirmation: u32,
-    /// The sixteenths of a segment's pixels that have to be confirmed for it to have a disparity.
+    /// Least share of confirmed pixels for a segment to have a disparity, 0 to 16 in 1/16; 4 by default.
     pub least_confirmed: u32,
-    /// By how much a pixel's disparity may differ from its segment's, in pixels.
+    /// Largest difference of a pixel's disparity from its segment's, in pixels; 4 by default. Pixels beyond take the
+    /// segment's disparity.
     pub tolerance: u32,
 }
 
-/// What the confirmed pixels of a segment say.
+/// The result of a segment's confirmed pixels.
 struct Segment {
-    /// Their disparities; `None` where they are too few.
+    /// Surface through their disparities; `None` if too few pixels are confirmed.
     surface: Option<Surface>,
-    /// 0 to 127: the share of the segment's pixels that are confirmed and near that disparity.
+    /// Share of the segment's pixels that are confirmed and near the surface, 0 to 127.
     agreement: u8,
 }
 
-/// The map of the left one of two `views`, in which the winners' disparities were searched in `range`.
+/// The map of the left one of two `views`; the disparities of `winners` were searched in `range`.
 ///
-/// A confidence is 0 where the disparity is not the pixel's own, or another one is believed in as much. Else it is
-/// [`confidence`].
+/// The confidence is 0 where the disparity is not the pixel's own, or where another disparity has the same belief;
+/// otherwise it is that of [`confidence`].
 pub(super) fn conclude(
     winners: &Plane<Winner>,
     segments: &Segments,
@@ -52,7 +53,7 @@ pub(super) fn conclude(
 
     let labels = segments.labels();
     let tolerance = i64::from(conclusion.tolerance) * i64::from(SCALE);
-    let found = segment_surfaces(labels, confirmed_at, conclusion.least_confirmed, tolerance);
+    let surfaces = segment_surfaces(labels, confirmed_at, conclusion.least_confirmed, tolerance);
     let span = i64::from(range.min * SCALE)..=i64::from(range.last() * SCALE);
     let mut dense =
         Dense { disparity: Plane::filled((width, height), NONE), confidence: Plane::filled((width, height), 0) };
@@ -60,8 +61,8 @@ pub(super) fn conclude(
         let row: Vec<Option<i32>> = (0..width).map(|x| confirmed_at(x, y)).collect();
         let beside = nearest(&row);
         for x in 0..width {
-            let segment = &found[&labels.get(x, y)];
-            // What a pixel would have without its segment.
+            let segment = &surfaces[&labels.get(x, y)];
+            // The disparity of the pixel without its segment.
             let alone = row[x as usize].or(beside[x as usize]).unwrap_or(own.get(x, y));
             match segment.surface.filter(|surface| surface.distance(&(x, y, alone)) > tolerance) {
                 Some(surface) => {
@@ -70,9 +71,9 @@ pub(super) fn conclude(
                 None => {
                     dense.disparity.set(x, y, alone * SCALE);
                     if row[x as usize].is_some() && winners.get(x, y).margin() > 0 {
-                        let sure = sureness(winners.get(x, y).margin());
+                        let certainty = certainty(winners.get(x, y).margin());
                         let alike = alikeness(views, (x, y), alone);
-                        dense.confidence.set(x, y, confidence(segment.agreement, sure, alike));
+                        dense.confidence.set(x, y, confidence(segment.agreement, certainty, alike));
                     }
                 }
             }
@@ -81,9 +82,8 @@ pub(super) fn conclude(
     dense
 }
 
-/// Whether the other view confirms the winner of each pixel: of all pixels with the same partner, the one of the least
-/// belief claims the partner (ties go to the smaller disparity), and the disparities of the two differ by at most
-/// `most` px.
+/// Whether the other view confirms each pixel's winner: among all pixels with the same partner, the one of least belief
+/// claims the partner (ties go to the smaller disparity), and the two disparities differ by at most `most` px.
 fn confirmed(winners: &Plane<Winner>, own: &Plane<i32>, most: u32) -> Plane<bool> {
     let Size { width, height } = own.size();
     let partner = |x: u32, y: u32| x.checked_add_signed(-own.get(x, y)).filter(|&partner| partner < width);
@@ -101,22 +101,22 @@ fn confirmed(winners: &Plane<Winner>, own: &Plane<i32>, most: u32) -> Plane<bool
     })
 }
 
-/// 1 to 255, from three that are each 0 to 127: the agreement in a pixel's segment, how clearly its belief is the best,
-/// and how alike both views look there. None of them is right alone: whole segments can be wrong, beliefs cross them,
-/// and what repeats looks alike.
-fn confidence(agreement: u8, sureness: u8, alikeness: u8) -> u8 {
-    let sum = u32::from(agreement) + u32::from(sureness) + u32::from(alikeness);
+/// The confidence of a pixel, 1 to 255, from three parts of 0 to 127: the agreement within its segment, the margin of
+/// its belief, and the similarity of both views there. No part suffices alone: whole segments can be wrong, beliefs
+/// spread across segments, and repeated texture looks similar.
+fn confidence(agreement: u8, certainty: u8, alikeness: u8) -> u8 {
+    let sum = u32::from(agreement) + u32::from(certainty) + u32::from(alikeness);
     1 + (2 * sum / 3) as u8
 }
 
-/// How clearly a belief is the best, 0 to 127, where all others but its neighbours' are worse by so much.
-fn sureness(margin: u32) -> u8 {
-    /// The margin that is half sure: the difference of colours that weighs as much is a large one.
+/// The certainty of a belief, 0 to 127, from its `margin` to the best rival.
+fn certainty(margin: u32) -> u8 {
+    /// The margin of half certainty: a difference of colours that weighs as much is a large one.
     const HALF: u64 = 64;
     (127 * u64::from(margin) / (u64::from(margin) + HALF)) as u8
 }
 
-/// The surface of each segment; `tolerance` in 1/256 px is what agrees with it.
+/// The surface of each segment; pixels within `tolerance`, in 1/256 px, agree with it.
 fn segment_surfaces(
     labels: &Plane<u32>,
     confirmed_at: impl Fn(u32, u32) -> Option<i32>,
@@ -141,8 +141,8 @@ fn segment_surfaces(
     members.into_iter().map(segment).collect()
 }
 
-/// For each pixel of a row the smaller of the nearest disparities to its left and to its right: what is hidden from
-/// the other view is further away than what hides it.
+/// For each pixel of a row, the smaller of the nearest disparities to its left and right: an occluded surface is
+/// further away than the one that occludes it.
 fn nearest(row: &[Option<i32>]) -> Vec<Option<i32>> {
     let last_seen = |last: &mut Option<i32>, disparity: &Option<i32>| {
         *last = disparity.or(*last);
@@ -174,20 +174,20 @@ mod tests {
         let winners = Plane::new((7, 1), row).unwrap();
         let segments = Segments::new(&Plane::filled((7, 1), 0), Segmentation { join: 0, least: 0 });
         let range = DisparityRange::new(0, 8).unwrap();
-        // Of all windows only those with the partner at no distance are alike.
+        // Only windows whose partner is at disparity 0 are similar.
         let view = Plane::from_fn((7, 1), |x, _| (9 * x * x) as u8);
         let flat = Plane::filled((7, 1), 0);
         let conclude = |tolerance, other| {
             let conclusion = Conclusion { confirmation: 0, least_confirmed: 2, tolerance };
             conclude(&winners, &segments, range, &conclusion, [&view, other])
         };
-        // Partners: 0, 1, 1, 3, 0, 5, 3; a tie goes to the smaller disparity. Confirmed are four zeros.
+        // Partners: 0, 1, 1, 3, 0, 5, 3; a tie goes to the smaller disparity. Four zeros are confirmed.
         for (other, alike) in [(&flat, 0), (&view, 127)] {
             let dense = conclude(0, other);
             assert_eq!(dense.disparity.data(), [0; 7]);
-            // Of seven pixels four agree; 50 of 50 + 64.
-            let sure = 1 + (2 * (127 * 4 / 7 + 127 * 50 / 114 + alike) / 3) as u8;
-            assert_eq!(dense.confidence.data(), [sure, sure, 0, sure, 0, sure, 0]);
+            // Four of seven pixels agree; certainty 50 / (50 + 64).
+            let expected = 1 + (2 * (127 * 4 / 7 + 127 * 50 / 114 + alike) / 3) as u8;
+            assert_eq!(dense.confidence.data(), [expected, expected, 0, expected, 0, expected, 0]);
         }
         let loose = Conclusion { confirmation: 1, least_confirmed: 2, tolerance: 1 };
         let dense = super::conclude(&winners, &segments, range, &loose, [&view, &flat]);

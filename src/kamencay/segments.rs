@@ -4,26 +4,27 @@ use std::collections::BTreeMap;
 
 use crate::image::{Plane, Size};
 
-/// Which pixels make a segment.
+/// Parameters of segmentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segmentation {
-    /// The largest distance of the filtered colours of neighbours that are joined, in grey levels.
+    /// Largest distance of the filtered RGB colours of neighbours in one segment, 0 to 441 grey levels; 4 by default.
     pub join: u32,
-    /// Smaller segments are merged into the neighbour of the most similar mean colour, in pixels.
+    /// Least size of a segment, in pixels; 10 by default. Smaller segments are merged into the neighbour of the most
+    /// similar mean colour.
     pub least: u32,
 }
 
-/// The segment of each pixel: the place of the segment's first pixel in raster order.
+/// The segment of each pixel: its label is the raster index of the segment's first pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segments {
     labels: Plane<u32>,
 }
 
-/// Segments that grow together: Tarjan's union-find, where the smaller label stays.
+/// Regions that are joined: Tarjan's union-find, where the smaller label remains.
 struct Regions {
     parents: Vec<u32>,
     sizes: Vec<u32>,
-    /// The sums of red, green and blue.
+    /// Sums of red, green and blue of each region.
     sums: Vec<[i64; 3]>,
 }
 
@@ -59,7 +60,7 @@ impl Regions {
     }
 }
 
-/// All pairs of pixels side by side or one above the other.
+/// All pairs of 4-connected pixels.
 fn neighbours(Size { width, height }: Size) -> impl Iterator<Item = (u32, u32)> {
     (0..width * height).flat_map(move |pixel| {
         let right = (pixel % width + 1 < width).then_some((pixel, pixel + 1));
@@ -69,7 +70,7 @@ fn neighbours(Size { width, height }: Size) -> impl Iterator<Item = (u32, u32)> 
 }
 
 impl Segments {
-    /// The segments of a picture filtered by mean shift: a word a pixel, red in its lowest byte.
+    /// Segments a picture filtered by mean shift: one `u32` per pixel, red in its lowest byte.
     pub fn new(modes: &Plane<u32>, segmentation: Segmentation) -> Self {
         let (size, pixels) = (modes.size(), modes.data());
         let colour = |pixel: u32| [0, 8, 16].map(|shift| i64::from(pixels[pixel as usize] >> shift & 255));
@@ -95,14 +96,14 @@ impl Segments {
         &self.labels
     }
 
-    /// How many there are.
+    /// Number of segments.
     pub fn count(&self) -> usize {
         (0..).zip(self.labels.data()).filter(|&(pixel, &label)| pixel == label).count()
     }
 }
 
-/// Merges each region of fewer than `least` pixels, in the order of their labels, into the most similar of its
-/// neighbours, ties to the smaller label. Whether any was merged.
+/// Merges each region of fewer than `least` pixels, in the order of labels, into the most similar neighbour, ties to
+/// the smaller label. Returns whether any region was merged.
 fn merge_small(regions: &mut Regions, size: Size, least: u32) -> bool {
     let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (a, b) in neighbours(size) {
@@ -116,14 +117,14 @@ fn merge_small(regions: &mut Regions, size: Size, least: u32) -> bool {
         }
     }
     let mut merged = false;
-    for (small, others) in around {
+    for (small, neighbours) in around {
         let small = regions.find(small);
         if regions.sizes[small as usize] >= least {
             continue;
         }
-        let others: Vec<u32> = others.into_iter().map(|other| regions.find(other)).collect();
-        let others = others.into_iter().filter(|&other| other != small);
-        if let Some(other) = others.min_by_key(|&other| (regions.distance(small, other), other)) {
+        let neighbours: Vec<u32> = neighbours.into_iter().map(|other| regions.find(other)).collect();
+        let neighbours = neighbours.into_iter().filter(|&other| other != small);
+        if let Some(other) = neighbours.min_by_key(|&other| (regions.distance(small, other), other)) {
             regions.join(small, other);
             merged = true;
         }

@@ -1,44 +1,45 @@
-//! The disparities of a segment: a plane through those of its pixels, on the host.
+//! The disparities of a segment: a plane through the disparities of its pixels, on the host.
 
 use crate::disparity::SCALE;
 
-/// Planes are fitted again to what lies near the last one, so often.
+/// Number of fits; each one uses the pixels near the previous plane.
 const ROUNDS: usize = 4;
 
-/// How near the median a pixel has to be for the first fit, and how near the last plane for the next, in 1/256 px.
+/// Largest distance, in 1/256 px, of a pixel from the median in the first fit, and from the previous plane in later
+/// fits.
 const FIRST_REACH: i64 = 6 * SCALE as i64;
 const REACH: i64 = 3 * SCALE as i64 / 2;
 
-/// Fewer pixels say nothing of a slope.
+/// Least number of pixels for a slope.
 const LEAST_PIXELS: usize = 20;
 
-/// Steps of a plane's numbers in a pixel.
+/// Fixed-point steps per pixel of a plane's coefficients.
 const STEPS: i128 = 1 << 14;
 
-/// No surface that both cameras see is steeper, in pixels a pixel.
+/// The steepest slope of a surface that both cameras see, in pixels per pixel.
 const STEEPEST: i128 = 2;
 
 /// A pixel and its disparity in whole pixels.
 pub(super) type Sample = (u32, u32, i32);
 
-/// A disparity for each place: a plane.
+/// A plane of disparities over the picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface {
-    /// Where the plane has `disparity`.
+    /// The pixel at which the plane has `disparity`.
     centre: (i64, i64),
-    /// In [`STEPS`] of a pixel, and by how much it grows from column to column and from row to row.
+    /// Disparity at `centre`, and its slopes per column and per row, in 1/[`STEPS`] px.
     disparity: i128,
     slopes: (i128, i128),
 }
 
 impl Surface {
-    /// The same disparity everywhere, in whole pixels.
+    /// A plane of constant disparity, in whole pixels.
     fn level(disparity: i32) -> Self {
         Self { centre: (0, 0), disparity: i128::from(disparity) * STEPS, slopes: (0, 0) }
     }
 
-    /// The surface of a segment of which these pixels are confirmed: the plane of least squares through most of them, or
-    /// their lower median where they are few or in a line.
+    /// Fits the surface of a segment to its confirmed pixels: the least-squares plane through most of them, or their
+    /// lower median if they are few or collinear.
     pub(super) fn of(samples: &[Sample]) -> Option<Self> {
         let mut disparities: Vec<i32> = samples.iter().map(|&(.., disparity)| disparity).collect();
         disparities.sort_unstable();
@@ -55,19 +56,19 @@ impl Surface {
         Some(surface)
     }
 
-    /// The disparity at a pixel in 1/256 px, rounded down.
+    /// The disparity at a pixel, in 1/256 px, rounded down.
     pub(super) fn at(&self, x: u32, y: u32) -> i64 {
         let (u, v) = (i64::from(x) - self.centre.0, i64::from(y) - self.centre.1);
         let disparity = self.disparity + self.slopes.0 * i128::from(u) + self.slopes.1 * i128::from(v);
         (disparity * i128::from(SCALE)).div_euclid(STEPS) as i64
     }
 
-    /// How far a pixel is from the surface, in 1/256 px.
+    /// The distance of a pixel from the surface, in 1/256 px.
     pub(super) fn distance(&self, &(x, y, disparity): &Sample) -> i64 {
         (i64::from(disparity) * i64::from(SCALE) - self.at(x, y)).abs()
     }
 
-    /// The plane of least squares; none through few pixels, or through such that lie nearly in a line.
+    /// Fits the least-squares plane; `None` if the pixels are few or nearly collinear.
     fn fit(samples: &[Sample]) -> Option<Self> {
         if samples.len() < LEAST_PIXELS {
             return None;
@@ -81,7 +82,7 @@ impl Surface {
         let sum = |i: usize| i128::from(relative().map(|sample| sample[i]).sum::<i64>());
         let sums = [sum(0), sum(1), sum(2)];
         let count = i128::from(n);
-        // Sums of products of what remains without the means.
+        // Central second moments, times the count.
         let moment = |i: usize, j: usize| {
             let products: i128 = relative().map(|sample| i128::from(sample[i] * sample[j])).sum();
             products - (sums[i] * sums[j]).div_euclid(count)

@@ -1,4 +1,4 @@
-//! Luma on the device: one byte per pixel, packed four to a word, and what becomes packed luma.
+//! Luma on the device: one byte per pixel, four packed per `u32`, and the pictures that are converted to it.
 //!
 //! Pixel `x` of a row is byte `x % 4`, counted from the lowest, of the row's word `x / 4`; a row
 //! has `ceil(width / 4)` words, and what lies beyond the width is 0.

@@ -12,10 +12,10 @@ pub fn packed_bytes(size: impl Into<Size>) -> u64 {
     4 * u64::from(width.div_ceil(4)) * u64::from(height)
 }
 
-/// The longest side of a picture, in pixels: for more there are not enough workgroups in a dispatch.
+/// The longest accepted side of a picture, in pixels: more would need more workgroups than a dispatch can have.
 pub const MAX_SIDE: u32 = 1 << 19;
 
-/// Refuses sizes that no kernel could work on.
+/// Checks that both sides are 1 to [`MAX_SIDE`] pixels.
 pub(crate) fn check_size(size: Size) -> Result<()> {
     let sides = [size.width, size.height];
     let expected = format!("its sides must be 1 to {MAX_SIDE}");
@@ -27,23 +27,22 @@ pub(crate) fn check_size(size: Size) -> Result<()> {
     )
 }
 
-/// Refuses sizes that no kernel could work on, and a buffer that does not hold a picture of the size, or that no kernel
-/// may read.
+/// Checks the size, and that `luma` is large enough for a packed picture of it and has usage `STORAGE`.
 pub(crate) fn check_packed(luma: &wgpu::Buffer, size: Size) -> Result<()> {
     check_size(size)?;
     check_buffer("packed luma", luma, packed_bytes(size), wgpu::BufferUsages::STORAGE)
 }
 
-/// Packs a picture as the kernels read it.
+/// Packs a picture: four pixels per `u32`, the first in the lowest byte, each row in words of its own.
 pub fn pack(luma: &Luma) -> Vec<u32> {
     let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u32::from(pixel));
     (0..luma.height()).flat_map(|y| luma.row(y).chunks(4).map(word)).collect()
 }
 
-/// The picture, packed, in a buffer of its own on the device.
+/// Uploads a packed picture to a buffer of its own.
 ///
 /// # Errors
-/// [`Error::TooLarge`] where the device cannot bind it, [`Error::OutOfMemory`].
+/// [`crate::Error::TooLarge`] if the device cannot bind the buffer, [`crate::Error::OutOfMemory`].
 pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
     let Size { width, height } = luma.size();
     let allocate = || storage_buffer(gpu, "luma", packed_bytes((width, height)));
@@ -52,10 +51,10 @@ pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
     Ok(buffer)
 }
 
-/// The picture that `words` hold, as [`pack`] packs it.
+/// Unpacks a picture from `words` as [`pack`] packs it.
 ///
 /// # Panics
-/// If a side is 0 or there are too few words.
+/// If a side is 0 or `words` has too few elements.
 pub fn unpack(size: impl Into<Size>, words: &[u32]) -> Luma {
     let size = size.into();
     let stride = size.width.div_ceil(4) as usize;

@@ -1,22 +1,22 @@
-//! What kernels are given and what they leave, and how far the results of two may be apart.
+//! Inputs and outputs of kernels, and tolerances of their comparison.
 
 use std::{f32::consts::TAU, ops::Range};
 
-/// Values in a row.
+/// A sequence of values of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// Bytes.
     U8(Vec<u8>),
-    /// Words.
+    /// `u32`s.
     U32(Vec<u32>),
-    /// Signed words.
+    /// `i32`s.
     I32(Vec<i32>),
-    /// Floats.
+    /// `f32`s.
     F32(Vec<f32>),
 }
 
 impl Values {
-    /// How many there are.
+    /// Number of values.
     pub fn len(&self) -> usize {
         match self {
             Self::U8(values) => values.len(),
@@ -26,12 +26,12 @@ impl Values {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The name of their type.
+    /// Name of the type of the values.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::U8(_) => "u8",
@@ -41,7 +41,7 @@ impl Values {
         }
     }
 
-    /// Their bytes, the lowest of each value first.
+    /// The bytes of all values, little-endian.
     pub fn to_le_bytes(&self) -> Vec<u8> {
         match self {
             Self::U8(values) => values.clone(),
@@ -51,7 +51,7 @@ impl Values {
         }
     }
 
-    /// A value, for people.
+    /// A value as text.
     fn text(&self, index: usize) -> String {
         match self {
             Self::U8(values) => values[index].to_string(),
@@ -61,7 +61,7 @@ impl Values {
         }
     }
 
-    /// A value as a number that all of them fit in.
+    /// A value as `f64`, exact for all types.
     fn number(&self, index: usize) -> f64 {
         match self {
             Self::U8(values) => values[index].into(),
@@ -96,38 +96,38 @@ impl From<Vec<f32>> for Values {
     }
 }
 
-/// How far a device's values may be from the twin's.
+/// The accepted difference of a device's values from the twin's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// Not at all: bit for bit the same.
+    /// No difference: bit for bit the same.
     Exact,
-    /// Floats.
+    /// `f32`s.
     Within {
         /// The largest difference of two values.
         difference: f32,
-        /// Whether they are angles: 0 to below 2 pi, where 0 is as near to the end as to the beginning.
+        /// Whether the values are angles, 0 to below 2 pi, whose differences wrap around.
         angles: bool,
-        /// So many values in a row are one thing, which is off where any of them is.
+        /// Values per group; a group is off if any of its values is.
         group: usize,
-        /// Where a thing is a vector: how far its length may be from the twin's, that of an outlier too.
+        /// For groups that are vectors: the largest difference of their length from the twin's, also for outliers.
         length: Option<f32>,
-        /// Things that may be off nevertheless.
+        /// Groups that may be off nevertheless.
         outliers: Option<Outliers>,
     },
 }
 
-/// A few things that may be further off than the others, where a last digit decides between two answers: no excuse for
-/// anything that is no answer at all.
+/// A few groups that may be further off, where a last digit decides between two valid results. They excuse no invalid
+/// result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outliers {
-    /// Of a thousand things so many, rounded down: where 5 may, none may among fewer than 200 things.
+    /// Accepted outliers per thousand groups, rounded down: with 5, none is accepted among fewer than 200 groups.
     pub of_thousand: usize,
-    /// The largest difference of any of their values.
+    /// The largest difference of a value in an outlier.
     pub difference: f32,
 }
 
 impl Tolerance {
-    /// The tolerance, for people.
+    /// The tolerance as text.
     pub fn text(&self) -> String {
         match *self {
             Self::Exact => "exact".into(),
@@ -145,7 +145,7 @@ impl Tolerance {
         }
     }
 
-    /// How many things of `count` may be off.
+    /// Number of groups of `count` that may be off.
     fn allowed(&self, count: usize) -> usize {
         match *self {
             Self::Exact | Self::Within { outliers: None, .. } => 0,
@@ -154,38 +154,38 @@ impl Tolerance {
     }
 }
 
-/// Named values.
+/// Named values with a tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// What they are.
+    /// Name of the values.
     pub name: &'static str,
     /// The values.
     pub values: Values,
-    /// How far a device's may be from the twin's.
+    /// Tolerance of a device's values.
     pub tolerance: Tolerance,
 }
 
 impl Array {
-    /// Values of which every bit counts.
+    /// Values that must be bit for bit the same.
     pub fn exact(name: &'static str, values: impl Into<Values>) -> Self {
         Self { name, values: values.into(), tolerance: Tolerance::Exact }
     }
 }
 
-/// What came of a comparison of a device's values with the twin's.
+/// The result of a comparison of a device's values with the twin's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What the values are.
+    /// Name of the values.
     pub name: &'static str,
-    /// How far they may be apart.
+    /// Tolerance of the comparison.
     pub tolerance: Tolerance,
-    /// How many things were compared.
+    /// Number of groups compared.
     pub count: usize,
-    /// How many of them are further apart than that.
+    /// Number of groups beyond the tolerance.
     pub off: usize,
     /// The largest difference of two values.
     pub largest: f64,
-    /// What is wrong, for people; nothing where no more are off than may be.
+    /// Description of the fault; `None` if no more groups are off than accepted.
     pub fault: Option<String>,
 }
 
@@ -194,22 +194,24 @@ impl Comparison {
     pub fn new(actual: &Array, expected: &Array) -> Self {
         let Array { name, tolerance, .. } = *expected;
         let mut comparison = Self { name, tolerance, count: 0, off: 0, largest: 0.0, fault: None };
-        let (values, wanted) = (&actual.values, &expected.values);
-        if (actual.name, values.kind(), values.len()) != (name, wanted.kind(), wanted.len()) {
+        let (actual_values, expected_values) = (&actual.values, &expected.values);
+        if (actual.name, actual_values.kind(), actual_values.len())
+            != (name, expected_values.kind(), expected_values.len())
+        {
             let of = |array: &Array| format!("{} {} {}", array.values.len(), array.name, array.values.kind());
             comparison.fault = Some(format!("there are {}, not {}", of(actual), of(expected)));
             return comparison;
         }
         let group = tolerance.group();
         let (mut first, mut first_beyond) = (None, None);
-        for start in (0..wanted.len()).step_by(group) {
-            let thing = start..(start + group).min(wanted.len());
+        for start in (0..expected_values.len()).step_by(group) {
+            let indices = start..(start + group).min(expected_values.len());
             let mut off = None;
-            // Where it is off by more than even an outlier may be.
+            // The value that is off by more than an outlier may be.
             let mut beyond = None;
-            for index in thing.clone() {
-                let (difference, near) = compare(values, wanted, index, tolerance);
-                // NaN is further away than any number, and stays.
+            for index in indices.clone() {
+                let (difference, near) = compare(actual_values, expected_values, index, tolerance);
+                // NaN exceeds any number, and no later value replaces it.
                 if difference.is_nan() || difference > comparison.largest {
                     comparison.largest = difference;
                 }
@@ -220,7 +222,7 @@ impl Comparison {
                     beyond = beyond.or(Some(index));
                 }
             }
-            if !length_kept(values, wanted, thing, tolerance) {
+            if !length_kept(actual_values, expected_values, indices, tolerance) {
                 off = off.or(Some(start));
                 beyond = beyond.or(off);
             }
@@ -231,25 +233,25 @@ impl Comparison {
         }
         let too_many = first.filter(|_| comparison.off > tolerance.allowed(comparison.count));
         if let Some(index) = first_beyond.or(too_many) {
-            let (is, should, off) = (values.text(index), wanted.text(index), comparison.off);
+            let (is, should, off) = (actual_values.text(index), expected_values.text(index), comparison.off);
             comparison.fault = Some(format!("{name}: value {index} is {is}, not {should}; {off} are off"));
         }
         comparison
     }
 }
 
-/// What a value is taken for.
+/// The judgement of a value.
 #[derive(Clone, Copy, PartialEq)]
 enum Near {
-    /// The same, or within the tolerance.
+    /// Equal, or within the tolerance.
     Enough,
     /// Off by no more than an outlier may be.
     AnOutlier,
-    /// Neither.
+    /// Beyond both.
     No,
 }
 
-/// The difference of two values, and what `tolerance` takes the first for.
+/// The difference of two values, and its judgement by `tolerance`.
 fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Tolerance) -> (f64, Near) {
     let (a, e) = (actual.number(index), expected.number(index));
     let difference = (a - e).abs();
@@ -262,7 +264,7 @@ fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Toleranc
     };
     let difference = if angles { difference.min(f64::from(TAU) - difference) } else { difference };
     let in_range = !angles || (0.0..TAU.into()).contains(&a);
-    // No comparison with NaN holds, and infinity is within no limit.
+    // Every comparison with NaN is false, and infinity is within no limit.
     let within = |limit: f32| in_range && difference <= limit.into();
     let near = match outliers {
         _ if within(limit) => Near::Enough,
@@ -272,12 +274,12 @@ fn compare(actual: &Values, expected: &Values, index: usize, tolerance: Toleranc
     (difference, near)
 }
 
-/// Whether a thing is as long a vector as it should be, where that is asked for.
-fn length_kept(actual: &Values, expected: &Values, thing: Range<usize>, tolerance: Tolerance) -> bool {
+/// Whether a group has the right length as a vector, where the tolerance limits that.
+fn length_kept(actual: &Values, expected: &Values, group: Range<usize>, tolerance: Tolerance) -> bool {
     let Tolerance::Within { length: Some(limit), .. } = tolerance else {
         return true;
     };
-    let length = |values: &Values| thing.clone().map(|index| values.number(index).powi(2)).sum::<f64>().sqrt();
+    let length = |values: &Values| group.clone().map(|index| values.number(index).powi(2)).sum::<f64>().sqrt();
     (length(actual) - length(expected)).abs() <= limit.into()
 }
 
@@ -339,7 +341,7 @@ mod tests {
         }
     }
 
-    /// Vectors of length 1 along the first of their two axes, the first of them another way round; one of 200 may be off.
+    /// Vectors of length 1 along the first of their two axes, the first vectors turned; one of 200 may be off.
     fn vectors(count: usize, turned: &[f32]) -> Array {
         let outliers = Some(Outliers { of_thousand: 5, difference: 0.5 });
         let tolerance = Tolerance::Within { difference: 0.001, angles: false, group: 2, length: Some(1e-4), outliers };
@@ -354,7 +356,7 @@ mod tests {
         let expected = "vectors: value 0 is 0.9553365, not 1; 2 are off";
         assert_eq!(fault(vectors(200, &[0.3, 0.3]), vectors(200, &[])).as_deref(), Some(expected));
         assert_eq!(fault(vectors(400, &[0.3, 0.3]), vectors(400, &[])), None);
-        // There has to be a whole one that may be off.
+        // The number of accepted outliers is rounded down.
         assert!(fault(vectors(199, &[0.3]), vectors(199, &[])).is_some());
         assert!(fault(vectors(1, &[0.3]), vectors(1, &[])).is_some());
     }

@@ -1,4 +1,4 @@
-//! A device on which single kernels run: buffers on their way there and back.
+//! A bench for single kernels on a device: uploads, dispatches and downloads.
 
 use crate::{
     error::Result,
@@ -7,7 +7,7 @@ use crate::{
     luma::pack,
 };
 
-/// A device that kernels are tried on.
+/// A device that kernels are verified on.
 #[derive(Clone, Copy, Debug)]
 pub struct Bench<'g> {
     /// The device.
@@ -15,12 +15,12 @@ pub struct Bench<'g> {
 }
 
 impl<'g> Bench<'g> {
-    /// On an open device.
+    /// Creates a bench on an open device.
     pub fn new(gpu: &'g Gpu) -> Self {
         Self { gpu }
     }
 
-    /// A storage buffer that holds `values`.
+    /// Uploads `values` to a storage buffer.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`].
@@ -30,7 +30,7 @@ impl<'g> Bench<'g> {
         Ok(buffer)
     }
 
-    /// A texture that holds `values`, words one after the other.
+    /// Uploads `values`, whole words, to a texture.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`].
@@ -43,7 +43,7 @@ impl<'g> Bench<'g> {
         Ok(texture)
     }
 
-    /// A picture, packed, in a storage buffer.
+    /// Uploads a packed picture to a storage buffer.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`].
@@ -51,7 +51,7 @@ impl<'g> Bench<'g> {
         self.upload(&pack(luma))
     }
 
-    /// A storage buffer of so many words, full of ones.
+    /// Allocates a storage buffer of `words` `u32`s with all bits set.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`].
@@ -61,7 +61,7 @@ impl<'g> Bench<'g> {
         Ok(buffer)
     }
 
-    /// A view of a texture that holds `texels`, row by row.
+    /// Uploads `texels`, row by row, to a texture, and returns its view.
     pub fn texture(&self, format: wgpu::TextureFormat, size: impl Into<Size>, texels: &[u8]) -> wgpu::TextureView {
         let size = size.into();
         let texture = self.plain_texture(format, size, wgpu::TextureUsages::TEXTURE_BINDING);
@@ -71,7 +71,7 @@ impl<'g> Bench<'g> {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// A texture of four bytes a texel for a kernel to write, full of ones.
+    /// Allocates a texture of four bytes per texel for a kernel to write, with all bits set.
     pub fn output_texture(&self, format: wgpu::TextureFormat, size: impl Into<Size>) -> wgpu::Texture {
         let size = size.into();
         let texture = self.plain_texture(format, size, wgpu::TextureUsages::STORAGE_BINDING);
@@ -100,10 +100,10 @@ impl<'g> Bench<'g> {
         })
     }
 
-    /// The texels of a texture of four bytes each, row by row, after everything that was submitted.
+    /// Waits for the submitted work and downloads the texels of a texture, four bytes each, row by row.
     ///
     /// # Errors
-    /// As [`Self::download`].
+    /// See [`Self::download`].
     pub fn download_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>> {
         let (width, height) = (texture.width(), texture.height());
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -117,24 +117,24 @@ impl<'g> Bench<'g> {
         Ok(texels.chunks(row as usize / 4).flat_map(|row| &row[..width as usize]).copied().collect())
     }
 
-    /// Overwrites the first values of `buffer`, a whole number of words.
+    /// Overwrites the beginning of `buffer` with `values`, whole words.
     pub fn write<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, values: &[T]) {
         self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(values));
     }
 
-    /// Fills `buffer` with ones, so that 'wrote 0' differs from 'never wrote'.
+    /// Sets all bits of `buffer`, so that 'wrote 0' differs from 'never wrote'.
     pub fn poison(&self, buffer: &wgpu::Buffer) {
         self.write(buffer, &vec![0xff_u8; buffer.size() as usize]);
     }
 
-    /// Submits what `record` records.
+    /// Submits the commands that `record` encodes.
     pub fn run(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let mut encoder = self.gpu.encoder("trial");
         record(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// All of `buffer`, after everything that was submitted.
+    /// Waits for the submitted work and downloads all of `buffer`.
     ///
     /// # Errors
     /// [`crate::Error::DeviceLost`].
@@ -144,10 +144,10 @@ impl<'g> Bench<'g> {
         block_on(readback.read(buffer.size() as usize / size_of::<T>()))
     }
 
-    /// What `work` returns, or what the device has to say against it.
+    /// Returns the result of `work`, or an error that the device reports.
     ///
     /// # Errors
-    /// Those of `work`; [`crate::Error::Unsupported`], [`crate::Error::OutOfMemory`].
+    /// The errors of `work`; [`crate::Error::Unsupported`], [`crate::Error::OutOfMemory`].
     pub fn guarded<T>(&self, what: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
         block_on(guarded(self.gpu, what, work))
     }

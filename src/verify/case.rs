@@ -1,4 +1,4 @@
-//! One kernel at one size with inputs that follow from a seed: run, compared, timed.
+//! One kernel at one size, with inputs drawn from a seed: run, compared, timed.
 
 use std::time::{Duration, Instant};
 
@@ -16,10 +16,10 @@ use crate::{
     image::Size,
 };
 
-/// Compares what a device leaves with what the twins leave.
+/// Compares the outputs of a device with those of the twins.
 ///
 /// # Errors
-/// Those of either.
+/// The errors of either.
 pub fn compare(trial: &dyn Trial, bench: &Bench<'_>) -> Result<Vec<Comparison>> {
     let expected = trial.twin()?;
     let actual = bench.guarded("a kernel", || trial.on_device(bench))?;
@@ -31,25 +31,25 @@ fn comparisons(actual: &[Array], expected: &[Array]) -> Vec<Comparison> {
     actual.iter().zip(expected).map(|(actual, expected)| Comparison::new(actual, expected)).collect()
 }
 
-/// The longest side of a case's picture.
+/// The longest side of a case's picture, in pixels.
 pub const MAX_SIDE: u32 = 4096;
 
-/// A subject with a size and a seed: everything else follows.
+/// A subject with a size and a seed, which determine all inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// What is verified.
+    /// The subject verified.
     pub subject: &'static Subject,
-    /// Of the picture that it works on.
+    /// Size of the picture, in pixels.
     pub size: Size,
-    /// Of what is drawn.
+    /// Seed of the inputs.
     pub seed: u32,
 }
 
 impl Case {
-    /// The case of a subject's name.
+    /// The case of the subject of this name.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the names that there are, and for a size out of range.
+    /// [`Error::Parameter`] with all names if `name` is unknown, or if a side is not 1 to [`MAX_SIDE`].
     pub fn new(name: &str, size: impl Into<Size>, seed: u32) -> Result<Self> {
         let size = size.into();
         if size.width.min(size.height) == 0 || size.width.max(size.height) > MAX_SIDE {
@@ -70,7 +70,7 @@ impl Case {
         Ok(Self { subject, size, seed })
     }
 
-    /// What is tried.
+    /// Draws the trial of this case.
     pub fn trial(&self) -> Box<dyn Trial> {
         (self.subject.draw)(self.size, &mut Dice::new(self.subject.name, self.seed))
     }
@@ -85,7 +85,7 @@ impl Case {
         }
     }
 
-    /// Runs it on a device and on the CPU.
+    /// Runs the case on a device and on the CPU.
     pub fn run(&self, bench: &Bench<'_>) -> Outcome {
         let trial = self.trial();
         let start = Instant::now();
@@ -130,31 +130,31 @@ impl Case {
     }
 }
 
-/// A word as a shell takes it for itself, whatever stands in it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// What came of a case.
+/// The outcome of a case.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The case.
     pub case: Case,
-    /// What was given beside arrays.
+    /// Parameters of the trial beside its arrays.
     pub parameters: String,
-    /// How long the device took, with the compilation of its kernels.
+    /// Time on the device, with the compilation of its kernels.
     pub device_time: Duration,
-    /// How long the twins took.
+    /// Time of the twins.
     pub twin_time: Duration,
-    /// For each array what came of its comparison; none where there was nothing to compare.
+    /// One comparison per array; empty if there was nothing to compare.
     pub comparisons: Vec<Comparison>,
-    /// What is wrong, for people; nothing where all is right.
+    /// Descriptions of all faults; empty if the case passes.
     pub faults: Vec<String>,
-    /// Whether a golden hash is stored for this case, and is that of the twin's exact results.
+    /// Whether a golden hash is stored for this case and equals that of the twin's exact results.
     pub golden: bool,
-    /// Whether the device is lost, so that nothing else will run on it.
+    /// Whether the device is lost, so that no other case can run on it.
     pub lost: bool,
-    /// The arrays that were given.
+    /// The input arrays.
     pub input: Vec<Array>,
     /// The twin's arrays.
     pub expected: Vec<Array>,
@@ -163,7 +163,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether nothing is wrong.
+    /// Whether the case has no fault.
     pub fn passes(&self) -> bool {
         self.faults.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Inputs that follow from a seed, the same on every machine.
+//! Random inputs from a seed, the same on every machine.
 
 use crate::{
     dense::{Interpolation, View},
@@ -6,18 +6,18 @@ use crate::{
     image::{Luma, Size},
 };
 
-/// A row of numbers that follow from a seed. SplitMix64: Steele, Lea, Flood: 'Fast splittable pseudorandom number
-/// generators', OOPSLA 2014.
+/// A pseudorandom generator. SplitMix64: Steele, Lea, Flood: 'Fast splittable pseudorandom number generators', OOPSLA
+/// 2014.
 pub struct Dice(u64);
 
 impl Dice {
-    /// The numbers of `seed`, others for each `name`.
+    /// Seeds the generator with `name` and `seed`.
     pub fn new(name: &str, seed: u32) -> Self {
         let name = name.bytes().fold(0, |hash: u64, byte| hash.wrapping_mul(31).wrapping_add(byte.into()));
         Self(name << 32 ^ u64::from(seed))
     }
 
-    /// Any word.
+    /// Draws a `u32`.
     pub fn word(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -25,43 +25,43 @@ impl Dice {
         ((mixed ^ mixed >> 31) >> 32) as u32
     }
 
-    /// A number below `count`.
+    /// Draws a number below `count`.
     pub fn below(&mut self, count: u32) -> u32 {
         ((u64::from(self.word()) * u64::from(count)) >> 32) as u32
     }
 
-    /// A number from `least` to `most`.
+    /// Draws a number from `least` to `most`.
     pub fn between(&mut self, least: i32, most: i32) -> i32 {
         least + self.below((most - least + 1) as u32) as i32
     }
 
-    /// One of several.
+    /// Draws one of `choices`.
     pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len() as u32) as usize]
     }
 
-    /// Yes or no.
+    /// Draws true or false.
     pub fn coin(&mut self) -> bool {
         self.below(2) == 1
     }
 
-    /// A view.
+    /// Draws a view.
     pub fn view(&mut self) -> View {
         self.pick(&[View::Left, View::Right])
     }
 
-    /// A way to interpolate.
+    /// Draws an interpolation.
     pub fn interpolation(&mut self) -> Interpolation {
         self.pick(&Interpolation::ALL)
     }
 
-    /// Up to `most` disparities, 0 among them, so that in any picture some pixel has a partner.
+    /// Draws a range of up to `most` disparities, 0 among them, so that in any picture some pixel has a partner.
     pub fn range(&mut self, most: u32) -> DisparityRange {
         let count = 1 + self.below(most);
         DisparityRange { min: -(self.below(count.min(24)) as i32), count }
     }
 
-    /// A picture: mostly smooth noise, sometimes something harder.
+    /// Draws a picture: mostly smooth noise, sometimes a harder one.
     pub fn picture(&mut self, size: impl Into<Size>) -> Luma {
         let Size { width, height } = size.into();
         let seed = self.word();
@@ -69,7 +69,7 @@ impl Dice {
             0 => Luma::from_fn((width, height), |_, _| self.word() as u8),
             // Black and white in blocks.
             1 => Luma::from_fn((width, height), |x, y| ((x / 5 + y / 3) % 2 * 255) as u8),
-            // Hardly any texture.
+            // Low contrast.
             2 => smooth_noise((width, height), seed).map(|&value| 100 + value / 64),
             // One grey value.
             3 => Luma::filled((width, height), self.pick(&[0, 77, 255])),
@@ -77,8 +77,8 @@ impl Dice {
         }
     }
 
-    /// Left and right view of two planes with a step between them, with some noise in the left one; sometimes of
-    /// nothing that both see.
+    /// Draws a pair: two planes with a step between them and some noise in the left view; sometimes views with nothing
+    /// in common.
     pub fn pair(&mut self, size: impl Into<Size>) -> [Luma; 2] {
         let Size { width, height } = size.into();
         let right = self.picture((width, height));

@@ -1,4 +1,4 @@
-//! The hash of what a twin leaves.
+//! The hash of a twin's outputs.
 //!
 //! Only exact arrays are hashed. The floats of orientations and descriptors come from functions (`exp`, `atan2`,
 //! `powf`) that differ in their last digits from platform to platform.
@@ -9,8 +9,8 @@ use crate::{fnv::fnv1a, image::Size};
 /// The hashes of all cases, one line each.
 pub(super) const STORED: &str = include_str!("goldens.txt");
 
-/// The hash of the exact arrays among `arrays`: FNV-1a with 64 bits over each one's name, its number of values in 64
-/// bits and its values, all with the lowest byte first. Nothing where none is exact.
+/// The hash of the exact arrays among `arrays`: 64-bit FNV-1a over the name of each array, its number of values as
+/// `u64` and its values, all little-endian. `None` if no array is exact.
 pub fn hash(arrays: &[Array]) -> Option<u64> {
     let exact: Vec<&Array> = arrays.iter().filter(|array| array.tolerance == Tolerance::Exact).collect();
     let bytes = exact.iter().flat_map(|Array { name, values, .. }| {
@@ -20,12 +20,12 @@ pub fn hash(arrays: &[Array]) -> Option<u64> {
     (!exact.is_empty()).then(|| fnv1a(bytes))
 }
 
-/// A case's line in the file, without the hash.
+/// The key of a case: its line in the file, without the hash.
 pub(super) fn key(name: &str, Size { width, height }: Size, seed: u32) -> String {
     format!("{name} {width}x{height} {seed}")
 }
 
-/// The hash that is stored under a key.
+/// The hash stored under `key`.
 pub(super) fn stored(key: &str) -> Option<u64> {
     let hash = STORED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' '))?;
     u64::from_str_radix(hash, 16).ok()

@@ -1,15 +1,15 @@
-//! Hashes of what the twins leave, stored with this crate: a change of the twins, or of what compiles them, is seen
-//! even where the kernels change with them.
+//! Hashes of the twins' outputs, stored with this crate: they reveal a change of the twins, or of their compiler, even
+//! where the kernels change in the same way.
 
 use super::{
     Extent, cases,
     golden_hash::{STORED, hash, key},
 };
 
-/// The whole file as the twins would have it now.
+/// The contents of the file by the present twins.
 ///
 /// # Errors
-/// Those of a twin.
+/// The errors of a twin.
 pub fn current() -> crate::Result<String> {
     let mut text = String::new();
     for case in [Extent::Full, Extent::Quick].into_iter().flat_map(cases) {
@@ -20,7 +20,7 @@ pub fn current() -> crate::Result<String> {
     Ok(text)
 }
 
-/// The whole file as it is stored.
+/// The stored file.
 pub fn text() -> &'static str {
     STORED
 }

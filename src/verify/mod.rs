@@ -1,8 +1,8 @@
 //! Every kernel of a device against its CPU twin, and the twins against stored hashes: a regression suite for drivers,
 //! shader compilers and these shaders.
 //!
-//! A [`Case`] is a kernel or a whole pipeline, a size and a seed, from which everything it is given follows; the tests
-//! of single kernels build their own [`Trial`]s. Nothing here prints.
+//! A [`Case`] is a kernel or a whole pipeline, a size and a seed, which determine all its inputs. Tests of single
+//! kernels build their own [`Trial`]s. This module prints nothing.
 
 mod array;
 mod bench;
@@ -35,7 +35,7 @@ use crate::{
     image::Size,
 };
 
-/// Sizes that divide by nothing, that are smaller than any filter, that are all edge.
+/// Sizes of cases: sizes without common divisors, smaller than any filter, or with nothing but edges.
 pub const SIZES: [Size; 8] = [
     Size::new(1, 1),
     Size::new(1, 67),
@@ -47,22 +47,22 @@ pub const SIZES: [Size; 8] = [
     Size::new(311, 239),
 ];
 
-/// Those of them for what compiles many kernels for each, which software drivers take seconds for.
+/// Sizes of pipelines, which compile many kernels each: software drivers take seconds for that.
 const PIPELINE_SIZES: [Size; 4] = [Size::new(1, 1), Size::new(17, 13), Size::new(130, 131), Size::new(311, 239)];
 
-/// Large enough for every kernel to have something to do.
+/// The size of [`Extent::Quick`], large enough to exercise every kernel.
 const QUICK_SIZE: Size = Size::new(131, 67);
 
-/// How much is verified.
+/// The extent of verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Everything once.
+    /// Every subject at one size.
     Quick,
-    /// Everything at all [`SIZES`].
+    /// Every subject at all [`SIZES`].
     Full,
 }
 
-/// The cases that are verified if none is named.
+/// The cases verified by default.
 pub fn cases(extent: Extent) -> Vec<Case> {
     let of_subject = |subject: &'static Subject| -> Vec<Case> {
         match extent {
@@ -76,11 +76,11 @@ pub fn cases(extent: Extent) -> Vec<Case> {
     subjects().flat_map(of_subject).collect()
 }
 
-/// Refuses a device on which any kernel fails, at one size. `choice` is what it was opened by, for the command that
-/// repeats the failure.
+/// Verifies all subjects on a device, at one size. `choice` is the choice by which the device was opened, for the
+/// command that repeats a failure.
 ///
 /// # Errors
-/// [`Error::WrongResults`].
+/// [`Error::WrongResults`] if any case fails.
 pub fn self_test(gpu: &Gpu, choice: &DeviceChoice) -> Result<()> {
     let bench = Bench::new(gpu);
     for case in cases(Extent::Quick) {

@@ -1,36 +1,36 @@
-//! A kernel, or several in a row, with everything they are given.
+//! A trial: one kernel or a sequence of kernels, with all inputs.
 
 use std::fmt;
 
 use super::{array::Array, bench::Bench, dice::Dice};
 use crate::{error::Result, image::Size};
 
-/// A kernel, or several in a row, with everything they are given.
+/// A trial: one kernel or a sequence of kernels, with all inputs.
 pub trait Trial {
-    /// What is given beside arrays, for people.
+    /// Parameters beside the input arrays, as text.
     fn parameters(&self) -> String;
 
-    /// The arrays that are given.
+    /// The input arrays.
     fn input(&self) -> Vec<Array>;
 
-    /// What the device leaves.
+    /// The outputs of the device.
     ///
     /// # Errors
-    /// What the device says.
+    /// The errors of the device.
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>>;
 
-    /// What the CPU twins leave.
+    /// The outputs of the CPU twins.
     ///
     /// # Errors
-    /// As the device should, too.
+    /// The errors that the device should report too.
     fn twin(&self) -> Result<Vec<Array>>;
 }
 
-/// What is verified: a kernel by its stage's name, or a whole half of the pipeline.
+/// A subject of verification: a kernel, named like its stage, or a whole pipeline.
 pub struct Subject {
-    /// Its name.
+    /// Name of the subject.
     pub name: &'static str,
-    /// Whether it is made of several kernels.
+    /// Whether the subject runs several kernels.
     pub is_pipeline: bool,
     pub(super) draw: fn(Size, &mut Dice) -> Box<dyn Trial>,
 }
@@ -42,12 +42,12 @@ impl fmt::Debug for Subject {
 }
 
 impl Subject {
-    /// The kernel whose trials `draw` draws for a picture of a size.
+    /// A kernel; `draw` draws its trials for a picture of the given size.
     pub const fn kernel(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
         Self { name, is_pipeline: false, draw }
     }
 
-    /// The same of several kernels in a row.
+    /// A pipeline of several kernels; `draw` draws its trials for a picture of the given size.
     pub const fn pipeline(name: &'static str, draw: fn(Size, &mut Dice) -> Box<dyn Trial>) -> Self {
         Self { name, is_pipeline: true, draw }
     }

@@ -1,4 +1,4 @@
-//! What the tests of all kernels share: a device, pictures, comparisons.
+//! Helpers of all kernel tests: a device, pictures, comparisons.
 
 use std::{path::Path, sync::OnceLock};
 
@@ -22,29 +22,29 @@ pub fn gpu() -> &'static Gpu {
     GPU.get_or_init(|| Gpu::open(&DeviceChoice::Best).expect("these tests need a device; lavapipe is one"))
 }
 
-/// The same, to try kernels on.
+/// The bench on that device.
 pub fn bench() -> Bench<'static> {
     Bench::new(gpu())
 }
 
-/// A storage buffer that holds `values`.
+/// Uploads `values` to a storage buffer.
 pub fn upload<T: bytemuck::NoUninit>(values: &[T]) -> wgpu::Buffer {
     bench().upload(values).expect("a buffer that is not large")
 }
 
-/// All of `buffer`, after everything that was submitted.
+/// Waits for the submitted work and downloads all of `buffer`.
 pub fn download<T: bytemuck::Pod>(buffer: &wgpu::Buffer) -> Vec<T> {
     bench().download(buffer).expect("a device that works")
 }
 
-/// What the device leaves, in the order of the trial's arrays.
+/// The outputs of the device, in the order of the trial's arrays.
 #[track_caller]
 pub fn leaves(trial: &dyn Trial) -> Vec<Values> {
     let arrays = bench().guarded("a test", || trial.on_device(&bench())).expect("a device that works");
     arrays.into_iter().map(|array| array.values).collect()
 }
 
-/// Device and twin have to leave the same, within the tolerances.
+/// Asserts that device and twin have the same outputs, within the tolerances.
 #[track_caller]
 pub fn assert_twin(what: &str, trial: &dyn Trial) {
     for comparison in compare(trial, &bench()).expect("a device that works") {
@@ -52,7 +52,7 @@ pub fn assert_twin(what: &str, trial: &dyn Trial) {
     }
 }
 
-/// Compares element by element and tells the first difference.
+/// Asserts equality element by element, and reports the first difference.
 #[track_caller]
 pub fn assert_same<T: Clone>(what: &str, actual: &[T], expected: &[T])
 where
@@ -62,7 +62,7 @@ where
     assert_eq!(Comparison::new(&array(actual), &array(expected)).fault, None, "{what}");
 }
 
-/// A keypoint of which only the place is known.
+/// A keypoint with nothing but a place.
 pub fn keypoint(x: f32, y: f32, scale: f32) -> Keypoint {
     Keypoint { x, y, scale, orientation: 0.0, response: 0, octave: 0, index: 0 }
 }

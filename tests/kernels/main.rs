@@ -1,7 +1,7 @@
-//! Every kernel on a device: hand-computed cases, and against its CPU twin at sizes that divide by nothing and on real
-//! pictures.
+//! Every kernel on a device: hand-computed cases, and comparison with its CPU twin, at sizes without common divisors
+//! and on real pictures.
 //!
-//! A device is part of these tests: without any they fail. Mesa's lavapipe needs no GPU.
+//! These tests need a device and fail without one. Mesa's lavapipe needs no GPU.
 #![cfg(feature = "cli")]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Any kernel, at any size, with anything that follows from a seed.
+//! Random kernels, at random sizes, with inputs drawn from a random seed.
 //!
 //! `PROPTEST_CASES=2000 cargo test --test kernels anything` takes half an hour on a software driver.
 
@@ -13,7 +13,7 @@ use proptest::{
 
 use crate::common::bench;
 
-/// Sides that are short more often than long.
+/// Sides, short more often than long.
 fn side() -> impl Strategy<Value = u32> {
     prop_oneof![1..9_u32, 1..80_u32, 60..260_u32]
 }
@@ -23,7 +23,7 @@ fn anything_equals_the_twin() {
     let cases = std::env::var("PROPTEST_CASES").map_or(24, |cases| cases.parse().expect("a number of cases"));
     let all: Vec<&'static Subject> = subjects().collect();
     let strategy = (proptest::sample::select(all), (side(), side()), any::<u32>());
-    // The command that repeats a failure is the record of it.
+    // A failure is recorded by the command that repeats it.
     let config = Config { cases, failure_persistence: None, max_shrink_iters: 30, ..Config::default() };
     let checked = TestRunner::new(config).run(&strategy, |(subject, size, seed)| {
         let case = Case::new(subject.name, size, seed).expect("a case that exists");

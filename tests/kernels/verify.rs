@@ -1,4 +1,4 @@
-//! The suite itself: it must be able to fail.
+//! The verification suite itself: it must be able to fail.
 
 use hsad::{
     Error, Result,
@@ -8,7 +8,7 @@ use hsad::{
 
 use crate::common::bench;
 
-/// A kernel that leaves what it should not.
+/// A kernel with wrong outputs.
 #[derive(Clone, Copy)]
 enum Wrong {
     Word,
@@ -31,7 +31,7 @@ impl Trial for Wrong {
             Self::Word => bench.download(&bench.upload(&[1_u32, 2, 4])?)?,
             Self::Length => bench.download(&bench.upload(&[1_u32, 2])?)?,
             Self::Command => {
-                // Copies more than there is.
+                // The copy exceeds the buffer.
                 let buffers = [bench.output(1)?, bench.output(1)?];
                 bench.run(|encoder| encoder.copy_buffer_to_buffer(&buffers[0], 0, &buffers[1], 0, Some(64)));
                 vec![1, 2, 3]

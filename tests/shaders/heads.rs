@@ -1,5 +1,5 @@
-//! What a file of WGSL says about itself at its top: the shared parts that it imports, and the constants that Rust writes
-//! in front of the module.
+//! The head of a WGSL file: the shared parts that it imports, and the constants that Rust writes in front of the
+//! module.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -27,7 +27,7 @@ fn imports(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| line.strip_prefix("#import "))
 }
 
-/// A text and all that it imports, directly or not.
+/// A text and its imports, direct and indirect.
 fn with_imports<'a>(name: &'a str, text: &'a str, parts: &'a Parts) -> BTreeMap<&'a str, &'a str> {
     let mut texts = BTreeMap::from([(name, text)]);
     let mut left: Vec<_> = imports(text).collect();
@@ -39,7 +39,7 @@ fn with_imports<'a>(name: &'a str, text: &'a str, parts: &'a Parts) -> BTreeMap<
     texts
 }
 
-/// The words of the code: names, keywords, numbers; nothing of comments and imports.
+/// The words of the code, which are names, keywords and numbers, without comments and imports.
 fn words(text: &str) -> BTreeSet<&str> {
     text.lines()
         .filter(|line| !line.starts_with('#'))
@@ -49,7 +49,7 @@ fn words(text: &str) -> BTreeSet<&str> {
         .collect()
 }
 
-/// The names that a text declares for a whole module.
+/// The module-scope names that a text declares.
 fn declared(text: &str) -> impl Iterator<Item = &str> {
     text.lines()
         .filter_map(|line| ["fn ", "struct ", "const ", "alias "].iter().find_map(|keyword| line.strip_prefix(keyword)))
@@ -67,7 +67,7 @@ fn listed(text: &str) -> BTreeMap<&str, &str> {
         .collect()
 }
 
-/// The imports of a text of which nothing is used, and what a part of shaders must not have.
+/// The unused imports of a text, and declarations that a shared part must not have.
 fn import_mistakes(name: &str, text: &str, parts: &Parts) -> Vec<String> {
     let words = words(text);
     let mut mistakes: Vec<_> = imports(text)
@@ -88,17 +88,17 @@ fn import_mistakes(name: &str, text: &str, parts: &Parts) -> Vec<String> {
 /// The constants of a stage that a text uses and does not list, or lists and does not use, or that no text uses.
 fn constant_mistakes(stage: &Stage, parts: &Parts) -> Vec<String> {
     let mut mistakes = Vec::new();
-    let given: BTreeSet<_> = stage.constants.iter().map(|(name, _)| *name).collect();
+    let constants: BTreeSet<_> = stage.constants.iter().map(|(name, _)| *name).collect();
     let mut used_anywhere = BTreeSet::new();
     for (name, text) in with_imports(stage.name, stage.source, parts) {
         let words = words(text);
-        let used: BTreeSet<_> = given.intersection(&words).copied().collect();
+        let used: BTreeSet<_> = constants.intersection(&words).copied().collect();
         let listed = listed(text);
         for constant in used.iter().filter(|used| !listed.contains_key(**used)) {
             mistakes.push(format!("{name} does not list {constant}"));
         }
         for (constant, meaning) in listed {
-            if !given.contains(constant) {
+            if !constants.contains(constant) {
                 mistakes.push(format!("{name} lists {constant}, which Rust does not give {}", stage.name));
             } else if !used.contains(constant) {
                 mistakes.push(format!("{name} lists {constant} and does not use it"));
@@ -109,7 +109,7 @@ fn constant_mistakes(stage: &Stage, parts: &Parts) -> Vec<String> {
         }
         used_anywhere.extend(used);
     }
-    mistakes.extend(given.difference(&used_anywhere).map(|unused| format!("{} does not use {unused}", stage.name)));
+    mistakes.extend(constants.difference(&used_anywhere).map(|unused| format!("{} does not use {unused}", stage.name)));
     mistakes
 }
 

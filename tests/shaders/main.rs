@@ -1,5 +1,5 @@
-//! Every shader against its Rust side, without any GPU: parsed, validated, its bindings and structs compared, and
-//! translated to what drivers are given.
+//! Every shader against its Rust side, without a GPU: parsed, validated, its bindings and structs compared, and
+//! translated to the languages of drivers.
 
 mod heads;
 mod translations;
@@ -24,7 +24,7 @@ use naga::{
     valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
 };
 
-/// A stage's module and what its validation tells, or what is wrong with it.
+/// The module of a stage and the result of its validation, or the error.
 type Validated = Result<(Module, ModuleInfo), String>;
 
 fn valid(stage: &Stage) -> Validated {
@@ -36,8 +36,7 @@ fn valid(stage: &Stage) -> Validated {
     Ok((module, info))
 }
 
-/// Every stage with its module. Large modules take seconds to be read, so all tests
-/// share them.
+/// All stages with their modules, shared by all tests, since large modules take seconds to parse.
 fn modules() -> &'static [(Stage, Validated)] {
     static MODULES: OnceLock<Vec<(Stage, Validated)>> = OnceLock::new();
     MODULES.get_or_init(|| {
@@ -49,7 +48,7 @@ fn modules() -> &'static [(Stage, Validated)] {
     })
 }
 
-/// `work` on each of `items`, in any order, on all processors; in order again.
+/// Runs `work` on each of `items`, on all processors and in any order; the results are in the order of `items`.
 fn on_all_processors<I: Send, O: Send>(items: Vec<I>, work: impl Fn(I) -> O + Sync) -> Vec<O> {
     let left = Mutex::new(items.into_iter().enumerate());
     let next = || left.lock().expect("no panic while it is held").next();
@@ -68,7 +67,7 @@ fn checked(module: &Validated) -> &(Module, ModuleInfo) {
     module.as_ref().expect("checked by another test")
 }
 
-/// The values that a type consists of, each with its path of members, its place in bytes and its type.
+/// The scalars of a WGSL type, each with its path of members, its offset in bytes and its type.
 fn values_of(module: &Module, ty: naga::Handle<naga::Type>) -> Vec<(String, u64, String)> {
     let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
         (ScalarKind::Uint, 4) => "u32".into(),
@@ -101,7 +100,7 @@ fn values_of(module: &Module, ty: naga::Handle<naga::Type>) -> Vec<(String, u64,
     }
 }
 
-/// The same of a type of Rust.
+/// The scalars of a Rust type, in the form of [`values_of`].
 fn values_of_rust(shape: &Shape) -> Vec<(String, u64, String)> {
     match *shape {
         Shape::Scalar(name) => vec![(String::new(), 0, name.into())],
@@ -130,7 +129,7 @@ fn size_of_rust(shape: &Shape) -> u64 {
     }
 }
 
-/// In what a type of a shader differs from one of Rust.
+/// The difference between a WGSL type and a Rust type, if any.
 fn difference(module: &Module, ty: naga::Handle<naga::Type>, shape: &Shape) -> Option<String> {
     let (wgsl, rust) = (values_of(module, ty), values_of_rust(shape));
     let size = u64::from(module.types[ty].inner.size(module.to_ctx()));
@@ -141,19 +140,19 @@ fn difference(module: &Module, ty: naga::Handle<naga::Type>, shape: &Shape) -> O
     Some(format!("value {first} is {:?}, Rust's {:?}", wgsl.get(first), rust.get(first)))
 }
 
-/// Whether it is a texture of one `u32` a texel that is only read.
+/// Whether the type is a read-only storage texture of one `u32` per texel.
 fn is_word_texture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
     let class = naga::ImageClass::Storage { format: naga::StorageFormat::R32Uint, access: StorageAccess::LOAD };
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
-/// Whether it is a texture of floats to be read, as far as a module tells.
+/// Whether the type is a texture of floats, as far as a module tells.
 fn is_picture(module: &Module, ty: naga::Handle<naga::Type>) -> bool {
     let class = naga::ImageClass::Sampled { kind: ScalarKind::Float, multi: false };
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
-/// Whether it is a texture of this format that is only written.
+/// Whether the type is a write-only storage texture of `format`.
 fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) -> bool {
     let format = match format {
         TextureFormat::R32Sint => naga::StorageFormat::R32Sint,
@@ -164,7 +163,7 @@ fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) 
     module.types[ty].inner == TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class }
 }
 
-/// What of `stage`'s shader, whose module `valid` is, is not as its Rust side says; empty where they agree.
+/// The disagreements of the shader of `stage`, with module `valid`, and its Rust side; empty if there are none.
 fn disagreements(stage: &Stage, valid: &Validated) -> Vec<String> {
     let (module, _) = match valid {
         Ok(valid) => valid,
@@ -204,7 +203,7 @@ fn disagreements(stage: &Stage, valid: &Validated) -> Vec<String> {
         };
         found.extend(difference.map(|difference| format!("binding {place}: {difference}")));
     }
-    // What a struct of a buffer's elements is called, and what Rust has for it.
+    // Structs of buffer elements: their WGSL name and their Rust shape.
     for (name, shape) in [("Keypoint", Keypoint::SHAPE)] {
         if let Some((ty, _)) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)) {
             found.extend(difference(module, ty, &shape).map(|difference| format!("{name}: {difference}")));
@@ -261,7 +260,7 @@ fn workgroups_fit_the_smallest_limits() {
     }
 }
 
-/// What is asked of a device is what the shaders need, no more and no less.
+/// The required limits are those that the shaders need, no more and no less.
 #[test]
 fn required_limits_are_those_that_some_shader_needs() {
     let mut needed = std::collections::BTreeMap::new();
@@ -269,7 +268,7 @@ fn required_limits_are_those_that_some_shader_needs() {
         let most = needed.entry(name).or_insert(0);
         *most = value.max(*most);
     };
-    // What stands in the host's code: one bind group, rows of words in textures, as many workgroups as there can be.
+    // Limits that the host's code needs: one bind group, texture rows of words, and the largest number of workgroups.
     need("max_bind_groups", 1);
     need("max_texture_dimension_2d", 2048);
     need("max_compute_workgroups_per_dimension", 65_535);

@@ -1,8 +1,7 @@
-//! Every shader in every language that a driver may be given it in, by way of naga.
+//! Every shader, translated by naga to every language that a driver may get.
 //!
-//! Where `spirv-val` and `glslangValidator` are installed, they check what they know of it: Debian's packages
-//! spirv-tools and glslang-tools, which test.sh asks for, since the tests that miss them pass. MSL and HLSL have no checker
-//! here.
+//! `spirv-val` and `glslangValidator` check the translations if they are installed (Debian's packages spirv-tools and
+//! glslang-tools). test.sh requires them, since the tests pass without them. MSL and HLSL have no checker here.
 
 use std::{
     collections::BTreeMap,
@@ -22,11 +21,11 @@ use naga::{
 
 use crate::{checked, modules, on_all_processors, valid};
 
-/// A language, and how a module becomes a text or binary of it.
+/// A target language, and the translation of a module to its text or binary.
 struct Target {
     name: &'static str,
     translate: fn(&Module, &ModuleInfo) -> Result<Vec<u8>, String>,
-    /// What the results are checked with, where it is installed: a program, its arguments, a file's extension.
+    /// Checker of the translations, if installed: a program, its arguments, and a file extension.
     checker: Option<(&'static str, &'static [&'static str], &'static str)>,
 }
 
@@ -39,7 +38,7 @@ const TARGETS: [Target; 5] = [
     Target { name: "MSL 2.1, for Metal", translate: metal, checker: None },
     Target { name: "HLSL of shader model 5.1, for DirectX 12", translate: directx, checker: None },
     Target {
-        // With 4.30 naga chooses between integers in a way that needs an extension.
+        // With 4.30 naga selects between integers in a way that needs an extension.
         name: "GLSL 4.50, for OpenGL",
         translate: |module, info| opengl(module, info, glsl::Version::Desktop(450)),
         checker: Some(("glslangValidator", &["-S", "comp"], "comp")),
@@ -61,7 +60,7 @@ fn metal(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
     let options = msl::Options { lang_version: (2, 1), ..Default::default() };
     let (text, translated) =
         msl::write_string(module, info, &options, &msl::PipelineOptions::default()).map_err(|e| e.to_string())?;
-    // What cannot be bound is told for each entry point.
+    // Binding errors are reported per entry point.
     translated.entry_point_names.into_iter().try_for_each(|name| name.map(|_| ())).map_err(|e| e.to_string())?;
     Ok(text.into_bytes())
 }
@@ -86,7 +85,7 @@ fn opengl(module: &Module, info: &ModuleInfo, version: glsl::Version) -> Result<
     Ok(text.into_bytes())
 }
 
-/// What a target has to say against a module; nothing where it can be translated.
+/// The error of a module's translation or check; `None` if the target accepts it.
 fn objection((module, info): &(Module, ModuleInfo), target: &Target, folder: &Path) -> Option<String> {
     let translated = match (target.translate)(module, info) {
         Err(error) => return Some(error),
@@ -103,7 +102,7 @@ fn objection((module, info): &(Module, ModuleInfo), target: &Target, folder: &Pa
     })
 }
 
-/// Each program is asked once.
+/// Whether a program is installed; each program is tried once.
 fn is_installed(program: &'static str) -> bool {
     static ASKED: Mutex<BTreeMap<&str, bool>> = Mutex::new(BTreeMap::new());
     let starts = || {

@@ -9,8 +9,8 @@ use crate::{
     image::{Luma, Plane, Size},
 };
 
-/// For each pixel of `view` the disparity of least cost, unless its best rival is too close. Ties go to the smaller
-/// disparity. Where there are `ranges`, only those of the pixel's cell are searched.
+/// The disparity of least cost for each pixel of `view`, unless its best rival is too close. Ties go to the smaller
+/// disparity. With `ranges`, only the range of the pixel's cell is searched.
 pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, ranges: Option<&CellPlane>) -> Dense {
     let Size { width, height } = left.size();
     let rows: Vec<Vec<(i32, u8)>> = (0..height)
@@ -37,7 +37,7 @@ pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, 
     }
 }
 
-/// For each pixel of `view` the whole disparity of least cost. Ties go to the smaller disparity.
+/// The whole disparity of least cost for each pixel of `view`. Ties go to the smaller disparity.
 pub fn winners(
     left: &Luma,
     right: &Luma,
@@ -52,9 +52,9 @@ pub fn winners(
     block_match(left, right, view, &config, ranges).disparity
 }
 
-/// For each pixel of row `y` the cost of each disparity of the range: the sum of absolute differences between the windows
-/// around the pixel and around its partner, where a picture goes on beyond its edge with its last pixel. `None` where the
-/// partner lies outside the other picture.
+/// The cost of each pixel of row `y` at each disparity of the range: the sum of absolute differences between the
+/// windows around the pixel and around its partner, where edge pixels are repeated beyond the pictures. `None` where
+/// the partner lies outside the other picture.
 fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig) -> Vec<Vec<Option<u32>>> {
     let (width, radius, y) = (i64::from(left.width()), i64::from(config.parameters.radius()), i64::from(y));
     let (reference, searched, direction) = match view {
@@ -64,12 +64,12 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
     let mut costs = vec![vec![None; config.range.count as usize]; width as usize];
     for index in 0..config.range.count {
         let shift = direction * (i64::from(config.range.min) + i64::from(index));
-        // One column of a window; windows of neighbouring pixels share all but two of them.
+        // One column of a window; windows of neighbouring pixels share all columns but two.
         let column = |x: i64| -> u32 {
             let difference = |row| reference.get_clamped(x, row).abs_diff(searched.get_clamped(x + shift, row));
             (y - radius..=y + radius).map(|row| u32::from(difference(row))).sum()
         };
-        // The pixels whose partner lies in the picture.
+        // First and last pixel with a partner in the picture.
         let (first, last) = ((-shift).max(0), width - 1 - shift.max(0));
         let columns: Vec<u32> = (first - radius..=last + radius).map(column).collect();
         for (x, window) in (first..).zip(columns.windows(config.parameters.window() as usize)) {
@@ -79,7 +79,7 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
     costs
 }
 
-/// The fixed-point disparity and the confidence that follow from a pixel's costs.
+/// Selects the fixed-point disparity and the confidence of a pixel from its costs.
 pub(super) fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
     let candidates = || costs.iter().enumerate().filter_map(|(index, &cost)| Some((cost?, index)));
     let Some((best, winner)) = candidates().min() else {
@@ -102,7 +102,7 @@ pub(super) fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
     ((config.range.min + winner as i32) * SCALE + between, confidence as u8)
 }
 
-/// The minimum's place between whole pixels, in 1/256 px from the winner.
+/// Sub-pixel position of the minimum, in 1/256 px from the winner.
 fn interpolate(below: u32, best: u32, above: u32, interpolation: Interpolation) -> i32 {
     let (left, right) = (i64::from(below - best), i64::from(above - best));
     let divisor = match interpolation {
@@ -128,8 +128,8 @@ mod tests {
 
     #[test]
     fn a_cost_by_hand() {
-        // Windows of 3x3 around (0, 0) and (1, 0) of a single row, continued beyond the edges:
-        // 5 5 9 against 5 9 2, three times.
+        // 3x3 windows around (0, 0) and (1, 0) of a single row, with repeated edge pixels: 5 5 9 against 5 9 2, three
+        // times.
         let row = Luma::new((3, 1), vec![5, 9, 2]).unwrap();
         let costs = row_costs(&row, &row, View::Left, 0, &config(-1, 1).with_window(3));
         assert_eq!(costs[0], [Some(3 * (4 + 7))]);
@@ -157,7 +157,7 @@ mod tests {
         // Parabola through 30, 10, 20: vertex at (30 - 20) / (2 * 30) = 1/6 px = 42.67 / 256.
         assert_eq!(interpolate(30, 10, 20, Interpolation::Parabola), 43);
         assert_eq!(interpolate(20, 10, 30, Interpolation::Parabola), -43);
-        // Equal slopes of 20 a pixel: (30 - 20) / (2 * 20) = 1/4 px.
+        // Equal slopes of 20 per pixel: (30 - 20) / (2 * 20) = 1/4 px.
         assert_eq!(interpolate(30, 10, 20, Interpolation::Equiangular), 64);
         // A half goes up: 128 * -3 / 256 = -1.5.
         assert_eq!(interpolate(10 + 253, 10, 10 + 256, Interpolation::Equiangular), -1);

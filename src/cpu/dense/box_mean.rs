@@ -3,9 +3,9 @@
 use crate::image::Size;
 use rayon::prelude::*;
 
-/// For each pixel of a picture of `size` and each disparity, the mean of `costs` over the pixel's window of this side, laid
-/// out as they are: the mean along the columns of the means along the rows, both rounded to the nearest. Beyond an edge,
-/// the picture goes on with its last pixel.
+/// The mean of `costs` over the window of side `side` of each pixel of a picture of `size`, per disparity, in the
+/// layout of `costs`: the mean along columns of the means along rows, both rounded to the nearest. Edge pixels are
+/// repeated beyond the picture.
 pub fn box_mean(costs: &[u8], size: Size, side: u32) -> Vec<u8> {
     mean_along(&mean_along(costs, size, side, (1, 0)), size, side, (0, 1))
 }

@@ -6,10 +6,10 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// For each cell of a picture what is to be searched of `range`: the index of the first disparity, and how many.
+/// The searched part of a range per cell: the index of the first disparity, and the number of disparities.
 pub type CellPlane = Plane<(u32, u32)>;
 
-/// The ranges of the cells of a picture of `size`, from the whole `map` of half the size.
+/// The ranges of the cells of a picture of `size`, from the complete half-size `map`.
 pub fn cell_ranges(map: &DisparityMap, size: Size, range: DisparityRange) -> CellPlane {
     let band = CellBand::new(size, (0, size.height), range);
     let around = |cell: u32, end: u32| {
@@ -23,9 +23,10 @@ pub fn cell_ranges(map: &DisparityMap, size: Size, range: DisparityRange) -> Cel
             rows.step_by(BLOCK as usize).flat_map(|y| columns.clone().step_by(BLOCK as usize).map(move |x| (x, y)));
         let blocks: Vec<Vec<i32>> = blocks.map(|(x, y)| block(map, x, y)).collect();
         let known: usize = blocks.iter().map(Vec::len).sum();
-        // Of a block's disparities the third smallest and the third largest, whichever way round they lie.
-        let said = || blocks.iter().filter_map(|block| Some([*block.get(2)?, *block.iter().nth_back(2)?])).flatten();
-        let (low, high) = (said().min(), said().max());
+        // The third smallest and the third largest disparity of each block, in either order.
+        let extremes =
+            || blocks.iter().filter_map(|block| Some([*block.get(2)?, *block.iter().nth_back(2)?])).flatten();
+        let (low, high) = (extremes().min(), extremes().max());
         match (low, high) {
             (Some(low), Some(high)) if 100 * known >= LEAST as usize * pixels => {
                 let index = |disparity: i32| (disparity - range.min).clamp(0, range.count as i32 - 1) as u32;
@@ -37,7 +38,7 @@ pub fn cell_ranges(map: &DisparityMap, size: Size, range: DisparityRange) -> Cel
     })
 }
 
-/// The whole disparities of a block, from the smallest to the largest.
+/// The disparities of a block, rounded to whole pixels, in ascending order.
 fn block(map: &DisparityMap, left: u32, top: u32) -> Vec<i32> {
     let (columns, rows) = (left..(left + BLOCK).min(map.width()), top..(top + BLOCK).min(map.height()));
     let disparities = rows.flat_map(|y| columns.clone().map(move |x| map.get(x, y)));

@@ -2,8 +2,8 @@
 
 use crate::image::{Luma, Plane, Size};
 
-/// For each pixel 24 bits that say which of the others in its 5x5 window are darker, row by row, the first the highest,
-/// above the eight of its luma; beyond an edge, the picture goes on with its last pixel.
+/// The census of each pixel: 24 bits that tell which other pixels of its 5x5 window are darker, row by row, the first
+/// in the highest bit, above the 8 bits of its luma. Edge pixels are repeated beyond the picture.
 pub fn census(luma: &Luma) -> Plane<u32> {
     let Size { width, height } = luma.size();
     Plane::from_fn((width, height), |x, y| {

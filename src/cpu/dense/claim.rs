@@ -1,4 +1,4 @@
-//! What the other view sees, told from one view's winners, from the definition.
+//! The other view's disparities, claimed by the winners of one view, from the definition.
 
 use crate::{
     dense::View,
@@ -6,8 +6,8 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// For each pixel of the other view the whole disparity of the cheapest of `view`'s winners, each a cost and a
-/// disparity in pixels, whose partner it is. Of equal costs the smaller disparity holds.
+/// The disparity of each pixel of the other view: that of the cheapest of `view`'s winners whose partner the pixel is.
+/// A winner is a cost and a disparity in pixels; ties go to the smaller disparity.
 pub fn claim(winners: &Plane<Option<(u32, i32)>>, view: View) -> DisparityMap {
     let Size { width, height } = winners.size();
     let mut claims: Plane<Option<(u32, i32)>> = Plane::filled((width, height), None);

@@ -1,4 +1,4 @@
-//! The dense half in one call.
+//! Dense matching in one call.
 
 use super::{
     block_match, box_mean, cell_ranges, census, claim, consistency, cost, fill, half_consistency, halve, path,
@@ -14,7 +14,7 @@ use crate::{
     image::{Luma, Plane},
 };
 
-/// What [`crate::dense::compute`] computes, on the CPU.
+/// [`crate::dense::compute`] on the CPU.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`].
@@ -28,20 +28,21 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
     let right = &right.map(|&luma| config.brightness.apply(luma));
     let view = config.reference;
     let mut dense;
-    let others;
+    let other_disparities;
     match &config.parameters.aggregation {
         Aggregation::Sad { search: Search::Whole, .. } => {
             dense = block_match(left, right, view, &config, None);
-            others = config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
+            other_disparities =
+                config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
         }
         Aggregation::Sad { search: Search::CoarseToFine, .. } => {
             dense = coarse_to_fine([left, right], unchanged, &config);
-            others = None;
+            other_disparities = None;
         }
         Aggregation::Costs(costs) => {
             let paths = all_paths(left, right, view, &config, costs);
             dense = select(&paths, left.size(), &config);
-            others = config.parameters.consistency.map(|_| match costs.cross_check {
+            other_disparities = config.parameters.consistency.map(|_| match costs.cross_check {
                 CrossCheck::Claimed => claim(&path_winners(&paths, left.size(), &config), view),
                 CrossCheck::Searched => {
                     let paths = all_paths(left, right, view.other(), &config, costs);
@@ -51,8 +52,8 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
             });
         }
     }
-    if let (Some(max_difference), Some(others)) = (config.parameters.consistency, others) {
-        consistency(&mut dense, view, &others, max_difference);
+    if let (Some(max_difference), Some(other_disparities)) = (config.parameters.consistency, other_disparities) {
+        consistency(&mut dense, view, &other_disparities, max_difference);
     }
     match &config.parameters.refinement {
         Some(refinement) => {
@@ -64,8 +65,8 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
     }
 }
 
-/// Block matching of a pair where one of half the size, made of the `unchanged` pictures, shows something; confirmed by
-/// the other view at half the size.
+/// Block matching of a pair within the ranges found at half size, confirmed by the other view at half size. The
+/// half-size pictures are made of the `unchanged` ones, before the change of brightness.
 fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &DenseConfig) -> Dense {
     let [left_half, right_half] = unchanged.map(halve);
     let right_half = right_half.map(|&luma| config.brightness.apply(luma));
@@ -74,13 +75,13 @@ fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &Den
     let ranges = cell_ranges(&map, left.size(), config.range);
     let mut dense = block_match(left, right, view, config, Some(&ranges));
     if let Some(max_difference) = config.parameters.consistency {
-        let others = winners(&left_half, &right_half, view.other(), &half, None);
-        half_consistency(&mut dense, view, &others, max_difference);
+        let other_disparities = winners(&left_half, &right_half, view.other(), &half, None);
+        half_consistency(&mut dense, view, &other_disparities, max_difference);
     }
     dense
 }
 
-/// A map after all that `refinement` asks for.
+/// The map after all steps of `refinement`.
 fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
     let Dense { disparity: mut map, confidence } = support(dense, residuals, refinement.support);
     for median in refinement.before() {
@@ -96,7 +97,7 @@ fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refin
     Dense { disparity: map, confidence }
 }
 
-/// The costs along all paths through one view; those of the pixels themselves, where there are none.
+/// The costs along all paths through one view; without paths, the matching costs themselves.
 fn all_paths(
     left: &Luma,
     right: &Luma,

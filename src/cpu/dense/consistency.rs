@@ -6,27 +6,29 @@ use crate::{
     image::Size,
 };
 
-/// Takes away what the other view contradicts: the partner of a pixel, at the nearest whole
-/// disparity, must exist and must have a disparity that differs by at most `max_difference` / 256 px.
-pub fn consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+/// Drops the disparities that the other view contradicts: the partner of a pixel, at the nearest whole disparity, must
+/// exist and have a disparity that differs by at most `max_difference` / 256 px.
+pub fn consistency(dense: &mut Dense, view: View, other_disparities: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
-        let other = others.get(partner, y);
+        let other = other_disparities.get(partner, y);
         other != NONE && disparity.abs_diff(other) <= max_difference
     });
 }
 
-/// The same with the other view's whole disparities at half the size: twice that of the partner there, or of the pixel to
-/// its left or right, must differ by at most `max_difference` / 256 px and the pixel that lies between two of them.
-pub fn half_consistency(dense: &mut Dense, view: View, others: &DisparityMap, max_difference: u32) {
+/// Drops the disparities that the half-size map of the other view contradicts: twice the whole disparity of the
+/// half-size partner, or of the pixel to its left or right, must differ by at most `max_difference` / 256 px plus 1 px,
+/// since twice a whole half-size disparity is even.
+pub fn half_consistency(dense: &mut Dense, view: View, other_disparities: &DisparityMap, max_difference: u32) {
     keep_confirmed(dense, view, |disparity, partner, y| {
         (-1..=1).any(|i| {
-            let other = others.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
+            let other = other_disparities.get_clamped(i64::from(partner / 2) + i, i64::from(y / 2));
             other != NONE && disparity.abs_diff(2 * other) <= max_difference + HALF_GRAIN
         })
     });
 }
 
-/// Takes away what is not confirmed: a disparity, the column of the partner in the other view, and the row.
+/// Drops unconfirmed disparities. The arguments of `is_confirmed` are the disparity, the partner's column in the other
+/// view, and the row.
 fn keep_confirmed(dense: &mut Dense, view: View, is_confirmed: impl Fn(i32, u32, u32) -> bool) {
     let Size { width, height } = dense.disparity.size();
     for y in 0..height {
@@ -60,13 +62,14 @@ mod tests {
         let disparity = plane(&[0, 256, 300, 2 * 256, NONE, 6 * 256]);
         let mut dense = Dense { confidence: disparity.map(|&d| if d == NONE { 0 } else { 9 }), disparity };
         // Partners: 0 of 0; 0 of 1; 1 of 2 (300 is nearest to one pixel); 1 of 3; outside.
-        let others = plane(&[40, 260, NONE, 0, 0, 0]);
-        consistency(&mut dense, View::Left, &others, 40);
+        let other_disparities = plane(&[40, 260, NONE, 0, 0, 0]);
+        consistency(&mut dense, View::Left, &other_disparities, 40);
         assert_eq!(dense.disparity.data(), [0, NONE, 300, NONE, NONE, NONE]);
         assert_eq!(dense.confidence.data(), [9, 0, 9, 0, 0, 0]);
 
-        // At half the size. The partner of 3 is 2, there 1: an odd disparity lies between even ones. That of 4 is 1, there 0,
-        // and its neighbour has another disparity. That of 5 is 3, there 1, and its neighbour has half the disparity.
+        // At half size. Pixel 3 has partner 2, half-size pixel 1: an odd disparity lies between even ones. Pixel 4 has
+        // partner 1, half-size pixel 0, and its neighbour has another disparity. Pixel 5 has partner 3, half-size pixel
+        // 1, and its neighbour has half the disparity.
         let mut dense =
             Dense { disparity: plane(&[NONE, NONE, NONE, 256, 800, 512]), confidence: Plane::filled((6, 1), 9) };
         half_consistency(&mut dense, View::Left, &plane(&[NONE, 0, 256, NONE]), 0);

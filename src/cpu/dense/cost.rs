@@ -8,8 +8,8 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// For each pixel of `reference`, the costs of its disparities, as many more as make whole fours. Both views are given
-/// as the stage `census` leaves them; a pixel without a partner is compared with the nearest one of the row.
+/// The matching costs of each pixel of `reference`, padded to a multiple of four disparities. Both views come from
+/// the stage `census`; a pixel without a partner is compared with the nearest pixel of the row.
 pub fn cost([reference, other]: [&Plane<u32>; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
     let Size { width, height } = reference.size();
     let at = |plane: &Plane<u32>, x: i64, y: u32| plane.get_clamped(x, i64::from(y));

@@ -1,8 +1,8 @@
-//! A picture of half the size, from the definition.
+//! Downscaling to half the size, from the definition.
 
 use crate::image::{Luma, reduced};
 
-/// A picture of half the size, each pixel the rounded mean of four, or of as many as there are at the edges.
+/// Downscales a picture to half its size: each pixel is the rounded mean of a block of 2x2, cut off at the edges.
 pub fn halve(luma: &Luma) -> Luma {
     reduced(luma, 2)
 }

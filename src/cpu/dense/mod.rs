@@ -1,4 +1,4 @@
-//! The twins of dense matching.
+//! The CPU twins of dense matching.
 
 mod block_match;
 mod box_mean;

@@ -5,8 +5,8 @@ use crate::{
     image::Luma,
 };
 
-/// The words that the padding kernel writes after a change of brightness, from the beginning of the buffer; those
-/// before `params.offset`, which it leaves alone, are 0.
+/// The output of the padding kernel after a change of brightness, from the beginning of the buffer; words before
+/// `params.offset`, which the kernel does not write, are 0.
 pub fn pad(luma: &Luma, params: &PadParams, brightness: Brightness) -> Vec<u32> {
     let mut words = vec![0; params.offset as usize];
     for row in i64::from(params.first_row)..i64::from(params.first_row) + i64::from(params.rows) {

@@ -5,7 +5,7 @@ use crate::{
     image::Plane,
 };
 
-/// The path's cost of each pixel of `reference` and disparity, laid out as `costs`.
+/// The path costs of each pixel of `reference` and disparity, in the layout of `costs` (Hirschmueller, PAMI 2008).
 pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, direction: Direction) -> Vec<u8> {
     let (width, height) = (i64::from(reference.width()), i64::from(reference.height()));
     let count = costs.len() / (width * height) as usize;

@@ -1,4 +1,4 @@
-//! How unlike both views look where disparities say that they show the same, from the definition.
+//! Photometric residuals, from the definition.
 
 use crate::{
     dense::{View, kernels::MAX_RESIDUAL},
@@ -6,9 +6,9 @@ use crate::{
     image::{Luma, Plane, Size},
 };
 
-/// For each pixel of the `reference` view by how much its luma differs from that of its partner in the other one, at the
-/// nearest whole disparity, up to [`MAX_RESIDUAL`]. Where there is no disparity it is 0, where there is no partner
-/// [`MAX_RESIDUAL`].
+/// The residual of each pixel of the `reference` view: the absolute difference of its luma from its partner's, at the
+/// nearest whole disparity, at most [`MAX_RESIDUAL`]. Pixels without disparity have residual 0, pixels whose partner
+/// lies outside have [`MAX_RESIDUAL`].
 pub fn residual([left, right]: [&Luma; 2], reference: View, disparities: &DisparityMap) -> Plane<u8> {
     let Size { width, height } = disparities.size();
     let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };

@@ -1,4 +1,4 @@
-//! Disparities that their neighbours share, from the definition.
+//! Support by neighbouring disparities, from the definition.
 
 use crate::{
     dense::{
@@ -9,9 +9,9 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// The disparities that at least `least` pixels of the window around them share, themselves included. Their number becomes
-/// the better part of the confidence: 1 + 5 (number - 1), up to 4 more for what it was, and less by an eighth of the
-/// photometric `residuals` of the 5x5 around it; at least 1.
+/// Keeps the disparities that at least `least` pixels of their window share, the centre included. The confidence
+/// becomes 1 + 5 (number of supporters - 1), plus up to 4 for the previous confidence, minus an eighth of the
+/// photometric `residuals` of the 5x5 window; at least 1.
 pub fn support(dense: &Dense, residuals: &Plane<u8>, least: u32) -> Dense {
     let Size { width, height } = dense.disparity.size();
     let radius = SUPPORT_RADIUS as i64;

@@ -8,14 +8,14 @@ use crate::{
     image::{Luma, Plane, Size},
 };
 
-/// 256 / 2^(difference / 2^halving_bits), interpolated between whole powers.
+/// The weight of a neighbour: 256 / 2^(difference / 2^halving_bits), interpolated between whole powers.
 fn weight(difference: u8, halving_bits: u32) -> u32 {
     let sixteenths = (u32::from(difference) << 4) >> halving_bits;
     ((32 - sixteenths % 16) * 8).checked_shr(sixteenths / 16).unwrap_or(0)
 }
 
-/// Each disparity replaced by the least one of its window for which those up to it weigh at least half of all. With
-/// `median.holes_only` only those change that `before` does not have.
+/// Replaces each disparity by the weighted median of its window: the smallest disparity such that those up to it have
+/// at least half of the total weight. With `median.holes_only`, only pixels without disparity in `before` change.
 pub fn weighted_median(luma: &Luma, disparities: &DisparityMap, before: &DisparityMap, median: Median) -> DisparityMap {
     let Size { width, height } = disparities.size();
     let radius = i64::from(median.radius);

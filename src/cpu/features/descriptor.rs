@@ -1,9 +1,9 @@
 //! The 64-value descriptor: sums of Haar responses in 4x4 subregions (Bay et al. 2008, section 4.2).
 //!
-//! Three things differ from the paper, all measured on real pairs: a subregion has 2x2 samples, 2
-//! scales apart, instead of 5x5 in 20 scales; gradients count by the cube root of their length, so that
-//! one strong edge does not drown the rest; and the wavelets are smaller where nothing is turned, which
-//! tells more places apart, and larger where their axes are not those of the point.
+//! Three things differ from the paper, all measured on real pairs: a subregion has 2x2 samples, 2 scales apart, instead
+//! of 5x5 in 20 scales; gradients are compressed to the cube root of their length, so that one strong edge does not
+//! dominate; and wavelets are smaller in upright mode, which distinguishes more places, and larger where their axes are
+//! not those of the point.
 
 use crate::{
     cpu::features::{
@@ -17,19 +17,19 @@ use crate::{
 const SUBREGIONS: usize = 4;
 /// Samples along each side of a subregion.
 const SUBREGION_SAMPLES: usize = 2;
-/// Samples along each side.
+/// Samples along each side of the descriptor.
 const SAMPLES: usize = SUBREGIONS * SUBREGION_SAMPLES;
-/// Standard deviation of the weights of the subregions, in subregions.
+/// Standard deviation of the subregions' Gaussian weights, in subregions.
 const SIGMA: f32 = 1.5;
-/// Below this length the surroundings are flat and no direction of the vector means anything.
+/// Least length of the vector: below it the surroundings are flat and the direction of the vector is meaningless.
 const FLAT: f32 = 1e-6;
 
-/// The gradient at each sample, by row and column.
+/// The gradients of all samples, by row and column.
 type Gradients = [[(f32, f32); SAMPLES]; SAMPLES];
 
-/// Describes the surroundings of a place: per subregion, in rows, the sums of dx, dy, |dx|, |dy|.
+/// The descriptor of a place: the sums of dx, dy, |dx|, |dy| per subregion, row by row.
 ///
-/// Without an orientation it is upright. An orientation of 0 is not the same.
+/// Without an orientation the descriptor is upright, which differs from an orientation of 0.
 pub fn descriptor(integral: &IntegralImage, at: Place, orientation: Option<f32>) -> [f32; DESCRIPTOR_LENGTH] {
     let gradients = gradients(integral, at, orientation);
     let mut descriptor = [0.0; DESCRIPTOR_LENGTH];
@@ -42,16 +42,16 @@ pub fn descriptor(integral: &IntegralImage, at: Place, orientation: Option<f32>)
     descriptor
 }
 
-/// The compressed gradients, 2 scales apart, in the point's own axes.
+/// The compressed gradients of samples 2 scales apart, in the axes of the point.
 fn gradients(integral: &IntegralImage, at: Place, orientation: Option<f32>) -> Gradients {
     let (sin, cos) = orientation.unwrap_or(0.0).sin_cos();
     let scale = at.scale as f32;
-    // Wavelets of side 1.5 scales, or 4.
+    // Side of the wavelets: 1.5 scales upright, else 4.
     let half = if orientation.is_none() { (3 * at.scale + 2) / 4 } else { 2 * at.scale };
     std::array::from_fn(|row| {
         std::array::from_fn(|column| {
             let (u, v) = (from_centre(column), from_centre(row));
-            // Exact where nothing is turned: whole scales in whole sixteenths.
+            // Exact in upright mode: whole scales in whole sixteenths.
             let x = at.x + (scale * (u * cos - v * sin) + 0.5).floor() as i32;
             let y = at.y + (scale * (u * sin + v * cos) + 0.5).floor() as i32;
             let (dx, dy) = compress(haar::responses(integral, x, y, half));
@@ -60,12 +60,12 @@ fn gradients(integral: &IntegralImage, at: Place, orientation: Option<f32>) -> G
     })
 }
 
-/// A sample's distance from the middle, in scales: -7, -5, ..., 7.
+/// Distance of a sample from the middle, in scales: -7, -5, ..., 7.
 fn from_centre(index: usize) -> f32 {
     2.0 * index as f32 - (SAMPLES - 1) as f32
 }
 
-/// The vector of the same direction whose length is the cube root.
+/// Compresses a vector: the same direction, the cube root of the length.
 fn compress((dx, dy): (i32, i32)) -> (f32, f32) {
     if (dx, dy) == (0, 0) {
         return (0.0, 0.0);
@@ -88,7 +88,7 @@ fn subregion(gradients: &Gradients, row: usize, column: usize) -> [f32; 4] {
     sums
 }
 
-/// A subregion's weight by its distance from the point.
+/// The Gaussian weight of a subregion by its distance from the point.
 fn weight(row: usize, column: usize) -> f32 {
     let from_centre = |index: usize| index as f32 - (SUBREGIONS - 1) as f32 / 2.0;
     let (r, c) = (from_centre(row), from_centre(column));
@@ -137,8 +137,8 @@ mod tests {
 
     #[test]
     fn a_ramp_by_hand() {
-        // Every sample sees the same slope in x alone, so a subregion's four values are (w, 0, w, 0), and
-        // the length is the root of 2 * sum(w^2).
+        // All samples have the same slope, in x only: the four values of a subregion are (w, 0, w, 0), and the length
+        // is the root of 2 * sum(w^2).
         let descriptor = describe_picture(|x, _| 2 * x as u8, (40.5, 40.5), None);
         let near = (-0.25f32 / 4.5).exp();
         let far = (-2.25f32 / 4.5).exp();

@@ -1,4 +1,4 @@
-//! The whole sparse half on the CPU: a picture in, interest points out.
+//! Detection and description of interest points on the CPU.
 
 use rayon::prelude::*;
 
@@ -16,9 +16,9 @@ use crate::{
     image::Luma,
 };
 
-/// Finds and describes the interest points of a picture, by octave, interval, row and column.
+/// Finds and describes the interest points of a picture, sorted by octave, interval, row and column.
 ///
-/// A picture too small for the filters has none.
+/// A picture too small for the filters has no interest points.
 ///
 /// # Errors
 /// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`]; [`crate::Error::TooManyFeatures`] if there are more

@@ -2,15 +2,14 @@
 
 use crate::cpu::features::integral::IntegralImage;
 
-/// An interest point's place, rounded once to 1/16 px: what is sampled around it is then the same on
-/// every device.
+/// The place of an interest point, rounded once to 1/16 px, so that all devices sample the same pixels around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// From the picture's left edge, in 1/16 px.
+    /// Distance from the left edge of the picture, in 1/16 px.
     pub x: i32,
-    /// From the picture's top edge, in 1/16 px.
+    /// Distance from the top edge of the picture, in 1/16 px.
     pub y: i32,
-    /// The scale, in 1/16 px.
+    /// Scale, in 1/16 px.
     pub scale: i32,
 }
 
@@ -25,8 +24,8 @@ impl Place {
 /// The Haar wavelet responses `(dx, dy)` at `(x, y)`, times 256: right half minus left half, lower half
 /// minus upper half of a square of side `2 * half`.
 ///
-/// All lengths are in 1/16 px from the picture's top left corner. Beyond the picture everything is 0.
-/// Exact for a `half` below 128 px.
+/// All lengths are in 1/16 px, positions from the top left corner of the picture. Outside the picture luma is 0. Exact
+/// for a `half` below 128 px.
 pub fn responses(integral: &IntegralImage, x: i32, y: i32, half: i32) -> (i32, i32) {
     let at = |dx: i32, dy: i32| integral.at_sixteenths(x + dx * half, y + dy * half);
     let [top_left, top, top_right] = [at(-1, -1), at(0, -1), at(1, -1)];
@@ -73,8 +72,8 @@ mod tests {
     #[test]
     fn a_ramp_has_its_slope_everywhere() {
         let ramp = IntegralImage::new(&Luma::from_fn((64, 64), |x, y| (2 * x + y) as u8));
-        // At whole and half pixels the sums of a stepped ramp are those of the smooth one: halves of
-        // 4 x 8 px whose centres are 4 px apart.
+        // At whole and half pixels the sums of a stepped ramp equal those of a smooth one: halves of 4 x 8 px whose
+        // centres are 4 px apart.
         for (x, y) in [(30 * 16 + 8, 20 * 16), (30 * 16, 20 * 16 + 8), (31 * 16, 33 * 16)] {
             assert_eq!(responses(&ramp, x, y, 4 * 16), (256 * 2 * 4 * 32, 256 * 4 * 32));
         }
@@ -83,7 +82,7 @@ mod tests {
     #[test]
     fn beyond_the_picture_everything_is_zero() {
         let white = IntegralImage::new(&Luma::filled((8, 8), 255));
-        // On the left edge the left half sees nothing.
+        // On the left edge the left half is outside the picture.
         assert_eq!(responses(&white, 0, 4 * 16, 2 * 16), (256 * 255 * 8, 0));
         assert_eq!(responses(&white, -100 * 16, 4 * 16, 2 * 16), (0, 0));
     }

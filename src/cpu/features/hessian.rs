@@ -5,25 +5,25 @@ use rayon::prelude::*;
 
 use crate::{cpu::features::integral::IntegralImage, image::Plane};
 
-/// Intervals of an octave.
+/// Intervals per octave.
 pub const INTERVALS: usize = 4;
 
-/// Sides of the filters, an octave a row.
+/// Sides of the filters, in pixels, one octave per row.
 pub const FILTER_SIZES: [[u32; INTERVALS]; 5] =
     [[9, 15, 21, 27], [15, 27, 39, 51], [27, 51, 75, 99], [51, 99, 147, 195], [99, 195, 291, 387]];
 
-/// What a determinant of 1 on OpenSURF's scale (grey values 0 to 1) is here: grey values 0 to 255
-/// in steps of 1/256, and a product of two of them.
+/// The value here of a determinant of 1 on OpenSURF's scale (grey values 0 to 1): grey values are 0 to 255 in steps of
+/// 1/256, and a determinant is a product of two such values.
 pub const RESPONSE_SCALE: f64 = (255.0 * 256.0) * (255.0 * 256.0);
 
 /// The responses of an octave's four filters on its grid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Octave {
-    /// Which octave, from 0.
+    /// Index of the octave, from 0.
     pub index: u32,
     /// Pixels between grid points: point `(i, j)` is pixel `(i * spacing, j * spacing)`.
     pub spacing: u32,
-    /// Response words, an interval each.
+    /// Responses, one plane per interval.
     pub layers: [Plane<Response>; INTERVALS],
 }
 
@@ -55,7 +55,7 @@ impl Octave {
         Self { index, spacing, layers }
     }
 
-    /// The filters' sides.
+    /// Sides of the filters, in pixels.
     pub fn sizes(&self) -> [u32; INTERVALS] {
         FILTER_SIZES[self.index as usize]
     }
@@ -87,9 +87,9 @@ fn layer(integral: &IntegralImage, size: u32, spacing: u32) -> Plane<Response> {
 /// The three box filters of one size, with their normalisation.
 struct Filter {
     size: u32,
-    /// A sum over the filter to 1/256 grey level by area.
+    /// Factor from a sum over the filter to 1/256 grey level, normalised by area.
     scale: f32,
-    /// The same for the mixed derivative, with the weight 0.9 that balances it (Bay et al., eq. 3).
+    /// Factor of the mixed derivative, which includes the balancing weight 0.9 (Bay et al., eq. 3).
     mixed_scale: f32,
 }
 
@@ -101,7 +101,7 @@ impl Filter {
 
     fn response(&self, integral: &IntegralImage, x: u32, y: u32) -> Response {
         let [xx, yy, xy] = derivatives(integral, x, y, self.size);
-        // One correctly rounded product each, so that every device gets the same integers.
+        // Each derivative is one correctly rounded product, so that all devices get the same integers.
         let nxx = (xx as f32 * self.scale).round_ties_even() as i32;
         let nyy = (yy as f32 * self.scale).round_ties_even() as i32;
         let nxy = (xy as f32 * self.mixed_scale).round_ties_even() as i32;
@@ -115,7 +115,7 @@ fn derivatives(integral: &IntegralImage, x: u32, y: u32, size: u32) -> [i32; 3] 
     let (border, side, middle) = (size / 2, lobe - 1, lobe / 2);
     let sum = |x0, y0, x1, y1| integral.box_sum(x0, y0, x1, y1) as i32;
 
-    // Three lobes of weights 1, -2, 1: the whole minus three times the middle.
+    // Three lobes of weights 1, -2, 1: the whole filter minus three times the middle lobe.
     let xx = sum(x - border, y - side, x + border + 1, y + side + 1)
         - 3 * sum(x - middle, y - side, x + middle + 1, y + side + 1);
     let yy = sum(x - side, y - border, x + side + 1, y + border + 1)
@@ -172,7 +172,7 @@ mod tests {
         let step = integral(40, 40, |x, _| if x < 20 { 0 } else { 200 });
         let octave = Octave::new(&step, 0, 1);
         assert!(octave.layers.iter().all(|layer| layer.data().iter().all(|word| word.determinant() == 0)));
-        // Yet Dxx is there: one lobe of 3 x 5 px in the light, one pixel column short of it.
+        // Yet Dxx is not 0: one lobe of 3 x 5 px lies in the light, one pixel column short of it.
         assert_eq!(derivatives(&step, 18, 20, 9), [200 * 15, 0, 0]);
     }
 

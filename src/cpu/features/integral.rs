@@ -1,18 +1,18 @@
-//! The integral image: any box of the picture as four look-ups (Crow, 'Summed-Area Tables for
-//! Texture Mapping', SIGGRAPH 1984; Viola and Jones, CVPR 2001).
+//! The integral image: the sum of any box in four look-ups (Crow, 'Summed-Area Tables for Texture Mapping', SIGGRAPH
+//! 1984; Viola and Jones, CVPR 2001).
 
 use crate::{
     cpu::features::{integral_columns::integral_columns, integral_rows::integral_rows},
     image::{Luma, Plane},
 };
 
-/// Sums of luma over everything above and to the left.
+/// The sums of luma over all pixels above and to the left.
 ///
-/// The sums wrap at 2^32: a difference of wrapped sums is right whenever the box's own sum fits, so
-/// that there is no largest picture.
+/// Sums wrap at 2^32. A difference of wrapped sums is right whenever the box's own sum fits in 32 bits, so that the
+/// size of pictures is not limited.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IntegralImage {
-    /// One column and one row larger than the picture; column 0 and row 0 are 0.
+    /// Sums, one column and one row larger than the picture; column 0 and row 0 are 0.
     sums: Plane<u32>,
 }
 
@@ -24,17 +24,17 @@ impl IntegralImage {
         Self { sums }
     }
 
-    /// Width of the picture.
+    /// Width of the picture, in pixels.
     pub fn width(&self) -> u32 {
         self.sums.width() - 1
     }
 
-    /// Height of the picture.
+    /// Height of the picture, in pixels.
     pub fn height(&self) -> u32 {
         self.sums.height() - 1
     }
 
-    /// The sums: at `(x, y)` that of all luma in columns below `x` of rows below `y`, modulo 2^32.
+    /// All sums: `(x, y)` holds the sum of luma over columns below `x` and rows below `y`, modulo 2^32.
     pub fn sums(&self) -> &Plane<u32> {
         &self.sums
     }

@@ -1,8 +1,8 @@
-//! The second half of the integral image: sums along columns.
+//! The second pass of the integral image: sums along columns.
 
 use crate::image::Plane;
 
-/// Adds to every value all that are above it, modulo 2^32.
+/// Adds to each value all values above it, modulo 2^32.
 pub fn integral_columns(sums: &mut Plane<u32>) {
     let stride = sums.width() as usize;
     let values = sums.data_mut();

@@ -1,9 +1,9 @@
-//! The first half of the integral image: sums along rows.
+//! The first pass of the integral image: sums along rows.
 
 use crate::image::{Luma, Plane};
 
-/// At `(x, y)` the sum, modulo 2^32, of all luma in columns below `x` of row `y - 1`: one column and
-/// one row more than the picture, column 0 and row 0 being 0.
+/// The row sums of luma: `(x, y)` holds the sum of row `y - 1` over columns below `x`, modulo 2^32. The plane has one
+/// column and one row more than the picture; column 0 and row 0 are 0.
 pub fn integral_rows(luma: &Luma) -> Plane<u32> {
     let mut sums = Plane::filled((luma.width() + 1, luma.height() + 1), 0_u32);
     let stride = luma.width() as usize + 1;

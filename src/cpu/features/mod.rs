@@ -1,4 +1,4 @@
-//! The twins of the interest points.
+//! The CPU twins of interest points.
 
 pub mod descriptor;
 pub mod detector;

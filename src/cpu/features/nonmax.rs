@@ -1,4 +1,4 @@
-//! Non-maximum suppression in 3x3x3, and where between the samples a maximum lies.
+//! Non-maximum suppression in 3x3x3 samples, and interpolation of a maximum's position between them.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ use crate::{
     image::Size,
 };
 
-/// The standard deviation, in pixels, of the Gaussian that the smallest filter stands for (Bay et al., section 3.3).
+/// Standard deviation, in pixels, of the Gaussian that the smallest filter approximates (Bay et al., section 3.3).
 const SMALLEST_SCALE: f32 = 1.2;
 
-/// A sample of the response that beats its 26 neighbours. The derived order is that of the list.
+/// A sample whose response exceeds its 26 neighbours. The derived order is that of the final list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Candidate {
     /// Octave, from 0.
@@ -23,29 +23,29 @@ pub struct Candidate {
     pub i: u32,
 }
 
-/// A candidate's place between the samples.
+/// The interpolated position of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremum {
-    /// Column in pixels.
+    /// Column, in pixels.
     pub x: f32,
-    /// Row in pixels.
+    /// Row, in pixels.
     pub y: f32,
-    /// Standard deviation of the Gaussian that the filter stands for, in pixels.
+    /// Scale, in pixels: the standard deviation of the Gaussian that the filter approximates.
     pub scale: f32,
-    /// The sample's determinant on OpenSURF's scale.
+    /// Determinant of the sample, on OpenSURF's scale.
     pub response: f32,
     /// Whether the trace of the Hessian is positive.
     pub dark: bool,
 }
 
-/// A threshold on OpenSURF's scale as the least determinant that passes; never 0, which is flat.
+/// Converts a threshold on OpenSURF's scale to the least accepted determinant, at least 1, since 0 is flat.
 pub fn integer_threshold(threshold: f32) -> i32 {
     (f64::from(threshold) * RESPONSE_SCALE).round().max(1.0) as i32
 }
 
 /// The maxima of an octave that reach `threshold`, in the order of [`Candidate`].
 ///
-/// `width` and `height` are the picture's.
+/// `width` and `height` are those of the picture, in pixels.
 pub fn candidates(octave: &Octave, width: u32, height: u32, threshold: i32) -> Vec<Candidate> {
     let Size { width: columns, height: rows } = octave.layers[0].size();
     let inner = |length: u32| 1..length.max(1) - 1;
@@ -64,14 +64,13 @@ fn is_maximum(octave: &Octave, width: u32, height: u32, at: Candidate, threshold
     if value < threshold {
         return false;
     }
-    // The largest of the three filters decides: next to a sample that could not be computed there
-    // is no telling a maximum.
+    // The largest of the three filters decides: next to a sample that could not be computed, a maximum cannot be told.
     let size = octave.sizes()[at.layer as usize + 1];
     let inside = |i: u32, j: u32| fits(width, height, i * octave.spacing, j * octave.spacing, size);
     if !inside(at.i - 1, at.j - 1) || !inside(at.i + 1, at.j + 1) {
         return false;
     }
-    // Of equal neighbours the first is the maximum, so that a plateau does not have several.
+    // The first of equal neighbours is the maximum, so that a plateau has only one.
     neighbours().all(|offset| {
         let neighbour = determinant(octave, at, offset);
         if offset < [0, 0, 0] { value > neighbour } else { value >= neighbour }
@@ -97,7 +96,7 @@ fn determinant(octave: &Octave, at: Candidate, offset: [i32; 3]) -> i32 {
     response(octave, at, offset).determinant()
 }
 
-/// Where between the samples a candidate's maximum lies.
+/// Interpolates the position of a candidate's maximum.
 pub fn locate(octave: &Octave, at: Candidate) -> Extremum {
     let along = |[layer, j, i]: [i32; 3]| {
         let value = determinant(octave, at, [0, 0, 0]);
@@ -116,11 +115,11 @@ pub fn locate(octave: &Octave, at: Candidate) -> Extremum {
     }
 }
 
-/// Where the parabola through three samples has its vertex, from the middle one, -0.5 to 0.5.
+/// The vertex of the parabola through three samples, relative to the middle one, -0.5 to 0.5.
 ///
-/// An axis at a time instead of one quadric in three dimensions (Brown and Lowe, BMVC 2002): on real
-/// pairs as accurate within half a percent of the matches, never singular, never far off, and the same on
-/// every device but for the rounding of one division.
+/// Axes are interpolated one at a time instead of by one quadric in three dimensions (Brown and Lowe, BMVC 2002): on
+/// real pairs as accurate within half a percent of the matches, never singular, never far off, and the same on every
+/// device but for the rounding of one division.
 fn vertex(before: i32, value: i32, after: i32) -> f32 {
     let (before, value, after) = (i64::from(before), i64::from(value), i64::from(after));
     let curvature = 2 * value - before - after;
@@ -135,7 +134,7 @@ mod tests {
         image::{Luma, Plane},
     };
 
-    /// An octave whose determinants are those of `f(x, y, layer)`, on the first octave's grid.
+    /// A first octave with determinants `f(x, y, layer)`.
     fn octave(width: u32, height: u32, f: impl Fn(i32, i32, i32) -> i32) -> Octave {
         let layers = [0, 1, 2, 3]
             .map(|layer| Plane::from_fn((width, height), |x, y| Response(f(x as i32, y as i32, layer) << 1)));
@@ -180,7 +179,7 @@ mod tests {
 
     #[test]
     fn the_larger_filter_must_fit_around_the_neighbours_too() {
-        // Layer 1 of the first octave: its neighbours need 21 / 2 = 10 px on each side, so 11.
+        // Layer 1 of the first octave: its neighbours need 21 / 2 = 10 px on each side, so the maximum needs 11.
         let every = |x: i32, y: i32| octave(41, 41, move |px, py, s| i32::from((px, py, s) == (x, y, 1)));
         let found = |x, y| candidates(&every(x, y), 41, 41, 1).len();
         assert_eq!((found(11, 29), found(10, 29), found(11, 30), found(29, 11), found(29, 10)), (1, 0, 0, 1, 0));
@@ -206,7 +205,7 @@ mod tests {
         assert_eq!(vertex(16000 - 2500, 16000 - 100, 16000 - 900), 0.25);
         assert_eq!(vertex(7, 7, 7), 0.0);
         assert_eq!(vertex(-5, 7, 7), 0.5);
-        // The farthest apart that determinants can be.
+        // The largest possible difference of determinants.
         assert_eq!(vertex(-(1 << 30), (1 << 30) - 1, -(1 << 30)), 0.0);
     }
 
@@ -219,7 +218,7 @@ mod tests {
         let [candidate] = candidates(&peak, 61, 61, 90_000)[..] else { panic!("not one candidate") };
         assert_eq!(places(&[candidate]), [(30, 25, 2)]);
         let extremum = locate(&peak, candidate);
-        // Filter 21 and half of the 6 px to its smaller neighbour more: 1.2 * 24 / 9.
+        // Filter 21, plus half of the 6 px to the next filter: 1.2 * 24 / 9.
         assert_eq!((extremum.x, extremum.y, extremum.scale), (30.25, 24.75, 3.2));
         assert!(!extremum.dark);
     }

@@ -11,19 +11,19 @@ use crate::cpu::features::{
 const RADIUS: i32 = 6;
 /// Standard deviation of the weights, in scales.
 const SIGMA: f32 = 2.5;
-/// Directions in which the sliding window of pi/3 may start, half a step off the multiples of 45
-/// degrees: gradients of exactly those directions are common and must not sit on a window's end.
+/// Possible first directions of the sliding window of pi/3, half a step off the multiples of 45 degrees: gradients of
+/// exactly those directions are common and must not lie on a window's end.
 const WINDOWS: u32 = 48;
 
-/// The orientation at a place, in radians from 0 to below 2 pi; 0 where there is no gradient at all.
+/// The orientation at a place, in radians, 0 to below 2 pi; 0 without any gradient.
 pub fn orientation(integral: &IntegralImage, at: Place) -> f32 {
     direction(windows(&gradients(integral, at), 0.0).fold((0.0, 0.0), longer))
 }
 
-/// Whether it is the same for whoever computes the gradients' angles and the windows' sums a little differently: to
-/// 0.0002 and to one in a thousand. Such an orientation differs by 0.0005 at most.
+/// Whether the orientation is robust: the same for every implementation whose angles of gradients differ by up to
+/// 0.0002 and whose sums of windows differ by up to one in a thousand. A robust orientation differs by 0.0005 at most.
 pub fn is_decided(integral: &IntegralImage, at: Place) -> bool {
-    /// What counts as hardly any gradient, in grey levels: less is lost where sums are rounded.
+    /// Least length of a gradient that counts, in grey levels: smaller ones are lost in the rounding of sums.
     const LEAST_LENGTH: f32 = 0.25;
     let gradients = gradients(integral, at);
     if gradients.iter().all(|&(_, dx, dy)| (dx, dy) == (0.0, 0.0)) {
@@ -40,7 +40,7 @@ pub fn is_decided(integral: &IntegralImage, at: Place) -> bool {
     length2(longest).sqrt() >= LEAST_LENGTH * area && as_long.map(apart).all(|apart| apart <= 5e-4)
 }
 
-/// The sums of the gradients in each window, all of which begin `shift` further on.
+/// The sum of gradients in each window, all windows rotated by `shift`.
 fn windows(gradients: &[(f32, f32, f32)], shift: f32) -> impl Iterator<Item = (f32, f32)> {
     (0..WINDOWS).map(move |window| {
         let start = (window as f32 + 0.5) * (TAU / WINDOWS as f32) + shift;
@@ -49,17 +49,17 @@ fn windows(gradients: &[(f32, f32, f32)], shift: f32) -> impl Iterator<Item = (f
     })
 }
 
-/// The longer of two vectors; of equally long ones the first.
+/// The longer of two vectors; the first of equally long ones.
 fn longer(best: (f32, f32), sum: (f32, f32)) -> (f32, f32) {
     if length2(sum) > length2(best) { sum } else { best }
 }
 
-/// Where a vector points, in radians from 0 to below 2 pi.
+/// The direction of a vector, in radians, 0 to below 2 pi.
 fn direction((dx, dy): (f32, f32)) -> f32 {
     wrap(dy.atan2(dx))
 }
 
-/// Weighted Haar responses of side 4 scales in the neighbourhood: angle, dx, dy.
+/// The weighted Haar responses of side 4 scales in the neighbourhood: angle, dx, dy.
 fn gradients(integral: &IntegralImage, at: Place) -> Vec<(f32, f32, f32)> {
     let disc = (-RADIUS..=RADIUS).flat_map(|j| (-RADIUS..=RADIUS).map(move |i| (i, j)));
     disc.filter(|(i, j)| i * i + j * j < RADIUS * RADIUS)
@@ -72,10 +72,10 @@ fn gradients(integral: &IntegralImage, at: Place) -> Vec<(f32, f32, f32)> {
         .collect()
 }
 
-/// An angle above -2 pi as one from 0 to below 2 pi.
+/// Wraps an angle above -2 pi to 0 to below 2 pi.
 fn wrap(angle: f32) -> f32 {
     let wrapped = if angle < 0.0 { angle + TAU } else { angle };
-    // A tiny negative angle rounds up to the whole turn.
+    // A tiny negative angle rounds up to 2 pi.
     if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_ramp_points_uphill() {
-        // Slopes in x and y, and the direction uphill.
+        // Slopes in x and y, and the uphill direction.
         for (sx, sy, expected) in [(1, 0, 0.0), (0, 1, FRAC_PI_2), (-1, 0, PI), (-1, -1, PI * 1.25)] {
             let ramp = |x: u32, y: u32| (sx * (x as i32 - 45) + sy * (y as i32 - 45) + 128) as u8;
             let integral = IntegralImage::new(&Luma::from_fn((91, 91), ramp));

@@ -1,7 +1,6 @@
-//! How many workgroups a list takes.
+//! The number of workgroups of a keypoint list.
 
-/// Workgroups along x, y and z for one of each of the `found` entries that a list with room for
-/// `capacity` can hold, in rows of `width`.
+/// Workgroups along x, y and z, one per keypoint found but at most `capacity`, in rows of `width`.
 pub fn workgroups(found: u32, capacity: u32, width: u32) -> [u32; 3] {
     let count = found.min(capacity);
     [count.min(width), count.div_ceil(width), 1]

@@ -7,27 +7,27 @@ use crate::{
     kamencay::{Links, Smoothness, kernels::Turn},
 };
 
-/// The neighbours in the order of a node's messages: above, below, to the left and to the right.
+/// The neighbours in the order of a node's messages: above, below, left, right.
 const NEIGHBOURS: [(i64, i64); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
 
-/// A grid of nodes with the data costs of each, all its disparities after another.
+/// A grid of nodes.
 #[derive(Clone, Copy)]
 pub struct Grid<'g> {
-    /// Nodes in a row and rows.
+    /// Nodes per row, and rows.
     pub size: Size,
-    /// The data costs.
+    /// Data costs, all disparities of a node one after the other.
     pub costs: &'g [u16],
-    /// The weights of its links.
+    /// Weights of the grid's links.
     pub links: &'g Links,
 }
 
 impl Grid<'_> {
-    /// Disparities of a node.
+    /// Number of disparities per node.
     fn count(&self) -> usize {
         self.costs.len() / (self.size.width as usize * self.size.height as usize)
     }
 
-    /// The neighbour in a direction, an index into [`NEIGHBOURS`].
+    /// The neighbour in `direction`, an index into [`NEIGHBOURS`]; `None` outside the grid.
     fn neighbour(&self, (x, y): (u32, u32), direction: usize) -> Option<(u32, u32)> {
         let (dx, dy) = NEIGHBOURS[direction];
         let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
@@ -35,7 +35,7 @@ impl Grid<'_> {
         inside.then_some((x as u32, y as u32))
     }
 
-    /// What the neighbour in a direction sends to a node.
+    /// The message that the neighbour in `direction` sends to a node.
     fn received<'m>(
         &self,
         messages: &'m [u8],
@@ -51,7 +51,7 @@ impl Grid<'_> {
         Some(&messages[place * self.count()..][..self.count()])
     }
 
-    /// The data costs of a node and all messages to it, but the one from a direction.
+    /// The data costs of a node plus all messages to it, except the one from direction `but`.
     pub(super) fn belief(&self, messages: &[u8], at: (u32, u32), but: Option<usize>, from_parents: bool) -> Vec<u32> {
         let count = self.count();
         let node = (at.1 * self.size.width + at.0) as usize;
@@ -74,11 +74,11 @@ impl Grid<'_> {
     }
 }
 
-/// What the neighbour has to pay for each of its disparities, where it costs `h` to have one here: the least cost of
-/// having another and of the difference, less the least of all.
+/// The message to a neighbour: for each of its disparities, the least sum of the cost `h` of a disparity of this node
+/// and the smoothness cost of the difference, minus the least of all.
 fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
     let least = h.iter().copied().min().unwrap_or(0);
-    // Beyond its reach a difference costs the limit at least; where a difference costs nothing, it reaches everywhere.
+    // Differences beyond the reach cost at least the limit; with slope 0 the reach is unlimited.
     let reach = limit.checked_div(slope).map_or(h.len(), |reach| reach as usize);
     (0..h.len()).map(move |d| {
         let near = d.saturating_sub(reach)..=(d + reach).min(h.len() - 1);
@@ -87,8 +87,8 @@ fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
     })
 }
 
-/// Half of the nodes of `grid` send a message to each of their neighbours: four a node, upwards, downwards, to the left
-/// and to the right, 0 where there is nobody. `parents` are the messages in the grid of half the size.
+/// One turn: half of the nodes of `grid` send a message to each of their neighbours. A node has four messages: up,
+/// down, left and right, 0 where there is no neighbour. `parents` are the messages of the grid of half the size.
 pub fn belief(grid: Grid<'_>, messages: &mut [u8], parents: &[u8], smoothness: &Smoothness, turn: Turn) {
     let (width, count) = (grid.size.width as usize, grid.count());
     let before = messages.to_vec();
@@ -122,7 +122,7 @@ mod tests {
         // Costs less the least, 5: 4 or a step from 5; 0; the limit.
         assert_eq!(messages(3, 20), [3, 0, 3]);
         assert_eq!(messages(100, 20), [4, 0, 20]);
-        // A difference that costs nothing leaves the least everywhere.
+        // With free differences the message is 0 everywhere.
         assert_eq!(messages(0, 20), [0, 0, 0]);
     }
 }

@@ -8,8 +8,8 @@ use crate::{
     kamencay::{FAR, Strip, WindowCost, kernels::MAX_DATA_COST},
 };
 
-/// For each pixel of a strip of `left` the costs of its disparities, and [`FAR`] for as many more as make whole fours.
-/// Both views are given as [`crate::kamencay::described`] leaves them; outside they go on as they end.
+/// The data costs of each pixel of a strip of `left`, padded with [`FAR`] to a multiple of four disparities. Both views
+/// come from [`crate::kamencay::described`]; edge pixels are repeated outside.
 pub fn belief_cost(
     [left, right]: [&Plane<u32>; 2],
     strip: Strip,
@@ -18,8 +18,7 @@ pub fn belief_cost(
 ) -> Vec<u16> {
     let radius = i64::from(cost.radius);
     let side = 2 * cost.radius + 1;
-    // In 1/48 of a grey level.
-    // A window's columns are clamped in each view by themselves.
+    // In 1/48 of a grey level. The columns of a window are clamped in each view separately.
     let difference = |x: i64, y: i64, disparity: i64| {
         let (a, b) = (left.get_clamped(x, y).to_le_bytes(), right.get_clamped(x - disparity, y).to_le_bytes());
         let channel = |channel: usize| u32::from(a[channel].abs_diff(b[channel]));

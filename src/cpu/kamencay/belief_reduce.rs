@@ -2,7 +2,7 @@
 
 use crate::{image::Size, kamencay::FAR};
 
-/// The costs of a grid of half the size: for each disparity those of a block of 2x2 nodes added up, at most [`FAR`].
+/// The data costs of the grid of half the size: per disparity, the sum over a block of 2x2 nodes, at most [`FAR`].
 pub fn belief_reduce(costs: &[u16], Size { width, height }: Size) -> Vec<u16> {
     let count = costs.len() / (width as usize * height as usize);
     let (columns, rows) = (width.div_ceil(2) as usize, height.div_ceil(2) as usize);

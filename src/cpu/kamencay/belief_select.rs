@@ -1,11 +1,11 @@
-//! From messages to disparities, from the definition.
+//! Selection of disparities from messages, from the definition.
 
 use rayon::prelude::*;
 
 use super::belief::Grid;
 use crate::{image::Size, kamencay::kernels::Winner};
 
-/// For each node of the grid the disparity of the least belief among the first `disparities`, ties to the smaller one.
+/// The winner of each node: the disparity of least belief among the first `disparities`, ties to the smaller disparity.
 pub fn belief_select(grid: Grid<'_>, messages: &[u8], disparities: u32) -> Vec<Winner> {
     let Size { width, height } = grid.size;
     let winner = |node: u32| {

@@ -1,4 +1,4 @@
-//! The hybrid method in one call.
+//! Kamencay's method in one call.
 
 use super::{
     belief::{Grid, belief},
@@ -16,20 +16,21 @@ use crate::{
     },
 };
 
-/// What [`crate::kamencay::compute`] computes, on the CPU.
+/// [`crate::kamencay::compute`] on the CPU.
 ///
 /// # Errors
-/// [`crate::Error::SizesDiffer`], [`crate::Error::Parameter`]; [`crate::Error::TooLarge`] for rows too wide for a strip.
+/// [`crate::Error::SizesDiffer`], [`crate::Error::Parameter`]; [`crate::Error::TooLarge`] if a strip cannot hold enough
+/// rows of this width.
 pub fn compute(left: &Picture, right: &Picture, config: &KamencayConfig) -> Result<Dense> {
     compute_within(left, right, config, MAX_MESSAGE_BYTES)
 }
 
-/// What [`crate::kamencay::compute_within`] computes, on the CPU.
+/// [`crate::kamencay::compute_within`] on the CPU.
 ///
 /// # Errors
-/// As [`compute`].
+/// See [`compute`].
 pub fn compute_within(left: &Picture, right: &Picture, config: &KamencayConfig, message_bytes: u64) -> Result<Dense> {
-    // The twins wait for nothing.
+    // The futures of the twins are always ready.
     pollster::block_on(solve(left, right, config, message_bytes, &mut Twins))
 }
 

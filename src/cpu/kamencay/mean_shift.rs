@@ -7,7 +7,8 @@ use crate::{
     kamencay::{ModeSeeking, kernels::STILL},
 };
 
-/// The colour of the mode that each pixel climbs to: red, green and blue from the lowest byte of a word on.
+/// The colour of each pixel's mode, the point to which it climbs: red, green and blue, from the lowest byte of a `u32`
+/// on.
 pub fn mean_shift(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Plane<u32> {
     let Size { width, height } = pixels.size();
     let modes: Vec<u32> = (0..width * height)
@@ -29,7 +30,7 @@ pub fn mean_shift(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Plane<u32> {
     Plane::from_fn((width, height), |x, y| modes[(y * width + x) as usize])
 }
 
-/// Column, row, red, green and blue in 1/16.
+/// Column, row, red, green and blue, in 1/16.
 type Point = [i32; 5];
 
 fn at(pixels: &Plane<u32>, x: u32, y: u32) -> Point {
@@ -37,8 +38,8 @@ fn at(pixels: &Plane<u32>, x: u32, y: u32) -> Point {
     [x as i32, y as i32, red, green, blue].map(|value| 16 * value)
 }
 
-/// The mean of the pixels in a window around the nearest pixel to `point` whose colours are near the point's; rounded
-/// to 1/16, halves up. There may be none.
+/// The mean of the pixels of similar colour in a window around the pixel nearest to `point`, rounded to 1/16, halves
+/// up; `None` without any such pixel.
 fn mean_around(pixels: &Plane<u32>, point: Point, seeking: &ModeSeeking) -> Option<Point> {
     let radius = seeking.radius as i32;
     let span = |centre: i32, count: u32| {

@@ -1,4 +1,4 @@
-//! The twins of Kamencay's method.
+//! The CPU twins of Kamencay's method.
 
 mod belief;
 mod belief_cost;

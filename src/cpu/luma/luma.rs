@@ -5,7 +5,7 @@ use crate::{
     image::{Luma, luma_of},
 };
 
-/// Luma of a picture of `width * height` RGBA bytes; alpha is ignored.
+/// Converts `width * height` RGBA pixels, four bytes each, to luma; alpha is ignored.
 ///
 /// # Errors
 /// [`Error::Parameter`] if a side is 0 or the number of bytes does not fit.

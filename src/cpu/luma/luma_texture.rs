@@ -1,21 +1,21 @@
-//! A texture's texels to luma, from the definition.
+//! Conversion of texels to luma, from the definition.
 
 use crate::image::{Luma, Plane, luma_of};
 
-/// The texels of a picture. Whether bytes are declared sRGB does not matter: luma is that of the bytes.
+/// The texels of a picture. 8-bit texels count as stored, whether the format is sRGB or not.
 #[derive(Clone, Debug)]
 pub enum Texels {
-    /// Red, green, blue and something else.
+    /// Red, green, blue, and a fourth channel that is ignored.
     Rgba(Plane<[u8; 4]>),
-    /// Grey.
+    /// Grey levels.
     Grey(Plane<u8>),
-    /// Red, green, blue and something else, in the bits of IEEE 754's binary16.
+    /// Red, green, blue, and a fourth channel that is ignored, as IEEE 754 binary16.
     RgbaHalf(Plane<[u16; 4]>),
-    /// Grey, in such bits.
+    /// Grey levels, as IEEE 754 binary16.
     GreyHalf(Plane<u16>),
 }
 
-/// Luma of texels.
+/// Converts texels to luma.
 pub fn luma_texture(texels: &Texels) -> Luma {
     match texels {
         Texels::Rgba(picture) => picture.map(|&[r, g, b, _]| luma_of([r, g, b])),
@@ -25,7 +25,7 @@ pub fn luma_texture(texels: &Texels) -> Luma {
     }
 }
 
-/// The byte that is nearest to 255 times a half, halves of a byte upwards; below 0 and above 1 cut off.
+/// Converts a binary16 to the nearest byte of 255 times its value, halves up, clamped to 0..1.
 fn level(half: u16) -> u8 {
     let (exponent, fraction) = (half >> 10 & 31, f64::from(half & 1023) / 1024.0);
     let magnitude = match exponent {

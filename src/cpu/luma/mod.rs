@@ -1,4 +1,4 @@
-//! The twins of the conversion to luma.
+//! The CPU twins of the conversion to luma.
 
 #[expect(clippy::module_inception, reason = "a twin has the name of its stage")]
 mod luma;

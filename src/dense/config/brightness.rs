@@ -1,4 +1,4 @@
-//! The change that brings the views' brightness together.
+//! The change of brightness that matches the right view to the left one.
 
 use crate::{
     error::{Result, check_range},
@@ -6,12 +6,12 @@ use crate::{
 };
 
 shader_struct! {
-    /// A change of brightness: a luma v becomes (gain v + offset + 128) >> 8, cut off at 0 and 255.
+    /// A linear change of brightness: luma v becomes (gain v + offset + 128) >> 8, clamped to 0..255.
     #[derive(PartialEq, Eq)]
     pub struct Brightness {
-        /// In 1/256, up to 2^20 either way.
+        /// Gain, -2^20 to 2^20 in 1/256; 256 by default.
         pub gain: i32,
-        /// In 1/256, up to 2^20 either way.
+        /// Offset in grey levels, -2^20 to 2^20 in 1/256; 0 by default.
         pub offset: i32,
     }
 }
@@ -20,7 +20,7 @@ impl Brightness {
     /// No change.
     pub const SAME: Self = Self { gain: 256, offset: 0 };
 
-    /// Refuses what 32 bits do not hold.
+    /// Checks that gain and offset lie in their ranges, so that a changed luma fits in 32 bits.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the accepted range.

@@ -1,6 +1,6 @@
 //! The matching cost of a pixel and its partner.
 
-/// The largest matching cost: together with a penalty of as much it fits in 8 bits.
+/// The largest matching cost: the sum of a cost and a penalty of the same size fits in 8 bits.
 pub const MAX_COST: u32 = 127;
 
 /// Fractional bits of a weight.
@@ -9,19 +9,20 @@ pub const WEIGHT_BITS: u32 = 4;
 /// A truncated absolute difference as part of a cost: `weight / 16 min(|a - b|, limit)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Weight in 1/16, 0 to 4096.
+    /// Weight, in 1/16, 0 to 4096.
     pub weight: u32,
-    /// Larger differences count as this one, 0 to 4096 grey levels.
+    /// Truncation: larger differences count as this one, 0 to 4096 grey levels.
     pub limit: u32,
 }
 
 /// The matching cost of a pixel and its partner: the sum of three parts, rounded down and at most [`MAX_COST`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// Weight in 1/16 of each of the 24 bits in which the 5x5 census transforms differ, 0 to 4096.
+    /// Weight of each of the 24 bits in which the 5x5 census transforms differ, in 1/16, 0 to 4096.
     pub census: u32,
-    /// Difference of the lumas.
+    /// Truncated difference of luma.
     pub difference: Difference,
-    /// Difference of the gradients of luma along the row, each the difference of the two neighbours.
+    /// Truncated difference of the horizontal gradients of luma; a gradient is the difference of the two neighbours in
+    /// the row.
     pub gradient: Difference,
 }

@@ -3,20 +3,20 @@
 use super::{Cost, Direction, Paths, Penalties};
 use crate::error::{Result, check, check_range};
 
-/// The largest side of a window over which costs are averaged, in pixels.
+/// The largest side of a cost-averaging window, in pixels.
 const MAX_WINDOW: u32 = 31;
 
-/// Costs of pixels, averaged over a window and summed up along paths.
+/// Matching costs of pixels, averaged over a window and aggregated along paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CostAggregation {
-    /// How pixels are compared.
+    /// The matching cost of two pixels.
     pub cost: Cost,
-    /// The side of a square in pixels, odd, 1 to 31, over which the costs of each disparity are averaged before anything
-    /// else; 1 leaves them as they are.
+    /// Side of the square window over which the costs of each disparity are averaged before aggregation, in pixels:
+    /// odd, 1 to 31; 1 averages nothing.
     pub window: u32,
-    /// The paths along which costs are summed up. `None` is block matching: the least cost of a pixel's window decides.
+    /// The paths along which costs are aggregated. `None` is block matching: the smallest averaged cost wins.
     pub semi_global: Option<SemiGlobal>,
-    /// How the left-right consistency check gets the disparities of the other view.
+    /// The source of the other view's disparities in the left-right consistency check.
     pub cross_check: CrossCheck,
 }
 
@@ -29,17 +29,17 @@ pub struct SemiGlobal {
     pub paths: Paths,
 }
 
-/// How the left-right consistency check gets the disparities of the other view.
+/// The source of the other view's disparities in the left-right consistency check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrossCheck {
-    /// From a search of its own, for as much work again.
+    /// A second search, with the other view as the reference; doubles the work.
     Searched,
-    /// From the winners of the reference view: of all pixels with the same partner, the cheapest claims it.
+    /// The winners of the reference view: among all pixels with the same partner, the one of least cost claims it.
     Claimed,
 }
 
 impl CostAggregation {
-    /// Refuses parameters that do not fit the volumes of 8 bits.
+    /// Checks that costs and penalties fit in cost volumes of 8 bits.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the accepted range.
@@ -63,20 +63,19 @@ impl CostAggregation {
         self.semi_global.map_or(Ok(()), |semi_global| semi_global.penalties.validate())
     }
 
-    /// Half the window without its centre.
+    /// Radius of the averaging window, (side - 1) / 2, in pixels.
     pub(in crate::dense) fn radius(&self) -> u32 {
         self.window / 2
     }
 
-    /// The penalties with which the kernels follow paths; without paths a last one is followed at no penalty, which leaves
-    /// all costs as they are.
+    /// Penalties of the path kernels. Without stored paths only the last path is followed, at no penalty, which leaves
+    /// all costs unchanged.
     pub(in crate::dense) fn followed_with(&self) -> Penalties {
         self.semi_global.map_or(Penalties::NONE, |semi_global| semi_global.penalties)
     }
 
-    /// The direction of the path that is followed last, while disparities are selected, and those of the paths that are
-    /// stored until then. The last one runs along the rows: nothing of it has to be kept from band to band, and it sees
-    /// memory in order.
+    /// The direction of the last path, which the selection kernel follows, and those of the stored paths. The last path
+    /// runs along the rows: it carries nothing from band to band, and its memory accesses are sequential.
     pub(in crate::dense) fn last_and_stored(&self) -> (Direction, &'static [Direction]) {
         let directions = self.semi_global.map_or(&[][..], |semi_global| semi_global.paths.directions());
         directions.split_first().map_or((Direction::ALL[0], &[]), |(&last, stored)| (last, stored))

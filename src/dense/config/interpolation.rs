@@ -2,11 +2,11 @@
 
 use crate::names::names;
 
-/// How a disparity is placed between whole pixels, from the costs of the winner and its two neighbours c-, c, c+; always
-/// rounded to the nearest 1/256 px, halves up.
+/// Sub-pixel interpolation from the costs c-, c, c+ of the winner c and its two neighbours. Disparities are rounded to
+/// the nearest 1/256 px, halves up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
-    /// Whole pixels.
+    /// Whole pixels, without interpolation.
     None,
     /// The vertex of a parabola: (c- - c+) / 2(c- - 2c + c+).
     Parabola,

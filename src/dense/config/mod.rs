@@ -1,4 +1,4 @@
-//! What the dense half is asked to do.
+//! Parameters of dense matching.
 
 mod brightness;
 mod cost;
@@ -23,58 +23,59 @@ use crate::{
     error::{Error, Result, check},
 };
 
-/// The bits of a key that hold the disparity's index, where paths put the costs together: a cost, a sum of at most 16
-/// bits, is above.
+/// Low bits of a key of aggregated costs that hold the disparity's index; the aggregated cost, at most 16 bits, is
+/// above them.
 pub(crate) const SUM_INDEX_BITS: u32 = 16;
 
 /// The side of the census transform, in pixels.
 const CENSUS_SIDE: u32 = 5;
 
-/// Which disparities of a range a pixel is compared at.
+/// The disparities of the range at which a pixel is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
-    /// All of them.
+    /// The whole range.
     Whole,
-    /// Those that a map of half the size shows around it, and a few more; all, where that map has holes. A
-    /// thing that is too thin or too small to be seen at half the size may be lost. The other view is searched at half the
-    /// size only.
+    /// Per cell of 16x16 pixels, the disparities that a half-size map shows in and around the cell, with a margin of 2;
+    /// the whole range where that map has holes. Objects too thin or too small for the half-size map can be lost. The
+    /// other view is searched at half the size only.
     CoarseToFine,
 }
 
-/// How the costs of single pixels become those by which disparities are chosen.
+/// Cost aggregation: from the costs of single pixels to those that decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aggregation {
-    /// Block matching: the sum of absolute differences of luma over a square window.
+    /// Block matching by SAD: the sum of absolute differences of luma over a square window.
     Sad {
-        /// The side of the window in pixels, odd, 3 to 31.
+        /// Side of the window, odd, 3 to 31 pixels.
         side: u32,
-        /// Which disparities a pixel is compared at.
+        /// The disparities at which a pixel is compared.
         search: Search,
     },
-    /// Costs from census, luma and gradient, semi-globally or by blocks.
+    /// Costs of census, luma and gradient, aggregated semi-globally or by blocks.
     Costs(CostAggregation),
 }
 
-/// Dense matching and its checks, whatever the pair.
+/// Parameters of dense matching that do not depend on the pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DenseParameters {
-    /// How costs are put together.
+    /// Cost aggregation; by default SAD over 7x7 pixels, over the whole range.
     pub aggregation: Aggregation,
-    /// Sub-pixel interpolation.
+    /// Sub-pixel interpolation; equiangular by default.
     pub interpolation: Interpolation,
-    /// By how many per cent the cost of the best rival, two or more disparities away, must exceed the winner's, 0 to 100;
-    /// 0 accepts every winner.
+    /// Uniqueness: the percentage by which the cost of the best rival, two or more disparities away, must exceed the
+    /// winner's, 0 to 100. 0, the default, accepts every winner.
     pub uniqueness: u32,
-    /// The largest difference, in 1/256 px, between a pixel's disparity and that of its partner in the other view, at most
-    /// 65,536 (256 px); `None` accepts every winner. [`Search::CoarseToFine`] asks the other view at half the size: the
-    /// partner there or one to its left or right, and 1 px more is allowed, since disparities there are even.
+    /// Left-right consistency: the largest accepted difference between a pixel's disparity and that of its partner in
+    /// the other view, 0 to 65,536 in 1/256 px. `None`, the default, accepts every winner. [`Search::CoarseToFine`]
+    /// compares with the half-size map of the other view, at the partner there or the pixel to its left or right, and
+    /// accepts 1 px more, since twice a half-size disparity is even.
     pub consistency: Option<u32>,
-    /// The refinement of the map; `None` leaves the map as it is.
+    /// Refinement of the map; `None`, the default, leaves the map as it is.
     pub refinement: Option<Refinement>,
 }
 
 impl Default for DenseParameters {
-    /// Plain block matching in windows of 7x7 pixels, without any check.
+    /// Block matching in windows of 7x7 pixels, without uniqueness and consistency checks.
     fn default() -> Self {
         Self {
             aggregation: Aggregation::Sad { side: 7, search: Search::Whole },
@@ -86,27 +87,27 @@ impl Default for DenseParameters {
     }
 }
 
-/// Dense matching of a pair.
+/// Parameters of dense matching of a pair.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DenseConfig {
-    /// The disparities to search.
+    /// The disparities to search, in whole pixels.
     pub range: DisparityRange,
-    /// The view whose pixels get a disparity.
+    /// The reference view, whose pixels get a disparity; left by default.
     pub reference: View,
-    /// The change that makes the right view as bright as the left one, before the views are compared.
+    /// The change of the right view's brightness before matching; none by default.
     pub brightness: Brightness,
-    /// Everything that does not depend on the pair.
+    /// The parameters that do not depend on the pair.
     pub parameters: DenseParameters,
 }
 
 impl DenseConfig {
-    /// The left view as the reference, its brightness taken as it is, and [`DenseParameters::default`].
+    /// The left view as the reference, no change of brightness, and [`DenseParameters::default`].
     pub fn new(range: DisparityRange) -> Self {
         let parameters = DenseParameters::default();
         Self { range, reference: View::Left, brightness: Brightness::SAME, parameters }
     }
 
-    /// The same with other parameters.
+    /// This configuration with changed parameters.
     #[must_use]
     pub fn with(self, change: impl FnOnce(&mut DenseParameters)) -> Self {
         let mut parameters = self.parameters;
@@ -114,17 +115,18 @@ impl DenseConfig {
         Self { parameters, ..self }
     }
 
-    /// The same with SAD windows of this side, and the whole range searched.
+    /// This configuration with SAD windows of this side, 3 to 31 pixels and odd, over the whole range.
     #[must_use]
     pub fn with_window(self, side: u32) -> Self {
         self.with(|parameters| parameters.aggregation = Aggregation::Sad { side, search: Search::Whole })
     }
 
-    /// The disparities that are searched in a picture of this width: those of the range that give at
-    /// least one pixel a partner.
+    /// The searched disparities in a picture `width` pixels wide: the part of the range that gives at least one pixel a
+    /// partner.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where there are none, or more than the kernel's keys can tell apart.
+    /// [`Error::Parameter`] if that part is empty, or if it has more disparities than the keys of the kernels can
+    /// index.
     pub fn searched(&self, width: u32) -> Result<DisparityRange> {
         let reach = i32::try_from(width.saturating_sub(1)).unwrap_or(i32::MAX);
         let (first, last) = (self.range.min.max(-reach), self.range.last().min(reach));
@@ -144,7 +146,7 @@ impl DenseConfig {
         Ok(range)
     }
 
-    /// Refuses values outside their ranges.
+    /// Checks that all values lie in their ranges.
     ///
     /// # Errors
     /// [`Error::Parameter`] with the accepted range.
@@ -156,7 +158,7 @@ impl DenseConfig {
 }
 
 impl DenseParameters {
-    /// The smallest side of a picture in pixels: that of the matching window, or of the census transform.
+    /// The smallest accepted side of a picture, in pixels: the side of the SAD window or of the census transform.
     pub(crate) fn smallest_side(&self) -> u32 {
         match self.aggregation {
             Aggregation::Sad { side, .. } => side,
@@ -164,7 +166,7 @@ impl DenseParameters {
         }
     }
 
-    /// The side of the window of absolute differences, in pixels; 1 without one.
+    /// Side of the SAD window, in pixels; 1 without SAD.
     pub(crate) fn window(&self) -> u32 {
         match self.aggregation {
             Aggregation::Sad { side, .. } => side,
@@ -172,17 +174,17 @@ impl DenseParameters {
         }
     }
 
-    /// Half the window of absolute differences without its centre, in pixels.
+    /// Radius of the SAD window, (side - 1) / 2, in pixels.
     pub(crate) fn radius(&self) -> u32 {
         self.window() / 2
     }
 
-    /// Whether maps of half the size say what is searched, and confirm it.
+    /// Whether half-size maps give the ranges of cells and confirm matches.
     pub(crate) fn is_coarse_to_fine(&self) -> bool {
         matches!(self.aggregation, Aggregation::Sad { search: Search::CoarseToFine, .. })
     }
 
-    /// The bits of a 32-bit key that the largest cost of the window leaves for the disparity's index.
+    /// Bits of a 32-bit key that the largest cost of the window leaves to the disparity's index.
     pub(crate) fn index_bits(&self) -> u32 {
         match self.aggregation {
             Aggregation::Sad { side, .. } => (255 * side * side).leading_zeros(),
@@ -190,7 +192,7 @@ impl DenseParameters {
         }
     }
 
-    /// As [`DenseConfig::validate`].
+    /// See [`DenseConfig::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         match &self.aggregation {
             Aggregation::Sad { side, .. } => {

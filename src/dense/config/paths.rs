@@ -1,4 +1,4 @@
-//! The paths along which costs are summed up.
+//! The paths along which costs are aggregated.
 
 use crate::names::names;
 
@@ -12,8 +12,8 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Along the rows and the columns first, then along the diagonals: the first three, the first four or all eight are
-    /// used.
+    /// All directions: those of rows and columns first, then the diagonals. [`Paths`] uses the first three, the first
+    /// four or all eight.
     pub const ALL: [Self; 8] = {
         const fn d(dx: i32, dy: i32) -> Direction {
             Direction { dx, dy }
@@ -22,10 +22,10 @@ impl Direction {
     };
 }
 
-/// The number of directions from which a pixel is reached.
+/// The number of paths that reach a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paths {
-    /// Along the pixel's row from both ends and along its column from above: no row has to wait for those below it.
+    /// Along the row from both ends and along the column from above: no row has to wait for the rows below it.
     Three,
     /// Along the row and the column, from both ends of each.
     Four,
@@ -36,7 +36,7 @@ pub enum Paths {
 names!(Paths, "the number of paths", { Three => "3", Four => "4", Eight => "8" });
 
 impl Paths {
-    /// Their directions.
+    /// The directions of the paths.
     pub fn directions(self) -> &'static [Direction] {
         match self {
             Self::Three => &Direction::ALL[..3],

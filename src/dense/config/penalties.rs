@@ -1,33 +1,34 @@
-//! What changes of disparity along a path cost.
+//! The penalties for changes of disparity along a path.
 
 use super::cost::MAX_COST;
 use crate::error::{Result, check_range};
 
-/// The penalties for changes of disparity along a path, in units of the matching cost.
+/// The penalties for changes of disparity along a path (P1 and P2 of Hirschmueller, PAMI 2008, eq. 13), in units of the
+/// matching cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Penalties {
-    /// For a change by one pixel, 0 to `least_p2`.
+    /// P1: penalty for a change of 1 px, 0 to `least_p2`.
     pub p1: u32,
-    /// For a larger change where the luma stays the same, 1 to 128.
+    /// P2: penalty for a larger change where luma is constant, 1 to 128.
     pub p2: u32,
-    /// For a larger change, at least, however much the luma changes: 1 to `p2`.
+    /// Lower bound of P2 at edges of luma, 1 to `p2`.
     pub least_p2: u32,
-    /// The change of luma that halves `p2`, 1 to 255.
+    /// The change of luma that halves `p2`, 1 to 255 grey levels.
     pub p2_scale: u32,
 }
 
 impl Penalties {
-    /// Penalties with which a path leaves all costs as they are: changes cost nothing, so that the best way to a pixel takes
-    /// away what it adds.
+    /// No penalties: changes are free, so that the minimum which a path subtracts equals what it adds, and all costs
+    /// stay as they are.
     pub const NONE: Self = Self { p1: 0, p2: 0, least_p2: 0, p2_scale: 1 };
 
-    /// The penalty for a jump where the luma changes by `change`: `p2 scale / (scale + change)`, rounded
-    /// down, or the least.
+    /// P2 where luma changes by `change` grey levels: `p2 scale / (scale + change)`, rounded down, or `least_p2` if
+    /// that is more.
     pub fn p2_at(&self, change: u32) -> u32 {
         (self.p2 * self.p2_scale / (self.p2_scale + change)).max(self.least_p2)
     }
 
-    /// Refuses what would not fit in the volumes' eight bits.
+    /// Checks that sums of costs and penalties fit in the 8 bits of the volumes.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the rule.

@@ -3,27 +3,28 @@
 /// A weighted median filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Median {
-    /// Half the window without its centre, 1 to 4 pixels.
+    /// Radius of the window, (side - 1) / 2, 1 to 4 pixels.
     pub radius: u32,
-    /// A neighbour whose luma differs by 2^`halving_bits` weighs half; with 31 all neighbours weigh the same.
+    /// Falloff of the weights: a neighbour whose luma differs by 2^`halving_bits` weighs half; 31 gives all neighbours
+    /// the same weight.
     pub halving_bits: u32,
-    /// Whether only pixels that were filled change.
+    /// Whether the filter changes filled pixels only.
     pub holes_only: bool,
 }
 
 /// The refinement of a map after its checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refinement {
-    /// The pixels of the 7x7 window around a pixel, itself included, whose disparities must lie within 1 px of the pixel's
-    /// for the pixel to keep its disparity: 0 to 49.
+    /// Least support: the number of pixels of the 7x7 window, the centre included, whose disparities must lie within 1
+    /// px of the centre's for the centre to keep its disparity, 0 to 49.
     pub support: u32,
-    /// Passes of a 5x5 weighted median before filling.
+    /// Number of passes of a 5x5 weighted median before filling.
     pub medians_before: u32,
     /// Whether holes are filled.
     pub fill: bool,
     /// Whether filled pixels are filtered by a 9x9 weighted median.
     pub median_of_filled: bool,
-    /// Passes of a 5x5 weighted median over all pixels after filling, before a plain 3x3 median.
+    /// Number of passes of a 5x5 weighted median over all pixels after filling; a plain 3x3 median follows.
     pub medians_after: u32,
 }
 

@@ -5,10 +5,10 @@ use crate::names::names;
 /// One of the two views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
-    /// The left view: pixel x of it corresponds to pixel x - d of the right view.
+    /// The left view: its pixel x corresponds to pixel x - d of the right view.
     #[default]
     Left,
-    /// The right view: pixel x of it corresponds to pixel x + d of the left view.
+    /// The right view: its pixel x corresponds to pixel x + d of the left view.
     Right,
 }
 

@@ -14,33 +14,33 @@ use crate::{
     image::Size,
 };
 
-/// The pixels that one thread matches, and the tiles that a workgroup does.
+/// The pixels that one thread matches, and the tiles of a workgroup.
 ///
-/// A larger tile shares more of its row sums and loads; a smaller one needs fewer registers and less
-/// time to compile, and leaves more threads. The result is the same. Where each cell has a range of its own, a
-/// tile must lie in one cell, and the threads that run in step should in few: all of them wait for the longest range.
+/// A larger tile shares more row sums and loads; a smaller one needs fewer registers, compiles faster and leaves more
+/// threads. The result is the same. Where each cell has its own range, a tile must lie in one cell, and the lanes that
+/// run in lockstep in few cells: all of them wait for the longest range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Columns, in fours.
+    /// Columns of a tile, in groups of four.
     pub quads: u32,
-    /// Rows.
+    /// Rows of a tile.
     pub height: u32,
-    /// Tiles of a workgroup in a row; its threads take them row by row.
+    /// Tiles per row of a workgroup; its threads take them row by row.
     pub across: u32,
-    /// Rows of tiles of a workgroup.
+    /// Rows of tiles per workgroup.
     pub down: u32,
 }
 
 impl Tile {
-    /// For lavapipe, where loads are the bottleneck, registers spill into the first cache and eight threads run in
-    /// step: in two cells. Other drivers that compute on the CPU take minutes to compile it: SwiftShader five for a
-    /// window of 11.
+    /// For lavapipe, where loads are the bottleneck, registers spill into the L1 cache, and eight lanes run in
+    /// lockstep: over two cells. Other CPU drivers compile this tile in minutes: SwiftShader takes five for a window of
+    /// 11.
     pub const SOFTWARE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
 
-    /// For all others: GPUs would rather run many threads of few registers.
+    /// For all other devices: GPUs prefer many threads with few registers.
     pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
 
-    /// The tile for `device`.
+    /// The tile for the device of `gpu`.
     pub fn of(gpu: &Gpu) -> Self {
         if gpu.is_lavapipe() { Self::SOFTWARE } else { Self::HARDWARE }
     }
@@ -71,22 +71,22 @@ pub struct BlockMatch {
     kernel: Kernel,
     view: View,
     uniqueness: u32,
-    /// How coarse the other view's disparities are, in 1/256 px.
+    /// Resolution of the other view's disparities, in 1/256 px.
     grain: u32,
     tile: Tile,
 }
 
-/// How far a padded row goes beyond the picture: the radius in whole words.
+/// Margin of a padded row on either side of the picture, in pixels: the radius, rounded up to whole words.
 fn margin(radius: u32) -> u32 {
     radius.next_multiple_of(4)
 }
 
 impl BlockMatch {
-    /// What the kernel is made of.
-    pub fn stage(parameters: &DenseParameters, view: View, wanted: ResultKind, tile: Tile) -> Stage {
+    /// Source, bindings and constants of the kernel.
+    pub fn stage(parameters: &DenseParameters, view: View, kind: ResultKind, tile: Tile) -> Stage {
         let radius = parameters.radius();
         let constant = |value: u32| i64::from(value);
-        // To the left the words that a step brings come in front, to the right behind.
+        // Each step appends words: in front when searching to the left, behind when searching to the right.
         let (direction, front) = match view {
             View::Left => (-1, 4),
             View::Right => (1, 0),
@@ -113,26 +113,27 @@ impl BlockMatch {
                 ("SCALE_BITS", SCALE.ilog2().into()),
             ]
             .into_iter()
-            .chain(selection_constants(parameters.interpolation, wanted, parameters.index_bits()))
+            .chain(selection_constants(parameters.interpolation, kind, parameters.index_bits()))
             .collect(),
         }
     }
 
-    /// Compiles it for the window, the interpolation and the uniqueness of `parameters`, and `view` as the reference.
-    pub fn new(gpu: &Gpu, parameters: &DenseParameters, view: View, wanted: ResultKind, tile: Tile) -> Self {
-        let kernel = Kernel::new(gpu, &Self::stage(parameters, view, wanted, tile));
+    /// Compiles the kernel for the window, interpolation and uniqueness of `parameters`, with `view` as the reference.
+    pub fn new(gpu: &Gpu, parameters: &DenseParameters, view: View, kind: ResultKind, tile: Tile) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(parameters, view, kind, tile));
         let grain = if parameters.is_coarse_to_fine() { HALF_GRAIN } else { 0 };
         Self { kernel, view, uniqueness: parameters.uniqueness, grain, tile }
     }
 
-    /// Matches the padded `planes` of `layout` at the disparities that `ranges` name. The map goes to the beginning of
-    /// `matches`; of winners there are no confidences. Where there are `others`, a match that they contradict is none.
+    /// Matches the padded `planes` of `layout` at the disparities of `ranges`. The map goes to the beginning of
+    /// `matches`; winners have no confidences. With a `confirming` map, a match that the other view's winners contradict is
+    /// dropped.
     pub fn prepare(
         &self,
         layout: &Layout,
         planes: &WordTexture,
         ranges: &Ranges,
-        others: Option<ConfirmingMap<'_>>,
+        confirming: Option<ConfirmingMap<'_>>,
         matches: MapBuffer<'_>,
     ) -> Dispatch {
         let [reference_start, searched_start] = layout.starts(self.view);
@@ -148,35 +149,35 @@ impl BlockMatch {
             cell_columns: ranges.columns,
             uniqueness: self.uniqueness,
             confidence_offset: matches.layout.confidence_offset(),
-            max_difference: others.map_or(u32::MAX, |others| others.max_difference + self.grain),
-            others_first_row: others.map_or(0, |others| others.first_row),
-            others_width: others.map_or(1, |others| others.width),
+            max_difference: confirming.map_or(u32::MAX, |confirming| confirming.max_difference + self.grain),
+            others_first_row: confirming.map_or(0, |confirming| confirming.first_row),
+            others_width: confirming.map_or(1, |confirming| confirming.width),
         };
         let Tile { quads, height, across, down } = self.tile;
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
-        // Where there are none, something has to be bound.
-        let others = others.map_or(planes, |others| others.words);
-        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &others.view, matches.buffer], groups)
+        // The binding needs a texture even without winners of the other view.
+        let confirming_words = confirming.map_or(planes, |confirming| confirming.words);
+        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &confirming_words.view, matches.buffer], groups)
     }
 }
 
-/// The other view's winners, which confirm matches: coarse to fine those of pictures of half the size.
+/// The winners of the other view, which confirm matches; coarse to fine, the winners at half size.
 #[derive(Clone, Copy, Debug)]
 pub struct ConfirmingMap<'a> {
-    /// A fixed-point disparity a pixel, row by row.
+    /// One fixed-point disparity per pixel, row by row.
     pub words: &'a WordTexture,
-    /// Pixels of a row.
+    /// Pixels per row.
     pub width: u32,
-    /// The row in which the matched band begins.
+    /// Row of the map in which the matched band begins.
     pub first_row: i32,
-    /// The largest difference, in 1/256 px of the pictures that are matched, between a pixel's disparity and that of its
-    /// partner; coarse to fine a pixel more, from twice the disparity of its partner there or of the pixel to the left or
-    /// right.
+    /// Largest accepted difference between a pixel's disparity and its partner's, in 1/256 px of the matched pictures;
+    /// coarse to fine, 1 px more is accepted from twice the disparity of the half-size partner or the pixel to its left
+    /// or right.
     pub max_difference: u32,
 }
 
-/// How the padded planes of a band lie in their buffer: the left one, then the right one. Each
-/// reaches so far beyond the picture that no window and no step of a search leaves it.
+/// Layout of a band's padded planes in their buffer: the left plane, then the right one. Their margins are so wide that
+/// no window and no search step leaves them.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     width: u32,
@@ -185,17 +186,16 @@ pub struct Layout {
     rows: u32,
     radius: u32,
     range: DisparityRange,
-    /// Rows and words a row that are covered by whole tiles.
+    /// Rows, and words per row, of whole tiles that cover the band.
     tiled_rows: u32,
     tiled_words: u32,
 }
 
 impl Layout {
-    /// The layout for rows `first_row` to `first_row + rows` of a picture of `size`, for kernels of
-    /// this `tile`.
+    /// The layout of rows `first_row` to `first_row + rows` of a picture of `size`, for a kernel of `tile`.
     ///
     /// # Errors
-    /// As [`DenseConfig::searched`].
+    /// See [`DenseConfig::searched`].
     pub fn new(
         Size { width, height }: Size,
         first_row: u32,
@@ -216,7 +216,7 @@ impl Layout {
         })
     }
 
-    /// Width of the picture.
+    /// Width of the picture, in pixels.
     pub(in crate::dense) fn width(&self) -> u32 {
         self.width
     }
@@ -226,7 +226,7 @@ impl Layout {
         2 * u64::from(self.padded_rows()) * u64::from(self.stride())
     }
 
-    /// How the left and the right picture are padded.
+    /// The padding of the left and of the right picture.
     pub fn padding(&self) -> [PadParams; 2] {
         View::ALL.map(|view| PadParams {
             width: self.width,
@@ -239,8 +239,7 @@ impl Layout {
         })
     }
 
-    /// The words where the first window of `view` begins, and where the other view's does at the first
-    /// disparity of the first step.
+    /// First words of the first windows: in `view`, and in the other view at the first disparity of the first step.
     fn starts(&self, view: View) -> [u32; 2] {
         let start = |view| self.offset(view) + self.reach(view);
         let first = match view {
@@ -250,8 +249,8 @@ impl Layout {
         [start(view), start(view.other()).wrapping_add_signed(first)]
     }
 
-    /// Words in front of the margin of a plane that searches may reach: in the left picture those
-    /// for negative disparities, in the right one those for positive.
+    /// Words in front of a plane's margin that searches can reach: in the left plane for negative disparities, in the
+    /// right one for positive ones.
     fn reach(&self, view: View) -> u32 {
         let words = match view {
             View::Left => -self.first_step(),
@@ -271,7 +270,7 @@ impl Layout {
         self.tiled_rows + 2 * self.radius
     }
 
-    /// The step of four disparities in which the range begins.
+    /// The first step of the range; a step has four disparities.
     fn first_step(&self) -> i32 {
         self.range.min.div_euclid(4)
     }
@@ -280,7 +279,7 @@ impl Layout {
         (self.range.last().div_euclid(4) - self.first_step() + 1) as u32
     }
 
-    /// Words of a padded row.
+    /// Words per padded row.
     fn stride(&self) -> u32 {
         self.tiled_words + 2 * margin(self.radius) / 4 + self.reach(View::Left) + self.reach(View::Right)
     }

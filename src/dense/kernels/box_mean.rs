@@ -19,12 +19,12 @@ shader_struct! {
     }
 }
 
-/// The kernel of the mean cost, for windows of one size.
+/// The averaging kernel, for windows of one size.
 #[derive(Debug)]
 pub struct BoxMean(Kernel);
 
 impl BoxMean {
-    /// What the kernel is made of, for windows of this side, odd and at most 31.
+    /// Source, bindings and constants of the kernel, for windows of `side` pixels, odd and at most 31.
     pub fn stage(side: u32) -> Stage {
         Stage {
             name: "box_mean",
@@ -38,14 +38,14 @@ impl BoxMean {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, side: u32) -> Self {
         Self(Kernel::new(gpu, &Self::stage(side)))
     }
 
-    /// Averages the costs of the pixels of `band` over their windows, each disparity's by itself: first along the rows, from
-    /// `costs` to `means`, then along the columns, back to the beginning of `costs`, of which only the rows `wanted` of the
-    /// band are left then. Where windows reach beyond the band, it goes on with its last pixels.
+    /// Averages the costs of each disparity over the windows of the pixels of `band`: first along rows, from `costs` to
+    /// `means`, then along columns, back to the beginning of `costs`, where only the rows `wanted` of the band are
+    /// kept. Windows beyond the band repeat its edge pixels.
     pub fn prepare(
         &self,
         band: &VolumeBand,

@@ -1,4 +1,4 @@
-//! The range of each cell, from a map of half the size. `shaders/dense/cell_ranges.wgsl`.
+//! The disparity range of each cell, from a half-size map. `shaders/dense/cell_ranges.wgsl`.
 
 use super::cells::{CELL, CellBand, REACH};
 use crate::{
@@ -6,25 +6,25 @@ use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
-/// Disparities that are searched beyond the rest, at either end: with fewer a winner has no rival two disparities away,
-/// and what shows nothing passes for unique.
+/// Disparities added at either end of a cell's range: without 2 of them a winner has no rival two disparities away, and
+/// a cell without texture passes for unique.
 pub const MARGIN: u32 = 2;
 
-/// Per cent of a cell's pixels that must have a disparity, or the whole range is searched.
+/// Percentage of a cell's pixels that must have a disparity; with fewer the whole range is searched.
 pub const LEAST: u32 = 10;
 
-/// The side of the blocks of the map that have a say, each with its third smallest disparity and its third
-/// largest.
+/// Side of the blocks of the map that determine a range, in pixels: each contributes its third smallest and its third
+/// largest disparity.
 pub const BLOCK: u32 = 4;
 
-/// Blocks from one cell to the next, of those in and around a cell, and of those that a workgroup looks at, along a side.
+/// Blocks along a side: from one cell to the next, in and around one cell, and read by a workgroup.
 const STEP: u32 = CELL / 2 / BLOCK;
 const AROUND: u32 = STEP + REACH / BLOCK;
 const BLOCKS: u32 = 16;
-/// Cells along a side of which a workgroup has all blocks.
+/// Cells along a side whose blocks a workgroup reads completely.
 const CELLS: u32 = (BLOCKS - AROUND) / STEP + 1;
 
-/// More than any disparity, and less than half of what an `i32` holds.
+/// A sentinel above any disparity, and less than half of `i32::MAX`.
 const FAR: i64 = 1 << 24;
 
 shader_struct! {
@@ -39,12 +39,12 @@ shader_struct! {
     }
 }
 
-/// The kernel that finds each cell's range.
+/// The kernel that finds the range of each cell.
 #[derive(Debug)]
 pub struct CellRanges(Kernel);
 
 impl CellRanges {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "cell_ranges",
@@ -68,13 +68,13 @@ impl CellRanges {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Writes to `ranges` what is to be searched in each cell of `band`, of whose `map` the rows that it names
-    /// are there, a word a pixel.
+    /// Writes the range of each cell of `band` to `ranges`. `map` holds the rows of the half-size map that `band`
+    /// names, one `i32` per pixel.
     pub fn prepare(&self, band: &CellBand, map: &wgpu::Buffer, ranges: &wgpu::Buffer) -> Dispatch {
         let params = Params {
             width: band.map_width,

@@ -1,4 +1,4 @@
-//! The cells of a picture, each with disparities of its own to search.
+//! The cells of a picture, each with its own range of disparities.
 
 use crate::{
     dense::config::{DenseConfig, DenseParameters},
@@ -7,18 +7,18 @@ use crate::{
     image::Size,
 };
 
-/// The side of a cell in pixels.
+/// Side of a cell, in pixels.
 pub const CELL: u32 = 16;
 
-/// Pixels around a cell that have a say in what is searched there.
+/// Halo of a cell, in pixels, which also determines its range.
 pub const REACH: u32 = 8;
 
-/// How the ranges of cells lie in their buffer: two words each, the index of the first disparity and how many
-/// there are, row by row.
+/// The ranges of cells in their buffer, row by row: per cell one `u32` for the index of the first disparity and one for
+/// the number of disparities.
 #[derive(Clone, Debug)]
 pub struct Ranges {
     pub(in crate::dense) buffer: wgpu::Buffer,
-    /// A cell's side is two to the power of this.
+    /// Base-2 logarithm of a cell's side, in pixels.
     pub(in crate::dense) shift: u32,
     pub(in crate::dense) columns: u32,
 }
@@ -31,35 +31,35 @@ impl Ranges {
         Self { buffer, shift: 31, columns: 1 }
     }
 
-    /// A range for each cell of a picture of this width, in `buffer`.
+    /// One range per cell of a picture of `width` pixels, in `buffer`.
     pub fn of_cells(buffer: wgpu::Buffer, width: u32) -> Self {
         Self { buffer, shift: CELL.ilog2(), columns: width.div_ceil(CELL) }
     }
 }
 
-/// A band of cells, and the part of a map of half the size that they look at.
+/// A band of cells, and the rows of the half-size map that they read.
 #[derive(Clone, Copy, Debug)]
 pub struct CellBand {
-    /// Cells in a row.
+    /// Cells per row.
     pub columns: u32,
     /// Rows of cells.
     pub rows: u32,
-    /// The disparities of which each cell gets a part.
+    /// The searched disparities; each cell gets a part of them.
     pub range: DisparityRange,
-    /// Where the first cell lies in the rows of the map.
+    /// First row of the first cell, in rows from `map_first_row`.
     pub(in crate::dense) map_start: i32,
-    /// The first row of the map that is looked at.
+    /// First row of the half-size map that is read.
     pub map_first_row: u32,
-    /// The rows of the map that are looked at.
+    /// Rows of the half-size map that are read.
     pub map_rows: u32,
-    /// Width of the map.
+    /// Width of the half-size map, in pixels.
     pub map_width: u32,
-    /// The disparities that are searched for the map.
+    /// The searched disparities of the half-size map.
     pub map_range: DisparityRange,
 }
 
 impl CellBand {
-    /// The cells of `rows` rows from `first_row` on, a multiple of [`CELL`], of a picture of `size`.
+    /// The cells of `rows` pixel rows from `first_row`, a multiple of [`CELL`], of a picture of `size`.
     pub fn new(Size { width, height }: Size, (first_row, rows): (u32, u32), range: DisparityRange) -> Self {
         let rows = rows.div_ceil(CELL);
         let map_first_row = (first_row / 2).saturating_sub(REACH / 2);
@@ -76,18 +76,18 @@ impl CellBand {
         }
     }
 
-    /// Words of the ranges' buffer.
+    /// Words of the buffer of ranges.
     pub fn words(&self) -> u64 {
         2 * u64::from(self.columns) * u64::from(self.rows)
     }
 }
 
-/// What a whole disparity at half the size stands for on either side, in 1/256 px of the whole one: no odd disparity is
-/// closer to twice a whole one.
+/// Uncertainty of a whole half-size disparity to either side, in 1/256 px of the full size: an odd disparity is 1 px
+/// away from twice the nearest whole one.
 pub(crate) const HALF_GRAIN: u32 = SCALE as u32;
 
-/// How a pair of half the size is matched to find what to search: unconfirmed, since what the other view says of it
-/// confirms the matches of the whole size.
+/// The configuration of the half-size pair. Its matches are not confirmed, since the other view's half-size winners
+/// confirm the full-size matches.
 pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> DenseConfig {
     let unconfirmed = |parameters: &mut DenseParameters| {
         parameters.consistency = None;
@@ -96,7 +96,7 @@ pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> Dens
     DenseConfig { range: halved(range), ..config.clone().with(unconfirmed) }
 }
 
-/// The disparities of a pair of half the size that correspond to `range`.
+/// The disparities of a half-size pair that correspond to `range`.
 fn halved(range: DisparityRange) -> DisparityRange {
     let min = range.min.div_euclid(2);
     DisparityRange { min, count: (-(-range.last()).div_euclid(2) - min + 1) as u32 }

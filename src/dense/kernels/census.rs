@@ -24,7 +24,7 @@ pub struct Census {
 }
 
 impl Census {
-    /// What the kernel is made of, with so many rows to a thread.
+    /// Source, bindings and constants of the kernel, with `rows` rows per thread.
     pub fn stage(rows: u32) -> Stage {
         Stage {
             name: "census",
@@ -38,14 +38,14 @@ impl Census {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         let rows = rows_per_thread(gpu);
         Self { kernel: Kernel::new(gpu, &Self::stage(rows)), rows }
     }
 
-    /// How rows `first_row` to `first_row + rows` of a picture of `size` are padded for it: from the buffer's first
-    /// word on. Rows outside the picture are those of its edge.
+    /// The padding that the kernel needs of rows `first_row` to `first_row + rows` of a picture of `size`, from the
+    /// buffer's first word. Rows outside the picture repeat its edge.
     pub fn padding(Size { width, height }: Size, first_row: i32, rows: u32) -> PadParams {
         PadParams {
             width,
@@ -62,8 +62,8 @@ impl Census {
         width.div_ceil(4) + 2
     }
 
-    /// Transforms the rows that stand in `padded` as [`Self::padding`] says: a word a pixel, the 24 bits of its window above
-    /// its luma.
+    /// Transforms the rows in `padded`, laid out as [`Self::padding`] says, to one `u32` per pixel: the 24 census bits
+    /// of its window above its luma.
     pub fn prepare(
         &self,
         Size { width, height: rows }: Size,

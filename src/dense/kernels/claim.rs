@@ -1,4 +1,4 @@
-//! What the other view sees, told from one view's winners. `shaders/dense/claim.wgsl`.
+//! The other view's disparities, claimed by the winners of one view. `shaders/dense/claim.wgsl`.
 
 use super::{map_buffer::MapBuffer, volume_band::VolumeBand};
 use crate::{
@@ -18,12 +18,12 @@ shader_struct! {
     }
 }
 
-/// The kernel that lets each pixel claim its partner.
+/// The kernel in which each pixel claims its partner.
 #[derive(Debug)]
 pub struct Claim(Kernel);
 
 impl Claim {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "claim",
@@ -37,13 +37,13 @@ impl Claim {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Lets the pixels of a band of `view`, whose keys stand behind `matches`, claim their partners in `claims`, which are 0
-    /// before.
+    /// Lets the pixels of `band` of `view`, whose keys follow `matches`, claim their partners in `claims`, which must
+    /// be cleared to 0 before.
     pub fn prepare(&self, band: &VolumeBand, view: View, matches: MapBuffer<'_>, claims: &wgpu::Buffer) -> Dispatch {
         let params = Params {
             width: band.width,

@@ -20,12 +20,12 @@ shader_struct! {
     }
 }
 
-/// What is known of the other view.
+/// The form of the other view's disparities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckedAgainst {
-    /// A fixed-point disparity a pixel.
+    /// One fixed-point disparity per pixel.
     Disparities,
-    /// The claims of [`super::Claim`], where index 0 is this disparity.
+    /// The claims of [`super::Claim`]; the field is the disparity of index 0, in pixels.
     Claims(i32),
 }
 
@@ -33,12 +33,12 @@ pub enum CheckedAgainst {
 #[derive(Debug)]
 pub struct Consistency {
     kernel: Kernel,
-    others: CheckedAgainst,
+    checked_against: CheckedAgainst,
 }
 
 impl Consistency {
-    /// What the kernel is made of.
-    pub fn stage(others: CheckedAgainst) -> Stage {
+    /// Source, bindings and constants of the kernel.
+    pub fn stage(checked_against: CheckedAgainst) -> Stage {
         Stage {
             name: "consistency",
             source: include_str!("../../../shaders/dense/consistency.wgsl"),
@@ -49,28 +49,28 @@ impl Consistency {
                 ("SCALE", SCALE.into()),
                 ("SCALE_BITS", SCALE.ilog2().into()),
                 ("NONE", NONE.into()),
-                ("CLAIMS", (others != CheckedAgainst::Disparities).into()),
+                ("CLAIMS", (checked_against != CheckedAgainst::Disparities).into()),
                 ("INDEX_BITS", SUM_INDEX_BITS.into()),
             ],
         }
     }
 
-    /// Compiles it.
-    pub fn new(gpu: &Gpu, others: CheckedAgainst) -> Self {
-        Self { kernel: Kernel::new(gpu, &Self::stage(others)), others }
+    /// Compiles the kernel.
+    pub fn new(gpu: &Gpu, checked_against: CheckedAgainst) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(checked_against)), checked_against }
     }
 
-    /// Takes away from the first `rows` of `matches` of `view` what the other view's disparities contradict by more than
-    /// `max_difference` / 256 px.
+    /// Drops from the first `rows` rows of `matches` of `view` the disparities that differ by more than
+    /// `max_difference` / 256 px from those of the other view.
     pub fn prepare(
         &self,
         matches: MapBuffer<'_>,
         rows: u32,
         view: View,
         max_difference: u32,
-        others: &wgpu::Buffer,
+        other_disparities: &wgpu::Buffer,
     ) -> Dispatch {
-        let min_disparity = match self.others {
+        let min_disparity = match self.checked_against {
             CheckedAgainst::Disparities => 0,
             CheckedAgainst::Claims(min_disparity) => min_disparity,
         };
@@ -78,6 +78,6 @@ impl Consistency {
         let direction = view.direction();
         let params = Params { width, rows, direction, max_difference, confidence_offset, min_disparity };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
-        self.kernel.dispatch(&params, &[others, matches.buffer], groups)
+        self.kernel.dispatch(&params, &[other_disparities, matches.buffer], groups)
     }
 }

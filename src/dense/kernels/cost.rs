@@ -18,14 +18,14 @@ shader_struct! {
     }
 }
 
-/// The kernel of the matching cost, for one view as the reference.
+/// The matching-cost kernel, for one view as the reference.
 #[derive(Debug)]
 pub struct CostVolume(Kernel);
 
 impl CostVolume {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(cost: &Cost, view: View) -> Stage {
-        // To the left the pixels that a step brings come in front, to the right behind.
+        // Each step appends pixels: in front when searching to the left, behind when searching to the right.
         let (direction, front, kept, new) = match view {
             View::Left => (-1, 4, 0, 0),
             View::Right => (1, 1, 4, 9),
@@ -52,13 +52,13 @@ impl CostVolume {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, cost: &Cost, view: View) -> Self {
         Self(Kernel::new(gpu, &Self::stage(cost, view)))
     }
 
-    /// Compares the pixels of a band of `reference` with those of `other`, both as
-    /// [`super::Census`] leaves them.
+    /// Writes the cost volume of `band`: the pixels of `reference` against those of `other`, both from
+    /// [`super::Census`].
     pub fn prepare(
         &self,
         band: &VolumeBand,

@@ -1,4 +1,4 @@
-//! Filling holes along their rows. `shaders/dense/fill.wgsl`.
+//! Filling of holes along rows. `shaders/dense/fill.wgsl`.
 
 use crate::{
     disparity::{DisparityRange, NONE, SCALE},
@@ -8,15 +8,15 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
-/// The slope of a surface that is continued into a hole, and how far it is followed.
+/// The slope of a surface that is extrapolated into a hole, and its bounds.
 pub mod surface {
-    /// Disparities that it is drawn from at most, and at least.
+    /// Most disparities from which a slope is estimated.
     pub const RUN: i32 = 32;
-    /// With fewer, the last disparity is continued.
+    /// Fewest disparities for a slope; with fewer the last disparity is repeated.
     pub const SHORTEST: i32 = 12;
-    /// The steepest slope that is continued, in 1/256 px a pixel.
+    /// The steepest extrapolated slope, in 1/256 px per pixel.
     pub const STEEPEST: i32 = 32;
-    /// The largest change that a slope makes, in 1/256 px.
+    /// The largest change along an extrapolated slope, in 1/256 px.
     pub const FARTHEST: i32 = 1024;
 }
 
@@ -34,7 +34,7 @@ shader_struct! {
 pub struct Fill(Kernel);
 
 impl Fill {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "fill",
@@ -55,12 +55,12 @@ impl Fill {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Copies `disparities` to `filled`, with the holes of each row filled by disparities of `range`.
+    /// Copies `disparities` to `filled` and fills the holes of each row with disparities within `range`.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -1,4 +1,4 @@
-//! A picture of half the size. `shaders/dense/halve.wgsl`.
+//! Downscaling to half the size. `shaders/dense/halve.wgsl`.
 
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -19,7 +19,7 @@ shader_struct! {
 pub struct Halve(Kernel);
 
 impl Halve {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "halve",
@@ -29,12 +29,12 @@ impl Halve {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Writes packed `luma` of a picture of this size, at half the size, to `halved`.
+    /// Downscales packed `luma` of a picture of this size to half its size, in `halved`.
     pub fn prepare(&self, Size { width, height }: Size, luma: &wgpu::Buffer, halved: &wgpu::Buffer) -> Dispatch {
         let words = width.div_ceil(2).div_ceil(4);
         let groups = [words.div_ceil(WORKGROUP[0]), height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];

@@ -1,21 +1,21 @@
-//! The memory of kernels that follow lines.
+//! The buffers of the path kernels.
 
-/// The volumes and the view of a path through a band.
+/// The buffers that a path reads and writes in a band.
 #[derive(Clone, Copy, Debug)]
 pub struct LineBuffers<'b> {
-    /// The reference view, as [`super::Census`] leaves it.
+    /// The reference view, from [`super::Census`].
     pub reference: &'b wgpu::Buffer,
     /// The matching costs of the band.
     pub costs: &'b wgpu::Buffer,
-    /// The stored paths, one volume each.
+    /// The volumes of the stored paths, one after the other.
     pub paths: &'b wgpu::Buffer,
 }
 
-/// Where the volumes of the stored paths stand, in words.
+/// The layout of the volumes of the stored paths, in words.
 #[derive(Clone, Copy, Debug)]
 pub struct PathVolumes {
-    /// The band's first row in the first path's volume.
+    /// Offset of the band's first row in the first path's volume.
     pub start: u32,
-    /// From one path's volume to the next.
+    /// Distance from one path's volume to the next.
     pub volume_words: u32,
 }

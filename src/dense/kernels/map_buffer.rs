@@ -1,27 +1,27 @@
-//! A map on the device: disparities, and behind them their confidences.
+//! A map on the device: disparities, then their confidences.
 
-/// Where the parts of a map stand in their buffer: one disparity per pixel, then one confidence per pixel, four per word
-/// and each row in words of its own, then, where a selection leaves them, one key per pixel.
+/// Layout of a map in its buffer: one disparity per pixel; then one confidence per pixel, four packed per `u32`, each
+/// row in words of its own; then, if the selection writes keys, one key per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MapLayout {
-    /// Pixels of a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows that there is room for.
+    /// Rows allocated.
     pub rows: u32,
 }
 
 impl MapLayout {
-    /// Disparities.
+    /// Number of disparities.
     pub fn pixels(&self) -> u32 {
         self.width * self.rows
     }
 
-    /// The word of the first confidence.
+    /// Offset of the first confidence, in words.
     pub fn confidence_offset(&self) -> u32 {
         self.pixels()
     }
 
-    /// The word of the first key.
+    /// Offset of the first key, in words.
     pub fn key_offset(&self) -> u32 {
         self.words() as u32
     }
@@ -37,6 +37,6 @@ impl MapLayout {
 pub struct MapBuffer<'b> {
     /// The buffer.
     pub buffer: &'b wgpu::Buffer,
-    /// Where the parts of the map stand.
+    /// Layout of the map in the buffer.
     pub layout: MapLayout,
 }

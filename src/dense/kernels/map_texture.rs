@@ -1,4 +1,4 @@
-//! Disparities from a buffer to a texture. `shaders/dense/map_texture.wgsl`.
+//! Copies disparities from a buffer to a texture. `shaders/dense/map_texture.wgsl`.
 
 use crate::{
     disparity::SCALE,
@@ -16,7 +16,7 @@ shader_struct! {
     }
 }
 
-/// What a texel of a map holds.
+/// The value of a texel of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapTexel {
     /// The disparity in 1/256 px, or [`crate::disparity::NONE`]: [`wgpu::TextureFormat::R32Sint`].
@@ -26,15 +26,15 @@ pub enum MapTexel {
 }
 
 impl MapTexel {
-    /// Both.
+    /// Both kinds of texel.
     pub const ALL: [Self; 2] = [Self::FixedPoint, Self::Pixels];
 
-    /// What a texture of this format holds; `None` for any other.
+    /// The texel of a texture of `format`; `None` for any format but the two.
     pub fn new(format: wgpu::TextureFormat) -> Option<Self> {
         Self::ALL.into_iter().find(|texel| texel.format() == format)
     }
 
-    /// The format of a texture that holds it.
+    /// The format of a texture of such texels.
     pub fn format(self) -> wgpu::TextureFormat {
         match self {
             Self::FixedPoint => wgpu::TextureFormat::R32Sint,
@@ -43,25 +43,25 @@ impl MapTexel {
     }
 }
 
-/// Where rows of disparities lie in their buffer, and where they go.
+/// Rows of disparities: their place in the buffer and in the texture.
 #[derive(Clone, Copy, Debug)]
 pub struct MapRows {
-    /// Pixels of a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub rows: u32,
-    /// The word of the first disparity.
+    /// Offset of the first disparity in the buffer, in words.
     pub first_word: u32,
-    /// The first row of the texture that is written.
+    /// First row of the texture that is written.
     pub first_row: u32,
 }
 
-/// The kernel for one of the formats.
+/// The copying kernel, for one kind of texel.
 #[derive(Clone, Debug)]
 pub struct MapTexture(Kernel);
 
 impl MapTexture {
-    /// What it is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(texel: MapTexel) -> Stage {
         const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
         let (source, bindings): (_, &[Binding]) = match texel {
@@ -81,7 +81,7 @@ impl MapTexture {
         Stage { name: "map_texture", source, bindings, constants }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, texel: MapTexel) -> Self {
         Self(Kernel::new(gpu, &Self::stage(texel)))
     }

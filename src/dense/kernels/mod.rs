@@ -1,4 +1,4 @@
-//! The kernels of dense matching, one per stage, and the layouts of the memory that they share.
+//! The kernels of dense matching, one per stage, and the layouts of their shared buffers.
 
 mod block_match;
 mod box_mean;
@@ -39,7 +39,7 @@ pub use map_buffer::{MapBuffer, MapLayout};
 pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
 pub use path::Path;
-pub use residual::{MAX_RESIDUAL, Residual, Views};
+pub use residual::{ComparedViews, MAX_RESIDUAL, Residual};
 pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use select::{Select, Selection};
 pub use selection::ResultKind;
@@ -52,9 +52,9 @@ use super::config::{
 };
 use crate::gpu::Stage;
 
-/// Every stage of the dense half, for checks that need no GPU, with all constants that make another kernel of it: block
-/// matching for each window, either view and what it may be asked for, and what has tiles or rows both with those for
-/// lavapipe and with those for all other devices.
+/// Every stage of dense matching with each set of constants that changes its code, for checks that need no GPU: block
+/// matching for every window, both views and both results, and stages with tiles or rows per thread both for lavapipe
+/// and for all other devices.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
@@ -82,13 +82,13 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
-    // Where there are no paths, no penalties are left in the code, and nothing is summed up.
+    // Without paths the code contains no penalties and no sum.
     for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
         for interpolation in Interpolation::ALL {
             stages.extend(
                 [(ResultKind::Matches, true), (ResultKind::Matches, false), (ResultKind::Winners, false)].map(
-                    |(wanted, keys)| {
-                        let selection = Selection { stored, interpolation, wanted, keys, uniqueness: 0 };
+                    |(kind, keys)| {
+                        let selection = Selection { stored, interpolation, kind, keys, uniqueness: 0 };
                         Select::stage(&penalties, 2, selection)
                     },
                 ),

@@ -1,4 +1,4 @@
-//! Padding: a picture with its edges continued, laid out for block matching. `shaders/dense/pad.wgsl`.
+//! Padding: a picture whose edge pixels are repeated, laid out for block matching. `shaders/dense/pad.wgsl`.
 
 use crate::{
     dense::config::Brightness,
@@ -7,28 +7,28 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
-/// Where a padded plane lies: in the picture, and in the buffer. All words and rows are those of
-/// the picture, and may lie outside of it.
+/// Place of a padded plane in the picture and in the buffer. Words and rows are counted in the picture and can lie
+/// outside of it.
 #[derive(Clone, Copy, Debug)]
 pub struct PadParams {
     /// Width of the picture in pixels.
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// The first padded word: of four pixels, counted from the picture's first.
+    /// First padded word of four pixels, counted from the picture's first word.
     pub first_word: i32,
-    /// Row of the first padded row.
+    /// Row of the picture of the first padded row.
     pub first_row: i32,
-    /// Padded rows.
+    /// Number of padded rows.
     pub rows: u32,
-    /// Words of a padded row, four pixels each.
+    /// Words per padded row, four pixels each.
     pub stride: u32,
-    /// Word of the buffer at which the plane begins.
+    /// Offset of the plane in the buffer, in words.
     pub offset: u32,
 }
 
 shader_struct! {
-    /// [`PadParams`] as the shader declares them.
+    /// [`PadParams`] as the shader declares it.
     struct Params {
         width: u32,
         height: u32,
@@ -45,7 +45,7 @@ shader_struct! {
 pub struct Pad(Kernel);
 
 impl Pad {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "pad",
@@ -60,13 +60,13 @@ impl Pad {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Pads packed `luma` into `padded`, as `params` say, with the change of `brightness` that a uniform buffer holds
-    /// when it runs.
+    /// Pads packed `luma` into `padded`, as `params` say, and changes its brightness by the uniform `brightness`, read
+    /// when the kernel runs.
     pub fn prepare(
         &self,
         params: PadParams,

@@ -1,4 +1,4 @@
-//! A path of semi-global matching. `shaders/dense/path.wgsl`.
+//! A path of semi-global matching (Hirschmueller, PAMI 2008). `shaders/dense/path.wgsl`.
 
 use super::{line_buffers::LineBuffers, volume_band::VolumeBand};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 const WORKGROUP: u32 = 16;
 
 shader_struct! {
-    /// The uniforms of both kernels that follow lines, as `path.wgsl` and `select.wgsl` declare them.
+    /// Uniforms of both path kernels, as `path.wgsl` and `select.wgsl` declare them.
     pub(super) struct Params {
         pub(super) width: u32,
         pub(super) rows: u32,
@@ -29,8 +29,8 @@ shader_struct! {
 }
 
 impl Params {
-    /// For a path through `band`, whose costs stand from word `start` of the paths on; with `goes_on` the row
-    /// before the band in the path's direction holds where lines come from. What concerns a selection is 0.
+    /// Uniforms of a path through `band`, whose costs begin at word `start` of the paths. With `goes_on`, lines
+    /// continue from the row before the band in the path's direction. The fields of a selection are 0.
     pub(super) fn new(band: &VolumeBand, direction: Direction, start: u32, goes_on: bool) -> Self {
         Self {
             width: band.width,
@@ -46,14 +46,14 @@ impl Params {
         }
     }
 
-    /// Workgroups of a kernel with a line a thread.
+    /// Workgroups of a kernel with one line per thread.
     pub(super) fn groups(&self) -> [u32; 3] {
         let lines = if self.dy == 0 { self.rows } else { self.width };
         [lines.div_ceil(WORKGROUP), 1, 1]
     }
 }
 
-/// The constants of all kernels that follow lines.
+/// Constants of both path kernels.
 pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static str, i64)> {
     vec![
         ("WORKGROUP", WORKGROUP.into()),
@@ -65,12 +65,12 @@ pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static
     ]
 }
 
-/// The kernel of a path, for one number of disparities.
+/// The path kernel, for one number of disparities.
 #[derive(Debug)]
 pub struct Path(Kernel);
 
 impl Path {
-    /// What the kernel is made of, for `words` words a pixel.
+    /// Source, bindings and constants of the kernel, for `words` words per pixel.
     pub fn stage(penalties: &Penalties, words: u32) -> Stage {
         Stage {
             name: "path",
@@ -80,13 +80,13 @@ impl Path {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, penalties: &Penalties, words: u32) -> Self {
         Self(Kernel::new(gpu, &Self::stage(penalties, words)))
     }
 
-    /// Follows all lines of a direction through a band. The path's costs stand from word `start` of the paths on; with
-    /// `goes_on` the row before it in the path's direction holds where lines come from.
+    /// Follows all lines of `direction` through `band`. The path's costs begin at word `start` of the paths. With
+    /// `goes_on`, lines continue from the row before the band in the path's direction.
     pub fn prepare(
         &self,
         band: &VolumeBand,

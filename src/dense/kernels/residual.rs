@@ -1,4 +1,4 @@
-//! How unlike both views look where disparities say that they show the same. `shaders/dense/residual.wgsl`.
+//! Photometric residuals: the difference of both views at corresponding pixels. `shaders/dense/residual.wgsl`.
 
 use crate::{
     dense::config::{Brightness, View},
@@ -9,7 +9,7 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [32, 8];
 
-/// The largest residual, in grey levels: a larger difference tells no more.
+/// The largest residual, in grey levels; larger differences are truncated, since they carry no more information.
 pub const MAX_RESIDUAL: u8 = 31;
 
 shader_struct! {
@@ -21,14 +21,14 @@ shader_struct! {
     }
 }
 
-/// Both views of a pair, as a kernel that compares them has them.
+/// The two views that the residual kernel compares.
 #[derive(Clone, Copy, Debug)]
-pub struct Views<'b> {
-    /// Packed luma, left and right.
+pub struct ComparedViews<'b> {
+    /// Packed luma of the left and of the right view.
     pub luma: [&'b wgpu::Buffer; 2],
-    /// How the right view's brightness is changed: a [`Brightness`] in a uniform buffer.
+    /// Change of the right view's brightness: a [`Brightness`] in a uniform buffer.
     pub brightness: &'b wgpu::Buffer,
-    /// The one whose map it is.
+    /// The reference view, to which the map belongs.
     pub reference: View,
 }
 
@@ -37,7 +37,7 @@ pub struct Views<'b> {
 pub struct Residual(Kernel);
 
 impl Residual {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "residual",
@@ -61,22 +61,22 @@ impl Residual {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Compares the `views` at the disparities of `width` x `rows` pixels, which are those of the pictures from `first_row`
-    /// on. The residuals are packed as luma is.
+    /// Compares the `views` at the disparities of `width` x `rows` pixels, which begin in row `first_row` of the
+    /// pictures. Residuals are packed as luma is, four per `u32`.
     pub fn prepare(
         &self,
         Size { width, height: rows }: Size,
         first_row: u32,
-        views: Views<'_>,
+        views: ComparedViews<'_>,
         disparities: &wgpu::Buffer,
         residuals: &wgpu::Buffer,
     ) -> Dispatch {
-        let Views { luma: [left, right], brightness, reference } = views;
+        let ComparedViews { luma: [left, right], brightness, reference } = views;
         let params = Params { width, rows, first_row, direction: reference.direction() };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[brightness, left, right, disparities, residuals], groups)

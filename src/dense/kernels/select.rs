@@ -1,4 +1,4 @@
-//! The last path, and from the costs of all paths to disparities. `shaders/dense/select.wgsl`.
+//! The last path, and the selection of disparities by the summed costs of all paths. `shaders/dense/select.wgsl`.
 
 use super::{
     line_buffers::{LineBuffers, PathVolumes},
@@ -12,22 +12,22 @@ use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage},
 };
 
-/// What is selected, and from what.
+/// Inputs and outputs of the selection.
 #[derive(Clone, Copy, Debug)]
 pub struct Selection {
-    /// How many paths stand in the volumes; one more is followed on the way.
+    /// Number of stored paths; the kernel follows one more itself.
     pub stored: u32,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
     /// Matches or winners.
-    pub wanted: ResultKind,
-    /// Whether the winners' keys are wanted as well.
+    pub kind: ResultKind,
+    /// Whether the winners' keys are written too.
     pub keys: bool,
-    /// Per cent by which the rival's cost must exceed the winner's.
+    /// Uniqueness: percentage by which the rival's cost must exceed the winner's, 0 to 100.
     pub uniqueness: u32,
 }
 
-/// The kernel that follows the last path, sums the costs of all of them up, and decides.
+/// The kernel that follows the last path, sums the costs of all paths and selects disparities.
 #[derive(Debug)]
 pub struct Select {
     kernel: Kernel,
@@ -35,11 +35,11 @@ pub struct Select {
 }
 
 impl Select {
-    /// What the kernel is made of, for `words` words a pixel.
+    /// Source, bindings and constants of the kernel, for `words` words per pixel.
     pub fn stage(penalties: &Penalties, words: u32, selection: Selection) -> Stage {
         let mut constants = line_constants(penalties, words);
         constants.extend([("STORED", selection.stored.into()), ("KEYS", selection.keys.into())]);
-        constants.extend(selection_constants(selection.interpolation, selection.wanted, SUM_INDEX_BITS));
+        constants.extend(selection_constants(selection.interpolation, selection.kind, SUM_INDEX_BITS));
         Stage {
             name: "select",
             source: include_str!("../../../shaders/dense/select.wgsl"),
@@ -48,14 +48,14 @@ impl Select {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, penalties: &Penalties, words: u32, selection: Selection) -> Self {
         Self { kernel: Kernel::new(gpu, &Self::stage(penalties, words, selection)), selection }
     }
 
-    /// Follows the last path, in `direction`, through a band, as [`super::Path::prepare`] does, and decides. The path's own
-    /// costs are not stored. The `matches` must be 0 before; the results stand there as their layout says, the winners' keys
-    /// behind them.
+    /// Follows the last path, in `direction`, through `band`, as [`super::Path::prepare`] does, and selects
+    /// disparities. Costs of the last path are not stored. `matches` must be cleared to 0 before; results are written
+    /// by its layout, the winners' keys behind them.
     pub fn prepare(
         &self,
         band: &VolumeBand,

@@ -1,11 +1,11 @@
-//! What both ways of matching answer a pixel with. `shaders/shared/selection.wgsl`.
+//! Selection of a pixel's disparity, common to SAD and aggregated costs. `shaders/shared/selection.wgsl`.
 
 use crate::{
     dense::config::Interpolation,
     disparity::{NONE, SCALE},
 };
 
-/// What is wanted of a view.
+/// The result that a view is matched for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultKind {
     /// Sub-pixel disparities that pass the uniqueness check, and confidences.
@@ -14,15 +14,15 @@ pub enum ResultKind {
     Winners,
 }
 
-/// The constants of `shaders/shared/selection.wgsl`, for keys with so many bits for the disparity's index.
+/// The constants of `shaders/shared/selection.wgsl`, for keys with `index_bits` bits for the disparity's index.
 pub(super) fn selection_constants(
     interpolation: Interpolation,
-    wanted: ResultKind,
+    kind: ResultKind,
     index_bits: u32,
 ) -> [(&'static str, i64); 7] {
     const PARABOLA: i64 = 1;
     const EQUIANGULAR: i64 = 2;
-    let chosen = match interpolation {
+    let method = match interpolation {
         Interpolation::None => 0,
         Interpolation::Parabola => PARABOLA,
         Interpolation::Equiangular => EQUIANGULAR,
@@ -31,9 +31,9 @@ pub(super) fn selection_constants(
         ("SHIFT", index_bits.into()),
         ("SCALE", SCALE.into()),
         ("NONE", NONE.into()),
-        ("FULL", (wanted == ResultKind::Matches).into()),
+        ("FULL", (kind == ResultKind::Matches).into()),
         ("PARABOLA", PARABOLA),
         ("EQUIANGULAR", EQUIANGULAR),
-        ("INTERPOLATION", chosen),
+        ("INTERPOLATION", method),
     ]
 }

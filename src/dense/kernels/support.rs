@@ -1,4 +1,4 @@
-//! Disparities that their neighbours share. `shaders/dense/support.wgsl`.
+//! Support: the removal of disparities that too few neighbours share. `shaders/dense/support.wgsl`.
 
 use super::{
     map_buffer::{MapBuffer, MapLayout},
@@ -11,13 +11,13 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
-/// Half the window without its centre.
+/// Radius of the window, (side - 1) / 2, in pixels.
 pub const SUPPORT_RADIUS: u32 = 3;
 
-/// By how much disparities may differ that support each other.
+/// Largest difference of disparities that support each other, in 1/256 px.
 pub const SUPPORT_TOLERANCE: i32 = SCALE;
 
-/// What differs from every disparity by more than the tolerance.
+/// A sentinel that differs from every disparity by more than the tolerance.
 const FAR: i64 = 1 << 30;
 
 shader_struct! {
@@ -28,7 +28,7 @@ shader_struct! {
     }
 }
 
-/// The kernel that takes speckles away.
+/// The kernel that removes speckles.
 #[derive(Debug)]
 pub struct Support {
     kernel: Kernel,
@@ -36,7 +36,8 @@ pub struct Support {
 }
 
 impl Support {
-    /// What the kernel is made of, where `least` pixels of the window must agree, with so many rows to a thread.
+    /// Source, bindings and constants of the kernel, where `least` pixels of the window must agree, with `rows` rows
+    /// per thread.
     pub fn stage(least: u32, rows: u32) -> Stage {
         let side = 2 * SUPPORT_RADIUS + 1;
         Stage {
@@ -59,14 +60,14 @@ impl Support {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, least: u32) -> Self {
         let rows = rows_per_thread(gpu);
         Self { kernel: Kernel::new(gpu, &Self::stage(least, rows)), rows }
     }
 
-    /// Copies `matches` to `supported`, a map of the same layout, without the disparities that too few neighbours share. The
-    /// `residuals` are those of [`super::Residual`].
+    /// Copies `matches` to `supported`, a map of the same layout, and drops disparities that too few neighbours share.
+    /// `residuals` come from [`super::Residual`].
     pub fn prepare(&self, matches: MapBuffer<'_>, residuals: &wgpu::Buffer, supported: &wgpu::Buffer) -> Dispatch {
         let MapLayout { width, rows: height } = matches.layout;
         let params = Params { width, height, confidence_offset: matches.layout.confidence_offset() };

@@ -1,28 +1,28 @@
-//! A band of rows of a volume: pixels times disparities.
+//! A band of rows of a volume: one value per pixel and disparity.
 
 use crate::disparity::DisparityRange;
 
-/// Some rows of the transformed views, and the disparities of each of their pixels, four a word of eight bits each. A
-/// pixel's words follow each other, then come the next pixel's.
+/// Rows of the census transforms and the disparities of their pixels. A volume holds 8-bit values, four packed per
+/// `u32`; the words of a pixel are contiguous, pixel by pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeBand {
-    /// Of the views.
+    /// Width of both views, in pixels.
     pub width: u32,
-    /// Where the band begins among the rows of the transforms.
+    /// First row of the band in the census transforms.
     pub first_row: u32,
-    /// How many rows.
+    /// Rows of the band.
     pub rows: u32,
-    /// The disparities.
+    /// The searched disparities.
     pub range: DisparityRange,
 }
 
 impl VolumeBand {
-    /// Words a pixel.
+    /// Words per pixel.
     pub fn words(&self) -> u32 {
         self.range.count.div_ceil(4)
     }
 
-    /// Words a row.
+    /// Words per row.
     pub fn row_words(&self) -> u32 {
         self.width * self.words()
     }

@@ -10,7 +10,7 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [16, 4];
 
-/// More than any disparity.
+/// A sentinel above any disparity.
 const FARTHEST: i64 = 1 << 30;
 
 shader_struct! {
@@ -21,7 +21,7 @@ shader_struct! {
     }
 }
 
-/// The kernel of a weighted median.
+/// The weighted-median kernel.
 #[derive(Debug)]
 pub struct WeightedMedian {
     kernel: Kernel,
@@ -29,7 +29,7 @@ pub struct WeightedMedian {
 }
 
 impl WeightedMedian {
-    /// What the kernel is made of, with so many rows to a thread.
+    /// Source, bindings and constants of the kernel, with `rows` rows per thread.
     pub fn stage(median: Median, rows: u32) -> Stage {
         let side = 2 * median.radius + 1;
         Stage {
@@ -52,14 +52,14 @@ impl WeightedMedian {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, median: Median) -> Self {
         let rows = rows_per_thread(gpu);
         Self { kernel: Kernel::new(gpu, &Self::stage(median, rows)), rows }
     }
 
-    /// Filters `disparities` into `filtered`, by the packed `luma` of their view, in which their first row is row
-    /// `first_row`; `before` is the map before its holes were filled.
+    /// Filters `disparities` into `filtered`, weighted by packed `luma` of their view; `first_row` is the row of the
+    /// luma of their first row, `before` the map before its holes were filled.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -1,8 +1,9 @@
 //! Block matching: the plan.
 //!
-//! padding -> the other view's winners -> block matching of the reference view, which they confirm; in bands of rows
-//! where the padded planes do not fit in a buffer; no result depends on where they are cut. Coarse to fine, each band
-//! finds the ranges of its cells and the other view's winners first, at half the size: see [`super::coarse`].
+//! padding -> winners of the other view -> block matching of the reference view, which those winners confirm. The pair
+//! is matched in bands of rows where its padded planes exceed the buffer limits; the result does not depend on where
+//! bands are cut. Coarse to fine, each band first finds the ranges of its cells and the winners of the other view at
+//! half the size: see [`super::coarse_to_fine`].
 
 use super::{
     BandLimits, Plan,
@@ -13,21 +14,21 @@ use super::{
 use crate::{
     dense::{
         config::{DenseConfig, Search, View},
-        kernels::{BlockMatch, CELL, Layout, MapBuffer, MapLayout, Pad, Ranges, ResultKind, Tile, Views},
+        kernels::{BlockMatch, CELL, ComparedViews, Layout, MapBuffer, MapLayout, Pad, Ranges, ResultKind, Tile},
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
     image::Size,
 };
 
-/// More rows than this are never matched at once, to stay below 65,535 workgroups.
+/// Most rows of a band, to stay below 65,535 workgroups.
 const MAX_BAND_ROWS: u32 = 8192;
 
-/// Nor are more pixel-disparities: a device that also draws the desktop is taken away from a dispatch
-/// that takes seconds, and slow ones do 10^9 of them in about one.
+/// Most pixel-disparities of a band: a slow device matches 10^9 of them in about 1 s, and longer dispatches can trip
+/// the watchdog of a GPU that drives a display.
 const MAX_BAND_WORK: u64 = 1 << 30;
 
-/// The plan for packed `left` and `right` of `size`, in bands within `limits`.
+/// Plans block matching of packed `left` and `right` of `size`, in bands within `limits`.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
@@ -59,7 +60,7 @@ pub(in crate::dense) fn plan(
     for first_row in (0..height).step_by(band_rows as usize) {
         let rows = band_rows.min(height - first_row);
         let layout = Layout::new(size, first_row, rows, config, tile)?;
-        let (ranges, others) = match &coarse {
+        let (ranges, confirming) = match &coarse {
             None => (&whole_range, None),
             Some(coarse) => coarse.plan(&mut plan, &pad, &block_match, (first_row, rows))?,
         };
@@ -67,25 +68,25 @@ pub(in crate::dense) fn plan(
             plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
         }
         plan.fill_texture(&planes.0, &planes.1);
-        let others = match &other_winners {
-            None => others,
+        let confirming = match &other_winners {
+            None => confirming,
             Some(view) => Some(view.plan(&mut plan, (&layout, &planes.1), ranges, 0)),
         };
-        plan.run(block_match.prepare(&layout, &planes.1, ranges, others, matches));
+        plan.run(block_match.prepare(&layout, &planes.1, ranges, confirming, matches));
         plan.hand_out(matches, first_row, rows);
     }
     if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
-        let views = Views { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
+        let views = ComparedViews { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
         plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }
 
-/// The most rows, up to `wanted` and in whole `unit`s, for which every buffer of a band stays within `limit` bytes, every
-/// texture within `texture_limit`, and its work within a second or so.
+/// The most rows of a band, up to `max_rows` and in whole `unit`s, with every buffer within `limit` bytes, every
+/// texture within `texture_limit` bytes, and at most [`MAX_BAND_WORK`] pixel-disparities.
 fn band_rows_within(
-    BandLimits { bytes: limit, rows: wanted }: BandLimits,
+    BandLimits { bytes: limit, rows: max_rows }: BandLimits,
     texture_limit: u64,
     size: Size,
     config: &DenseConfig,
@@ -94,14 +95,14 @@ fn band_rows_within(
 ) -> Result<u32> {
     let Size { width, height } = size;
     let work = u64::from(width) * u64::from(config.searched(width)?.count);
-    let quick = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
+    let quick_rows = u32::try_from(MAX_BAND_WORK / work).unwrap_or(u32::MAX);
     let whole_units = |rows: u32| if rows >= height { height } else { (rows / unit * unit).max(unit) };
-    let mut rows = whole_units(wanted.min(quick).clamp(1, height.min(MAX_BAND_ROWS)));
+    let mut rows = whole_units(max_rows.min(quick_rows).clamp(1, height.min(MAX_BAND_ROWS)));
     loop {
         let planes = 4 * in_rows(Layout::new(size, 0, rows, config, tile)?.words());
         let map = MapLayout { width, rows };
         let matches = 4 * map.words();
-        // Those of the other view, which stand in a texture.
+        // Winners of the other view, in a texture.
         let winners = if config.parameters.consistency.is_some() { 4 * in_rows(map.pixels().into()) } else { 0 };
         let over = [(planes, limit.min(texture_limit)), (matches, limit), (winners, limit.min(texture_limit))]
             .into_iter()

@@ -1,7 +1,7 @@
-//! Coarse to fine: what is worth searching in each cell, found in pictures of half the size.
+//! Coarse to fine: the ranges of cells, found in half-size pictures.
 //!
-//! halving, once -> and in each band of rows: padding -> the other view's winners -> block matching of the reference view
-//! -> the ranges of its cells.
+//! halving, once -> per band of rows: padding -> winners of the other view -> block matching of the reference view ->
+//! ranges of the band's cells.
 
 use super::{Plan, other_winners::OtherWinners};
 use crate::{
@@ -19,25 +19,25 @@ use crate::{
     luma::packed_bytes,
 };
 
-/// The kernels and the memory of the search at half the size.
+/// Kernels and memory of the half-size search.
 pub(super) struct Coarse {
     size: Size,
     tile: Tile,
     range: DisparityRange,
     half: DenseConfig,
     cell_ranges: CellRanges,
-    /// Left and right picture of half the size.
+    /// Packed luma of the half-size pictures, left and right.
     halves: [wgpu::Buffer; 2],
     planes: (wgpu::Buffer, WordTexture),
     map: wgpu::Buffer,
     other_winners: Option<OtherWinners>,
-    /// What is searched at half the size, and in the cells.
+    /// Searched disparities: of the half-size pictures, and of the cells.
     whole: Ranges,
     ranges: Ranges,
 }
 
 impl Coarse {
-    /// Allocates memory for bands of `band_rows` rows, and plans the halving of `pictures`.
+    /// Allocates memory for bands of `band_rows` rows, and plans the halving of both `pictures`.
     pub(super) fn new(
         gpu: &Gpu,
         plan: &mut Plan,
@@ -57,7 +57,7 @@ impl Coarse {
             plan.run(halve.prepare(size, picture, &halved));
             Ok(halved)
         });
-        // No band looks at more rows than one in the midst of the picture.
+        // A band in the middle of the picture reads the most rows.
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.height);
         let tile = Tile::of(gpu);
         let planes = plan.words("padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
@@ -80,8 +80,8 @@ impl Coarse {
         })
     }
 
-    /// Plans what finds the ranges of the reference view's cells for some rows, and the other view's winners where they
-    /// are asked for.
+    /// Plans the ranges of the reference view's cells in `rows` (first row, number of rows), and the winners of the
+    /// other view where a consistency check needs them.
     pub(super) fn plan(
         &self,
         plan: &mut Plan,
@@ -96,13 +96,13 @@ impl Coarse {
             plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));
         }
         plan.fill_texture(&self.planes.0, &self.planes.1);
-        let others = self
+        let confirming = self
             .other_winners
             .as_ref()
             .map(|other| other.plan(plan, (&layout, &self.planes.1), &self.whole, band.map_start));
         let map = MapBuffer { buffer: &self.map, layout: MapLayout { width: band.map_width, rows: band.map_rows } };
         plan.run(block_match.prepare(&layout, &self.planes.1, &self.whole, None, map));
         plan.run(self.cell_ranges.prepare(&band, &self.map, &self.ranges.buffer));
-        Ok((&self.ranges, others))
+        Ok((&self.ranges, confirming))
     }
 }

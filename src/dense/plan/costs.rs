@@ -1,12 +1,12 @@
-//! Matching by census, luma and gradient costs, semi-globally along paths or by blocks.
+//! Matching by costs of census, luma and gradient, semi-globally along paths or by blocks: the plan.
 //!
-//! For each view in turn: costs -> their mean over a window, if wanted -> a path in each direction -> selection, then the
-//! left-right consistency of both.
+//! Per view: costs -> optional mean over a window -> one path per direction -> selection; then the left-right
+//! consistency of both views.
 //!
-//! Where the volumes do not fit in a buffer, the pair is matched in bands of rows, from the top to the bottom, with each
-//! path going on from band to band. Paths from below need to be known before: they are followed once from the bottom to
-//! the top, of which only the row below each band is kept, and then again within each band. The costs of a band are
-//! computed with a halo of as many rows as the windows reach. So no result depends on where the bands are cut.
+//! Volumes that exceed the buffer limits are processed in bands of rows, from top to bottom, and each path continues
+//! from band to band. Paths from below must be known beforehand: they are followed once from bottom to top, keeping
+//! only the row below each band, and then again within each band. The costs of a band are computed with a halo of as
+//! many rows as the averaging window reaches. The result does not depend on where bands are cut.
 
 use super::{
     BandLimits, CopyTarget, Plan, WordCopy,
@@ -16,8 +16,8 @@ use crate::{
     dense::{
         config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
-            BoxMean, Census, CheckedAgainst, Claim, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout, Pad,
-            Path, PathVolumes, ResultKind, Select, Selection, Views, VolumeBand,
+            BoxMean, Census, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer,
+            MapLayout, Pad, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
         },
     },
     disparity::DisparityRange,
@@ -26,7 +26,7 @@ use crate::{
     image::Size,
 };
 
-/// The plan for packed luma of `size`, left and right, in bands within `limits`.
+/// Plans the matching of packed `luma` of `size`, left and right, in bands within `limits`.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
@@ -43,11 +43,11 @@ pub(in crate::dense) fn plan(
     let workspace = Workspace::new(gpu, &mut plan, bands, costs, luma)?;
     let layout = MapLayout { width, rows: workspace.bands.rows };
     let is_claimed = config.parameters.consistency.is_some() && costs.cross_check == CrossCheck::Claimed;
-    let side = |plan: &mut Plan, view, wanted, keys| {
+    let side = |plan: &mut Plan, view, kind, keys| {
         let selection = Selection {
             stored: workspace.bands.directions.len() as u32,
             interpolation: config.parameters.interpolation,
-            wanted,
+            kind,
             keys,
             uniqueness: config.parameters.uniqueness,
         };
@@ -59,16 +59,16 @@ pub(in crate::dense) fn plan(
         Some(max_difference) if is_claimed => {
             let claims = plan.buffer("claims", layout.pixels().into())?;
             let check = Consistency::new(gpu, CheckedAgainst::Claims(range.min));
-            Some((max_difference, check, OtherDisparities::Claimed(Claim::new(gpu), claims)))
+            Some((max_difference, check, OtherSource::Claimed(Claim::new(gpu), claims)))
         }
         Some(max_difference) => {
             let other = side(&mut plan, config.reference.other(), ResultKind::Winners, false)?;
             let check = Consistency::new(gpu, CheckedAgainst::Disparities);
-            Some((max_difference, check, OtherDisparities::Searched(other)))
+            Some((max_difference, check, OtherSource::Searched(other)))
         }
     };
     let searched = match &check {
-        Some((_, _, OtherDisparities::Searched(other))) => Some(other),
+        Some((_, _, OtherSource::Searched(other))) => Some(other),
         _ => None,
     };
 
@@ -76,7 +76,7 @@ pub(in crate::dense) fn plan(
         for index in (1..workspace.bands.count()).rev() {
             workspace.transform(&mut plan, index);
             for side in [Some(&reference), searched].into_iter().flatten() {
-                side.follow_from_below(&mut plan, &workspace, index);
+                side.plan_paths_from_below(&mut plan, &workspace, index);
             }
         }
     }
@@ -87,45 +87,45 @@ pub(in crate::dense) fn plan(
             side.match_band(&mut plan, &workspace, index);
         }
         let matches = MapBuffer { buffer: &reference.matches, layout };
-        if let Some((max_difference, consistency, others)) = &check {
-            let others = match others {
-                OtherDisparities::Searched(other) => &other.matches,
-                OtherDisparities::Claimed(claim, claims) => {
+        if let Some((max_difference, consistency, source)) = &check {
+            let other_disparities = match source {
+                OtherSource::Searched(other) => &other.matches,
+                OtherSource::Claimed(claim, claims) => {
                     plan.clear(claims);
                     plan.run(claim.prepare(&band, config.reference, matches, claims));
                     claims
                 }
             };
-            plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, others));
+            plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, other_disparities));
         }
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
     }
     if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
-        let views = Views { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
+        let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
         plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }
 
-/// Where the disparities of the other view come from, with which a left-right check compares.
-enum OtherDisparities {
-    /// From a search of its own.
+/// The source of the other view's disparities for the left-right consistency check.
+enum OtherSource {
+    /// A second search, with the other view as the reference.
     Searched(Side),
-    /// From the winners of the reference view.
+    /// Claims of the reference view's winners.
     Claimed(Claim, wgpu::Buffer),
 }
 
-/// How a pair is cut into bands of rows.
+/// The bands of rows of a pair.
 struct Bands {
     size: Size,
     range: DisparityRange,
-    /// Rows of each band but perhaps the last.
+    /// Rows of a band; the last band can have fewer.
     rows: u32,
-    /// How many rows around a band the windows of its costs reach.
+    /// Halo rows of costs on either side of a band: the radius of the averaging window.
     radius: u32,
-    /// The direction of the path that is followed last, while disparities are selected.
+    /// Direction of the last path, which the selection kernel follows.
     last: Direction,
-    /// The directions of the paths that are stored.
+    /// Directions of the stored paths.
     directions: &'static [Direction],
 }
 
@@ -145,33 +145,33 @@ impl Bands {
         index as u32 * self.rows
     }
 
-    /// The rows in front of a band in its transforms, and behind it: as many as windows reach, and one where lines come
-    /// from.
+    /// Halo rows of the census transforms on either side of a band: the radius of the averaging window, and one row
+    /// from which paths enter.
     fn halo(&self) -> u32 {
         self.radius + 1
     }
 
-    /// The volume of a band, as its transforms hold it.
+    /// The cost volume of band `index`, without halo.
     fn band(&self, index: usize) -> VolumeBand {
         let rows = self.rows.min(self.size.height - self.first_row(index));
         VolumeBand { width: self.size.width, first_row: self.halo(), rows, range: self.range }
     }
 
-    /// Words of a row of a volume.
+    /// Words per row of a volume.
     fn row_words(&self) -> u64 {
         self.band(0).row_words().into()
     }
 
-    /// Words of the volume of a stored path: a band, a row in front of it and one behind.
+    /// Words of the volume of a stored path: a band and one halo row on either side.
     fn path_words(&self) -> u64 {
         self.row_words() * (u64::from(self.rows) + 2)
     }
 }
 
-/// What both views share: the pictures, memory for the transforms and volumes of a band, and kernels.
+/// Pictures, kernels, and the memory for census transforms and volumes of a band, shared by both views.
 struct Workspace {
     bands: Bands,
-    /// Packed luma of the left and of the right view, each with the change of its brightness.
+    /// Packed luma and change of brightness, of the left and of the right view.
     pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
     pad: Pad,
     transform: Census,
@@ -179,11 +179,11 @@ struct Workspace {
     census: [wgpu::Buffer; 2],
     /// Matching costs of the band and its halo rows; after averaging, of the band only.
     costs: wgpu::Buffer,
-    /// The averaging of costs, and memory for costs that are averaged along the rows only.
+    /// The averaging kernel, and memory for costs averaged along rows only.
     box_mean: Option<(BoxMean, wgpu::Buffer)>,
     /// The volumes of the stored paths, one after the other.
     paths: wgpu::Buffer,
-    /// None where no path is stored.
+    /// The path kernel; none where no path is stored.
     path: Option<Path>,
 }
 
@@ -219,7 +219,7 @@ impl Workspace {
         })
     }
 
-    /// Transforms the rows of band `index` of both views, with their halo.
+    /// Plans the census transforms of band `index` and its halo, for both views.
     fn transform(&self, plan: &mut Plan, index: usize) {
         let (size, halo) = (self.bands.size, self.bands.halo());
         let rows = self.bands.band(index).rows + 2 * halo;
@@ -231,13 +231,13 @@ impl Workspace {
         }
     }
 
-    /// The memory of a path of a view.
+    /// The buffers of a path of a view.
     fn lines(&self, view: View) -> LineBuffers<'_> {
         let [reference, _] = self.census_of(view);
         LineBuffers { reference, costs: &self.costs, paths: &self.paths }
     }
 
-    /// The transforms of a view and of the other.
+    /// The census transforms of `view`, then of the other view.
     fn census_of(&self, view: View) -> [&wgpu::Buffer; 2] {
         let [left, right] = &self.census;
         match view {
@@ -247,20 +247,20 @@ impl Workspace {
     }
 }
 
-/// One view's kernels, and what it keeps from one band to the next.
+/// Kernels of one view, and the path rows that it carries from band to band.
 struct Side {
     view: View,
     cost: CostVolume,
     select: Select,
-    /// The last rows so far of the paths from above, and for each band but the first, the first rows of the paths from
-    /// below. None where there is one band.
+    /// The last rows so far of the paths from above; none where there is one band.
     above: Option<wgpu::Buffer>,
+    /// For each band but the first, the first rows of the paths from below.
     below: Vec<wgpu::Buffer>,
     /// The map of the band.
     matches: wgpu::Buffer,
 }
 
-/// Rows of volumes that a path enters a band from, or leaves it by: a buffer, and which row of it.
+/// A row of a path's volume at the edge of a band: a buffer of rows, and the index of the row in it.
 type PathRow<'b> = (&'b wgpu::Buffer, u64);
 
 impl Side {
@@ -280,7 +280,7 @@ impl Side {
         let below = (1..bands.count()).map(|_| rows("paths from below", -1)).collect::<Result<_>>()?;
         let layout = MapLayout { width: bands.size.width, rows: bands.rows };
         let key_words = if selection.keys { u64::from(layout.pixels()) } else { 0 };
-        let matches = match selection.wanted {
+        let matches = match selection.kind {
             ResultKind::Matches => plan.buffer("matches", layout.words() + key_words)?,
             ResultKind::Winners => plan.buffer("winners of the other view", layout.pixels().into())?,
         };
@@ -289,8 +289,8 @@ impl Side {
         Ok(Self { view, cost, select, above, below, matches })
     }
 
-    /// Compares the pixels of band `index`, and averages over their windows.
-    fn find_costs(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
+    /// Plans the matching costs of band `index`, averaged over their windows.
+    fn plan_costs(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
         let bands = &workspace.bands;
         let (band, first_row) = (bands.band(index), bands.first_row(index));
         let above = bands.radius.min(first_row);
@@ -298,19 +298,19 @@ impl Side {
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
         plan.run(self.cost.prepare(&with_halo, workspace.census_of(self.view), &workspace.costs));
         if let Some((box_mean, means)) = &workspace.box_mean {
-            let wanted = above..above + band.rows;
-            for pass in box_mean.prepare(&with_halo, wanted, &workspace.costs, means) {
+            let band_rows = above..above + band.rows;
+            for pass in box_mean.prepare(&with_halo, band_rows, &workspace.costs, means) {
                 plan.run(pass);
             }
         }
     }
 
-    /// Follows the paths from below through band `index`, and keeps their first row for the band above.
-    fn follow_from_below(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
+    /// Plans the paths from below through band `index`, and keeps their first rows for the band above.
+    fn plan_paths_from_below(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
         let (bands, row) = (&workspace.bands, workspace.bands.row_words());
-        self.find_costs(plan, workspace, index);
+        self.plan_costs(plan, workspace, index);
         for (path, place) in paths_with(bands, -1) {
-            self.follow(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
+            self.plan_path(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
             plan.copy(WordCopy {
                 from: workspace.paths.clone(),
                 from_word: path as u64 * bands.path_words() + row,
@@ -321,9 +321,9 @@ impl Side {
         }
     }
 
-    /// Follows the stored path of this number through band `index`, from the row where the path enters the band unless it
-    /// begins there.
-    fn follow(
+    /// Plans stored path `path` through band `index`, continued from the row `entered_from`; without that row the path
+    /// begins in the band.
+    fn plan_path(
         &self,
         plan: &mut Plan,
         workspace: &Workspace,
@@ -335,7 +335,7 @@ impl Side {
         let (band, direction) = (bands.band(index), bands.directions[path]);
         let volume = path as u64 * bands.path_words();
         if let Some((rows, place)) = entered_from {
-            // In front of the band or behind it.
+            // The halo row above the band, or the one below it.
             let halo_row = if direction.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
             plan.copy(WordCopy {
                 from: rows.clone(),
@@ -345,7 +345,7 @@ impl Side {
                 words: row,
             });
         }
-        // There is a kernel, as there is a path to follow.
+        // A stored path implies a path kernel.
         if let Some(kernel) = &workspace.path {
             let (lines, start) = (workspace.lines(self.view), (volume + row) as u32);
             plan.run(kernel.prepare(&band, direction, lines, start, entered_from.is_some()));
@@ -356,13 +356,13 @@ impl Side {
     fn match_band(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
         let (bands, row) = (&workspace.bands, workspace.bands.row_words());
         let band = bands.band(index);
-        self.find_costs(plan, workspace, index);
+        self.plan_costs(plan, workspace, index);
         for (path, place) in paths_with(bands, -1) {
-            self.follow(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
+            self.plan_path(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
         }
         for (path, place) in paths_with(bands, 1) {
             let above = self.above.as_ref().filter(|_| index > 0).map(|rows| (rows, place));
-            self.follow(plan, workspace, index, path, above);
+            self.plan_path(plan, workspace, index, path, above);
             if let Some(above) = &self.above {
                 plan.copy(WordCopy {
                     from: workspace.paths.clone(),
@@ -374,7 +374,7 @@ impl Side {
             }
         }
         for (path, _) in paths_with(bands, 0) {
-            self.follow(plan, workspace, index, path, None);
+            self.plan_path(plan, workspace, index, path, None);
         }
         let volumes = PathVolumes { start: band.row_words(), volume_words: bands.path_words() as u32 };
         let layout = MapLayout { width: band.width, rows: bands.rows };
@@ -384,14 +384,14 @@ impl Side {
     }
 }
 
-/// The stored paths with this step from row to row: their number, and their place among themselves.
+/// The stored paths with vertical step `dy`: index among all stored paths, and index among the paths of that step.
 fn paths_with(bands: &Bands, dy: i32) -> impl Iterator<Item = (usize, u64)> + use<> {
     let directions = bands.directions;
     (0..directions.len()).filter(move |&path| directions[path].dy == dy).zip(0..)
 }
 
-/// The most rows for which the volumes of a band stay within `limits`: the costs, with `radius` more
-/// rows on either side, and so many stored `paths`.
+/// The most rows of a band with its volumes within `limits`: costs with `radius` halo rows on either side, and `paths`
+/// stored paths.
 fn band_rows_within(
     limits: BandLimits,
     Size { width, height }: Size,
@@ -400,10 +400,10 @@ fn band_rows_within(
 ) -> Result<u32> {
     let limit = limits.bytes;
     let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
-    // The transforms, one word per pixel, are at most as large as costs of as many rows.
+    // Census transforms, one `u32` per pixel, are at most as large as costs of as many rows.
     let around = 2 * (u64::from(radius) + 1);
     let needed = row * (3 * paths).max(1 + around);
-    // A row's map with its keys can be more than its volumes, where there are few disparities.
+    // With few disparities, a row of the map with its keys can exceed a row of the volumes.
     let map = 4 * (MapLayout { width, rows: 1 }.words() + u64::from(width));
     let within_paths = (limit / (row * paths.max(1))).saturating_sub(2);
     let within_costs = (limit / row).saturating_sub(around);

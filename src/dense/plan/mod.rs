@@ -1,4 +1,4 @@
-//! What a matcher does, in order, and the memory that it does it in.
+//! The steps of a matcher, in order, and their memory.
 
 pub(super) mod blocks;
 mod coarse_to_fine;
@@ -21,64 +21,64 @@ use crate::{
 use word_copy::CopyTarget;
 pub(super) use word_copy::WordCopy;
 
-/// How large a band may be.
+/// The largest band.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BandLimits {
-    /// Bytes of a buffer at most.
+    /// Most bytes of a buffer.
     pub(super) bytes: u64,
-    /// Rows at most.
+    /// Most rows.
     pub(super) rows: u32,
 }
 
-/// One thing to do.
+/// One step of a plan.
 #[derive(Debug)]
 pub(super) enum Step {
     /// Runs a kernel.
     Run(Dispatch),
-    /// Copies words.
+    /// Copies `u32`s.
     Copy(WordCopy),
-    /// Copies a buffer's first words to a texture.
+    /// Copies the first words of a buffer to a texture.
     ToTexture(wgpu::Buffer, WordTexture),
-    /// Sets a whole buffer to 0.
+    /// Clears a whole buffer to 0.
     Clear(wgpu::Buffer),
 }
 
-/// The disparities and the confidences of a whole view, as the caller gets them. Only copied, since they may be
-/// more than a kernel can bind.
+/// The disparities and confidences of a whole view, laid out as the caller gets them. The buffers are only copied,
+/// never bound, since they may exceed the binding size of kernels.
 #[derive(Clone, Debug)]
 pub(super) struct WholeMap {
     pub(super) disparities: wgpu::Buffer,
     pub(super) confidences: wgpu::Buffer,
 }
 
-/// The steps, and how much memory they share.
+/// The steps, and the memory that they share.
 #[derive(Debug)]
 pub(super) struct Plan {
     gpu: Gpu,
     steps: Vec<Step>,
-    /// Where the answers of all bands come together, if something is done with them then.
+    /// The map of all bands; only where a later step, the refinement, needs it.
     whole: Option<WholeMap>,
-    /// How the brightness of the left and of the right view is changed.
+    /// Changes of brightness of the left and of the right view, as uniforms.
     brightness: [wgpu::Buffer; 2],
     pub(super) bytes: u64,
-    /// In how many bands of rows the pair is matched.
+    /// Number of bands of rows.
     pub(super) bands: usize,
 }
 
 impl Plan {
-    /// No steps yet, for so many bands.
+    /// A plan without steps, for `bands` bands.
     pub(super) fn new(gpu: &Gpu, config: &DenseConfig, bands: usize) -> Self {
         let brightness = [Brightness::SAME, config.brightness].map(|change| uniform_buffer(gpu, "brightness", &change));
         Self { gpu: gpu.clone(), steps: Vec::new(), whole: None, brightness, bytes: 0, bands }
     }
 
-    /// How the brightness of a view is changed: a [`Brightness`] in a uniform buffer, one for all bands.
+    /// The change of a view's brightness: a [`Brightness`] in a uniform buffer, shared by all bands.
     pub(super) fn brightness(&self, view: View) -> wgpu::Buffer {
         let [left, right] = &self.brightness;
         if view == View::Left { left.clone() } else { right.clone() }
     }
 
-    /// Memory for so many words, for the plan's lifetime.
+    /// Allocates a storage buffer of `words` `u32`s, for the plan's lifetime.
     pub(super) fn buffer(&mut self, label: &'static str, words: u64) -> Result<wgpu::Buffer> {
         self.bytes += 4 * words;
         storage_buffer(&self.gpu, label, 4 * words)
@@ -88,18 +88,18 @@ impl Plan {
         self.steps.push(Step::Run(dispatch));
     }
 
-    /// The same in a texture.
+    /// Allocates a texture of `words` `u32`s, for the plan's lifetime.
     pub(super) fn word_texture(&mut self, label: &'static str, words: u64) -> Result<WordTexture> {
         self.bytes += 4 * in_rows(words);
         WordTexture::new(&self.gpu, label, words)
     }
 
-    /// Memory for so many words in a buffer that has whole rows of a texture, and in a texture.
+    /// Allocates a buffer and a texture of `words` `u32`s; the buffer holds whole texture rows.
     pub(super) fn words(&mut self, label: &'static str, words: u64) -> Result<(wgpu::Buffer, WordTexture)> {
         Ok((self.buffer(label, in_rows(words))?, self.word_texture(label, words)?))
     }
 
-    /// The first words of a buffer, which has whole rows of the texture, on their way there.
+    /// Copies the first words of a buffer, which holds whole texture rows, to the texture.
     pub(super) fn fill_texture(&mut self, buffer: &wgpu::Buffer, texture: &WordTexture) {
         self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
     }
@@ -112,7 +112,7 @@ impl Plan {
         self.steps.push(Step::Copy(copy));
     }
 
-    /// Brings the answers of all bands together in one map of `size` before anyone gets them.
+    /// Collects the maps of all bands in one map of `size`, for a later step to read.
     pub(super) fn collect(&mut self, Size { width, height }: Size) -> Result<WholeMap> {
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
@@ -126,7 +126,8 @@ impl Plan {
         Ok(whole)
     }
 
-    /// Copies the map of `rows` rows of a band, which begins in `first_row`, to the caller or to the whole map.
+    /// Copies the map of a band of `rows` rows from `first_row` to the caller's outputs, or to the whole map if there
+    /// is one.
     pub(super) fn hand_out(&mut self, matches: MapBuffer<'_>, first_row: u32, rows: u32) {
         let (width, buffer) = (matches.layout.width, matches.buffer);
         let [disparities, confidences] = match &self.whole {
@@ -144,7 +145,7 @@ impl Plan {
         }
     }
 
-    /// What is copied to the caller's disparities, in order: together a word for each pixel.
+    /// The copies to the caller's disparities, in order; together they cover every pixel once.
     pub(super) fn answers(&self) -> impl Iterator<Item = &WordCopy> {
         self.steps.iter().filter_map(|step| match step {
             Step::Copy(copy) if matches!(copy.to, CopyTarget::Disparities) => Some(copy),
@@ -152,7 +153,7 @@ impl Plan {
         })
     }
 
-    /// The kernels, in the order in which they run.
+    /// Names of the kernels, in order.
     pub(super) fn kernels(&self) -> impl Iterator<Item = &'static str> {
         self.steps.iter().filter_map(|step| match step {
             Step::Run(dispatch) => Some(dispatch.name()),
@@ -160,9 +161,9 @@ impl Plan {
         })
     }
 
-    /// Records all steps, and the times of the kernels if there is a `stopwatch`.
+    /// Records all steps, and the timestamps of the kernels if there is a `stopwatch`.
     pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs, stopwatch: Option<&Stopwatch>) {
-        let (mut kernel, mut answer) = (0, 0);
+        let (mut kernel, mut output) = (0, 0);
         for step in &self.steps {
             match step {
                 Step::Run(dispatch) => {
@@ -174,8 +175,8 @@ impl Plan {
                 Step::Copy(copy) => match &copy.to {
                     CopyTarget::Buffer(buffer) => copy.record(encoder, buffer),
                     CopyTarget::Disparities => {
-                        outputs.record_disparities(encoder, copy, answer);
-                        answer += 1;
+                        outputs.record_disparities(encoder, copy, output);
+                        output += 1;
                     }
                     CopyTarget::Confidences => outputs.record_confidences(encoder, copy),
                 },

@@ -1,4 +1,4 @@
-//! Block matching of the other view: its winners, which confirm the matches of the reference view.
+//! Block matching of the other view: its winners confirm the matches of the reference view.
 
 use super::Plan;
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     gpu::{Gpu, WordTexture},
 };
 
-/// The kernel that finds them, and the memory that they stand in.
+/// The block-matching kernel of the other view, and the memory of its winners.
 pub(super) struct OtherWinners {
     find_winners: BlockMatch,
     winners: (wgpu::Buffer, WordTexture),
@@ -19,7 +19,7 @@ pub(super) struct OtherWinners {
 }
 
 impl OtherWinners {
-    /// Allocates memory for the winners of the pixels of a map; none where `config` does not ask for them.
+    /// Allocates memory for the winners of a map of `layout`; `None` where `config` has no consistency check.
     pub(super) fn new(gpu: &Gpu, plan: &mut Plan, config: &DenseConfig, layout: MapLayout) -> Result<Option<Self>> {
         let Some(max_difference) = config.parameters.consistency else {
             return Ok(None);
@@ -33,7 +33,8 @@ impl OtherWinners {
         }))
     }
 
-    /// Plans the search of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map.
+    /// Plans block matching of the padded `planes` of `layout`. The matched band begins in row `first_row` of the map
+    /// of winners.
     pub(super) fn plan(
         &self,
         plan: &mut Plan,

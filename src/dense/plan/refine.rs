@@ -1,13 +1,13 @@
-//! Refinement: from a map with holes and speckles to a whole one.
+//! Refinement: the plan from a map with holes and speckles to a complete one.
 //!
-//! residuals and support -> weighted medians of what is left -> filling -> a weighted median of the filled pixels ->
-//! weighted medians of all pixels -> a plain median.
+//! residuals and support -> weighted medians of the supported disparities -> filling -> a weighted median of the filled
+//! pixels -> weighted medians of all pixels -> a plain median.
 
 use super::{BandLimits, CopyTarget, Plan, WholeMap, WordCopy};
 use crate::{
     dense::{
         config::{Median, Refinement, View},
-        kernels::{Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, Views, WeightedMedian},
+        kernels::{ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, WeightedMedian},
     },
     disparity::DisparityRange,
     error::{Error, Result},
@@ -21,13 +21,13 @@ pub(super) struct Unrefined<'a> {
     pub(super) map: &'a WholeMap,
     /// Width and height of the map.
     pub(super) size: Size,
-    /// The disparities that were searched: filled pixels stay within.
+    /// The searched disparities; filled pixels stay within them.
     pub(super) range: DisparityRange,
-    /// Both views, and the one whose map it is.
-    pub(super) views: Views<'a>,
+    /// Both views, and the reference view, to which the map belongs.
+    pub(super) views: ComparedViews<'a>,
 }
 
-/// The weighted medians of a refinement. Most of its filters are alike: each kernel is compiled once.
+/// The weighted-median kernels of a refinement. Most filters share their parameters, and each kernel is compiled once.
 struct Medians(Vec<(Median, WeightedMedian)>);
 
 impl Medians {
@@ -42,15 +42,15 @@ impl Medians {
     }
 
     fn get(&self, median: Median) -> &WeightedMedian {
-        let found = self.0.iter().find(|(known, _)| *known == median);
-        &found.expect("a kernel for each filter of the refinement").1
+        let kernel = self.0.iter().find(|(known, _)| *known == median);
+        &kernel.expect("a kernel for each filter of the refinement").1
     }
 }
 
-/// Plans the refinement of a map of all bands, and hands the result out.
+/// Plans the refinement of a map of all bands, and its copies to the caller's outputs.
 ///
-/// Where the map does not fit in buffers within `limits`, it is refined in windows of rows, each with a halo of so many
-/// rows that the result is the same.
+/// A map that exceeds `limits` is refined in windows of rows, with a halo of as many rows as the filters reach; the
+/// result does not depend on where windows are cut.
 pub(super) fn plan_refinement(
     gpu: &Gpu,
     plan: &mut Plan,
@@ -63,7 +63,7 @@ pub(super) fn plan_refinement(
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
     let pixels = u64::from(largest.pixels());
     let words = largest.words().max(in_rows(pixels));
-    let given = plan.buffer("disparities to refine", words)?;
+    let unrefined = plan.buffer("disparities to refine", words)?;
     let supported = plan.buffer("supported disparities", words)?;
     let with_holes = match refinement.fill {
         true => Some(plan.word_texture("disparities with holes", pixels)?),
@@ -85,15 +85,14 @@ pub(super) fn plan_refinement(
         for (from, row_words, to_word) in parts {
             let row_words = u64::from(row_words);
             let (from_word, words) = (row_words * u64::from(top), row_words * u64::from(layout.rows));
-            let to = CopyTarget::Buffer(given.clone());
+            let to = CopyTarget::Buffer(unrefined.clone());
             plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
         }
-        plan.run(residual.prepare(size, top, views, &given, &residuals));
-        plan.run(support.prepare(MapBuffer { buffer: &given, layout }, &residuals, &supported));
+        plan.run(residual.prepare(size, top, views, &unrefined, &residuals));
+        plan.run(support.prepare(MapBuffer { buffer: &unrefined, layout }, &residuals, &supported));
 
-        // The map that a filter reads, and two others. The confidences stand behind the supported disparities and
-        // stay there.
-        let mut maps = [&supported, &given, &filtered];
+        // The map that the next filter reads, and two more. Confidences stay behind the supported disparities.
+        let mut maps = [&supported, &unrefined, &filtered];
         let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
             medians.get(median).prepare(size, (luma, top), [disparities, before], to)
         };
@@ -104,7 +103,7 @@ pub(super) fn plan_refinement(
         if let Some(with_holes) = &with_holes {
             plan.fill_texture(maps[0], with_holes);
             plan.run(fill.prepare(size, range, with_holes, maps[1]));
-            // The map with holes stays: the filters after it tell filled pixels by it.
+            // Later filters read the map with holes to recognise filled pixels.
             maps.swap(0, 1);
         }
         for median in refinement.after() {
@@ -125,10 +124,10 @@ pub(super) fn plan_refinement(
     Ok(())
 }
 
-/// The rows of the result that are refined at once, beside `halo` rows on either side.
+/// The most rows of the result per window, with `halo` rows on either side.
 fn window_rows(gpu: &Gpu, Size { width, height }: Size, halo: u32, limits: BandLimits) -> Result<u32> {
     let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words();
-    // A map with holes is a texture as well.
+    // The map with holes is also copied to a texture.
     let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / u64::from(width));
     let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);
     let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * halo) }.min(limits.rows);

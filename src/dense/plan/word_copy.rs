@@ -1,6 +1,6 @@
-//! Copies of words from the memory of a plan.
+//! Copies of `u32`s out of the buffers of a plan.
 
-/// Words of a buffer that go elsewhere.
+/// A copy of `words` `u32`s from a buffer. Offsets are in words.
 #[derive(Debug)]
 pub(in crate::dense) struct WordCopy {
     pub(in crate::dense) from: wgpu::Buffer,
@@ -11,19 +11,19 @@ pub(in crate::dense) struct WordCopy {
 }
 
 impl WordCopy {
-    /// Records the copy, into `to`.
+    /// Records the copy to buffer `to`.
     pub(in crate::dense) fn record(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
         encoder.copy_buffer_to_buffer(&self.from, 4 * self.from_word, to, 4 * self.to_word, Some(4 * self.words));
     }
 }
 
-/// Where words go.
+/// The destination of a copy.
 #[derive(Debug)]
 pub(in crate::dense) enum CopyTarget {
-    /// To a buffer of the plan.
+    /// A buffer of the plan.
     Buffer(wgpu::Buffer),
-    /// To the caller's disparities, a word a pixel.
+    /// The caller's disparities, one `i32` per pixel.
     Disparities,
-    /// To the caller's confidences, four a word.
+    /// The caller's confidences, four packed per `u32`.
     Confidences,
 }

@@ -1,5 +1,4 @@
-//! The 64 values that describe each keypoint's surroundings (Bay et al. 2008, section 4.2).
-//! `shaders/features/descriptor.wgsl`.
+//! The descriptor: 64 values per keypoint (Bay et al. 2008, section 4.2). `shaders/features/descriptor.wgsl`.
 
 use crate::{
     features::{
@@ -10,7 +9,7 @@ use crate::{
     image::Size,
 };
 
-/// The stage, for axes of the picture (`upright`) or along each keypoint's orientation.
+/// The stage, with axes along the picture (`upright`) or along each keypoint's orientation.
 pub fn stage(upright: bool) -> Stage {
     Stage {
         name: "descriptor",
@@ -20,23 +19,23 @@ pub fn stage(upright: bool) -> Stage {
     }
 }
 
-/// The kernel of the descriptors.
+/// The descriptor kernel.
 #[derive(Debug)]
 pub struct Descriptor(Kernel);
 
 impl Descriptor {
-    /// Compiles it, for axes of the picture (`upright`) or along each keypoint's orientation.
+    /// Compiles the kernel, with axes along the picture (`upright`) or along each keypoint's orientation.
     pub fn new(gpu: &Gpu, upright: bool) -> Self {
         Self(Kernel::new(gpu, &stage(upright)))
     }
 
-    /// Bytes of the descriptors of a whole list: [`DESCRIPTOR_LENGTH`] values per keypoint.
+    /// Bytes of the descriptors of a full list: [`DESCRIPTOR_LENGTH`] values per keypoint.
     pub fn bytes(list: &KeypointList) -> u64 {
         u64::from(list.capacity()) * size_of::<[f32; DESCRIPTOR_LENGTH]>() as u64
     }
 
-    /// Reads the `integral` image of a picture and the `list` of its keypoints, one workgroup per keypoint; `groups` says
-    /// how many (see [`super::workgroups`]). The `descriptors` stand in the list's order.
+    /// Describes the keypoints of `list` from the `integral` image of their picture, one workgroup per keypoint,
+    /// dispatched indirectly by `groups` (see [`super::workgroups`]). The `descriptors` are in the order of the list.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

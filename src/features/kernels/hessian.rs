@@ -7,26 +7,26 @@ use crate::{
     image::Size,
 };
 
-/// Layers of an octave.
+/// Layers per octave.
 pub const LAYERS: u32 = 4;
 
 /// Filter sides in pixels: four layers in each of five octaves (Bay et al. 2008, figure 8).
 pub const FILTER_SIZES: [[u32; LAYERS as usize]; 5] =
     [[9, 15, 21, 27], [15, 27, 39, 51], [27, 51, 75, 99], [51, 99, 147, 195], [99, 195, 291, 387]];
 
-/// The determinant that OpenSURF would call 1: it works on grey values 0 to 1, the kernels on
-/// 1/256 grey level, and both factors of a determinant carry that scale.
+/// The kernels' value of OpenSURF's determinant 1: OpenSURF works on grey values 0 to 1, the kernels on 1/256 grey
+/// level, and a determinant is a product of two such values.
 pub const DETERMINANT_SCALE: f64 = (256.0 * 255.0) * (256.0 * 255.0);
 
-/// Bay et al.'s 0.9, by which Dxy is weighted so that box filters balance as Gaussians do.
+/// The weight 0.9 of Dxy by Bay et al., which balances box filters as Gaussians are.
 const XY_WEIGHT: f64 = 0.9;
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-/// Points in a row, and rows, that a thread takes where the grid has a point for every pixel.
+/// Points per thread, along a row and along a column, in a dense grid.
 const WALK: [u32; 2] = [8, 4];
 
-/// Layers whose filters are also those of the finer octave.
+/// Layers whose filters the next finer octave has too.
 const SHARED_LAYERS: u32 = 2;
 
 /// The points at which an octave's filters are centred: every `step` pixels from pixel 0 on.
@@ -41,7 +41,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The grid of `octave` in a picture, where that of octave 0 has the given step.
+    /// The grid of `octave` in a picture of `size`, where octave 0 has this `step`.
     pub fn new(size: impl Into<Size>, step: u32, octave: u32) -> Self {
         let Size { width, height } = size.into();
         let step = step << octave;
@@ -79,7 +79,7 @@ shader_struct! {
     }
 }
 
-/// The stage, for a grid with a point for every pixel (`dense`) or for any other.
+/// The stage, for a grid with one point per pixel (`dense`) or for any other grid.
 pub fn stage(dense: bool) -> Stage {
     Stage {
         name: "hessian",
@@ -94,7 +94,7 @@ pub fn stage(dense: bool) -> Stage {
     }
 }
 
-/// The kernels of the responses: one for grids with a point for every pixel, one for all others.
+/// The response kernels: one for dense grids, with one point per pixel, and one for all others.
 #[derive(Debug)]
 pub struct Hessian {
     dense: Option<Kernel>,
@@ -113,14 +113,14 @@ impl Hessian {
         }
     }
 
-    /// Bytes of the responses of an octave of a picture: [`LAYERS`] planes of the octave's [`Grid`].
+    /// Bytes of an octave's responses: [`LAYERS`] planes of the octave's [`Grid`].
     pub fn bytes(&self, Size { width, height }: Size, octave: u32) -> u64 {
         let grid = Grid::new((width, height), self.step, octave);
         4 * u64::from(LAYERS) * u64::from(grid.width) * u64::from(grid.height)
     }
 
-    /// Filters the `integral` image of a picture. The `responses` are `determinant << 1 | (trace > 0)`, or 0 where the filter
-    /// does not fit in the picture; those of the next `finer` octave, if there is any, are not computed again.
+    /// Filters the `integral` image of a picture. A response is `determinant << 1 | (trace > 0)`, or 0 where the filter
+    /// does not fit in the picture. Layers shared with the next `finer` octave are copied from it.
     pub fn prepare(
         &self,
         Size { width, height }: Size,
@@ -149,15 +149,15 @@ impl Hessian {
             (&self.coarse, [grid.width, grid.height])
         };
         let groups = [threads[0].div_ceil(WORKGROUP[0]), threads[1].div_ceil(WORKGROUP[1]), LAYERS];
-        // The first octave shares nothing, and anything can be bound in place of a finer one.
+        // The first octave shares no layer; any buffer serves as its finer one.
         let bound: [&dyn Bindable; 3] = [integral, finer.unwrap_or(integral), responses];
         let kernel = kernel.as_ref().expect("a kernel for each octave of the configuration");
         kernel.dispatch(&params, &bound, groups)
     }
 }
 
-/// Threads along one side where each takes `each` points, a lobe apart: one for every point of the
-/// first lobe of so many, and so on.
+/// Threads along one side of a dense grid. A thread takes `each` points, one lobe apart, and starts in the first lobe
+/// of a block of `each` lobes.
 fn walkers(points: u32, each: u32, sizes: [u32; LAYERS as usize]) -> u32 {
     let threads = |size: u32| {
         let lobe = size / 3;

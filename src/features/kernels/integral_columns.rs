@@ -1,5 +1,4 @@
-//! The second half of the integral image: the row sums, summed along columns.
-//! `shaders/features/integral_columns.wgsl`.
+//! The second pass of the integral image: row sums, summed along columns. `shaders/features/integral_columns.wgsl`.
 
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -25,18 +24,18 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The kernel of the column sums.
+/// The column-sum kernel.
 #[derive(Debug)]
 pub struct IntegralColumns(Kernel);
 
 impl IntegralColumns {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Sums the `sums` of [`super::integral_rows`] along the columns, in place: at `(x, y)` stands then the sum over all
-    /// columns below `x` of the rows below `y`, modulo 2^32.
+    /// Sums the row sums of [`super::integral_rows`] along columns, in place: `(x, y)` then holds the sum over columns
+    /// below `x` and rows below `y`, modulo 2^32.
     pub fn prepare(&self, Size { width, height }: Size, sums: &wgpu::Buffer) -> Dispatch {
         self.0.dispatch(&Params { width, height }, &[sums], [(width + 1).div_ceil(WORKGROUP), 1, 1])
     }

@@ -10,7 +10,7 @@ pub mod workgroups;
 
 use crate::gpu::Stage;
 
-/// Every stage of the sparse half.
+/// Every stage of sparse features.
 pub fn stages() -> Vec<Stage> {
     vec![
         integral_rows::stage(),

@@ -34,23 +34,22 @@ pub fn stage() -> Stage {
     }
 }
 
-/// A threshold on OpenSURF's scale as a determinant of the kernels, at least 1.
+/// Converts a threshold on OpenSURF's scale to a determinant of the kernels, at least 1.
 pub fn integer_threshold(threshold: f32) -> i32 {
     (f64::from(threshold) * DETERMINANT_SCALE).round().max(1.0) as i32
 }
 
-/// The kernel of the suppression in one octave.
+/// The non-maximum suppression kernel, for one octave.
 #[derive(Debug)]
 pub struct Nonmax(Kernel);
 
 impl Nonmax {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Appends the maxima among the `responses` of an octave of a picture, as [`super::hessian`] leaves them for `config`, to
-    /// the `list`.
+    /// Appends the maxima of an octave's `responses`, from [`super::hessian`] with `config`, to the `list`.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

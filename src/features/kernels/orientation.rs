@@ -9,7 +9,7 @@ use crate::{
 
 const WORKGROUP: u32 = 64;
 
-/// Directions in which a window may start; a window of pi/3 is a sixth of them.
+/// Possible first directions of a window; a window of pi/3 spans a sixth of them.
 const BINS: u32 = 48;
 
 /// The stage.
@@ -27,18 +27,18 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The kernel of the orientations.
+/// The orientation kernel.
 #[derive(Debug)]
 pub struct Orientation(Kernel);
 
 impl Orientation {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Reads the `integral` image of a picture and writes the orientations in the `list` of its keypoints, one workgroup
-    /// per keypoint; `groups` says how many (see [`super::workgroups`]).
+    /// Writes the orientations of the keypoints of `list` from the `integral` image of their picture, one workgroup per
+    /// keypoint, dispatched indirectly by `groups` (see [`super::workgroups`]).
     pub fn prepare(
         &self,
         Size { width, height }: Size,

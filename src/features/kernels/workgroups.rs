@@ -1,5 +1,5 @@
-//! The number of workgroups for the stages after the keypoint list, from the list's own counter,
-//! so that nothing has to be read back in between. `shaders/features/workgroups.wgsl`.
+//! The number of workgroups of the stages after the keypoint list, from the list's own counter, so that nothing has to
+//! be read back in between. `shaders/features/workgroups.wgsl`.
 
 use crate::{
     features::keypoints::{DISPATCH_WIDTH, KeypointList},
@@ -21,12 +21,12 @@ pub fn stage() -> Stage {
 pub struct Workgroups(Kernel);
 
 impl Workgroups {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// A buffer for the three words that an indirect dispatch reads: workgroups along x, y and z.
+    /// A buffer of the three `u32`s of an indirect dispatch: workgroups along x, y and z.
     pub fn groups(gpu: &Gpu) -> wgpu::Buffer {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("workgroups"),
@@ -39,7 +39,7 @@ impl Workgroups {
         })
     }
 
-    /// Writes to `groups` how many workgroups the keypoints of the `list` take, one each.
+    /// Writes the number of workgroups to `groups`: one per keypoint of the `list`.
     pub fn prepare(&self, list: &KeypointList, groups: &wgpu::Buffer) -> Dispatch {
         self.0.dispatch(&(), &[list.found(), list.keypoints(), groups], [1, 1, 1])
     }

@@ -1,4 +1,4 @@
-//! Belief propagation: half of the nodes send. `shaders/kamencay/belief.wgsl`.
+//! Belief propagation: one turn, in which half of the nodes send. `shaders/kamencay/belief.wgsl`.
 
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -7,21 +7,23 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-/// What it costs that neighbours differ: `min(slope |difference|, limit)`, weighted by their link.
+/// The smoothness cost of neighbours: `min(slope |difference|, limit)`, a truncated linear model weighted by their
+/// link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Smoothness {
-    /// For a disparity of difference.
+    /// Cost per pixel of difference, 1 to `limit`; 14 by default.
     pub slope: u32,
-    /// At most, 1 to 255: a message has eight bits. With a slope as large this is the Potts model.
+    /// Largest cost, 1 to 255, since a message has 8 bits; 100 by default. With a slope equal to the limit this is the
+    /// Potts model.
     pub limit: u32,
 }
 
-/// Who sends in a turn, and what has been sent before.
+/// The senders of a turn, and the source of their neighbours' messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
-    /// Nodes whose column and row add up to this parity, 0 or 1, send.
+    /// Parity, 0 or 1, of column plus row of the sending nodes.
     pub parity: u32,
-    /// The neighbours' messages are those that their parents sent, in the grid of half the size.
+    /// Whether neighbours' messages are those of their parents, in the grid of half the size.
     pub from_parents: bool,
 }
 
@@ -34,25 +36,25 @@ shader_struct! {
     }
 }
 
-/// The kernel of a turn, for one number of disparities.
+/// The belief propagation kernel, for one number of disparities.
 #[derive(Debug)]
 pub struct Belief(Kernel);
 
 /// The buffers of a grid.
 #[derive(Clone, Copy)]
 pub struct GridBuffers<'b> {
-    /// The data costs.
+    /// Data costs, from [`super::BeliefCost`] or [`super::BeliefReduce`].
     pub costs: &'b wgpu::Buffer,
     /// The weights of the links: see [`crate::kamencay::LinkWeights`].
     pub links: &'b wgpu::Buffer,
-    /// The messages in the grid of half the size, where a turn asks for them; else any other buffer.
+    /// Messages of the grid of half the size, if the turn reads them; otherwise any other buffer.
     pub parents: &'b wgpu::Buffer,
-    /// The messages.
+    /// Messages of this grid.
     pub messages: &'b wgpu::Buffer,
 }
 
 impl Belief {
-    /// What the kernel is made of, for so many `fours` of disparities a node.
+    /// Source, bindings and constants of the kernel, for `fours` groups of four disparities per node.
     pub fn stage(smoothness: &Smoothness, fours: u32) -> Stage {
         Stage {
             name: "belief",
@@ -68,12 +70,12 @@ impl Belief {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, smoothness: &Smoothness, fours: u32) -> Self {
         Self(Kernel::new(gpu, &Self::stage(smoothness, fours)))
     }
 
-    /// A turn in a grid of `size`.
+    /// One turn in a grid of `size`.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -13,15 +13,15 @@ const WORKGROUP: [u32; 2] = [8, 8];
 /// The largest data cost of a pixel.
 pub const MAX_DATA_COST: u32 = 255;
 
-/// The sum of absolute differences over a window: the mean of its pixels' differences, rounded down and at most
-/// [`MAX_DATA_COST`].
+/// The data cost: the mean of truncated absolute differences over a window, rounded down and at most [`MAX_DATA_COST`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowCost {
-    /// Half the side of the window without its centre, 0 to 7.
+    /// Radius of the window, (side - 1) / 2, 0 to 7 pixels; 1 by default.
     pub radius: u32,
-    /// Of the colours, the mean of the three channels; the weight in 1/16.
+    /// Difference of colours, the mean of the three channels; its weight is in 1/16.
     pub color: Difference,
-    /// Of the lumas' gradients along the row, each the difference of the two neighbours and at most 127.
+    /// Difference of the horizontal gradients of luma; a gradient is the difference of the two neighbours in the row,
+    /// at most 127.
     pub gradient: Difference,
 }
 
@@ -37,12 +37,12 @@ shader_struct! {
     }
 }
 
-/// The kernel of the data cost.
+/// The data-cost kernel.
 #[derive(Debug)]
 pub struct BeliefCost(Kernel);
 
 impl BeliefCost {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(cost: &WindowCost) -> Stage {
         let side = 2 * cost.radius + 1;
         Stage {
@@ -65,13 +65,13 @@ impl BeliefCost {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, cost: &WindowCost) -> Self {
         Self(Kernel::new(gpu, &Self::stage(cost)))
     }
 
-    /// Compares the pixels of a strip of `left` with those of `right`, views of `size` as
-    /// [`super::described`] leaves them.
+    /// Writes the data costs of `strip`: the pixels of `left` against those of `right`, views of `size` from
+    /// [`crate::kamencay::described`].
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -16,12 +16,12 @@ shader_struct! {
     }
 }
 
-/// The kernel that halves a grid.
+/// The kernel that sums data costs for the grid of half the size.
 #[derive(Debug)]
 pub struct BeliefReduce(Kernel);
 
 impl BeliefReduce {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "belief_reduce",
@@ -35,12 +35,13 @@ impl BeliefReduce {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Adds up the costs of a `fine` grid of `size` with so many `fours` of disparities a node.
+    /// Sums the costs of a `fine` grid of `size`, with `fours` groups of four disparities per node, into the `coarse`
+    /// grid.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

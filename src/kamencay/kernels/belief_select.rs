@@ -1,4 +1,4 @@
-//! From messages to disparities. `shaders/kamencay/belief_select.wgsl`.
+//! Selection of disparities from messages. `shaders/kamencay/belief_select.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -9,10 +9,10 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-/// The bits of a key that hold a disparity's index; the belief, at most 255 and four messages, is above.
+/// Low bits of a key that hold a disparity's index; the belief, at most 255 plus four messages, is above them.
 pub(super) const INDEX_BITS: u32 = 16;
 
-/// The disparity that a pixel and its neighbours believe in.
+/// The disparity of least belief of a pixel.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Winner {
@@ -21,23 +21,23 @@ pub struct Winner {
 }
 
 impl Winner {
-    /// The disparity of this `index` in its range, its `belief`, and the least belief of those two or more
-    /// disparities away, if there are any.
+    /// A winner: its `index` in the range, its `belief`, and the least belief of disparities two or more away, if there
+    /// are any.
     pub fn new(index: u32, belief: u32, rival: Option<u32>) -> Self {
         Self { key: belief << INDEX_BITS | index, rival: rival.unwrap_or(u32::MAX) }
     }
 
-    /// The disparity's index in its range.
+    /// Index of the disparity in its range.
     pub fn index(self) -> u32 {
         self.key & ((1 << INDEX_BITS) - 1)
     }
 
-    /// Its belief, a cost: the lower, the better.
+    /// Belief of the disparity, a cost: lower is better.
     pub fn belief(self) -> u32 {
         self.key >> INDEX_BITS
     }
 
-    /// By how much the best rival's belief is worse; the largest number where there is no rival.
+    /// The belief of the best rival minus that of the winner; `u32::MAX` without a rival.
     pub fn margin(self) -> u32 {
         if self.rival == u32::MAX { u32::MAX } else { self.rival - self.belief() }
     }
@@ -52,12 +52,12 @@ shader_struct! {
     }
 }
 
-/// The kernel of the selection.
+/// The selection kernel.
 #[derive(Debug)]
 pub struct BeliefSelect(Kernel);
 
 impl BeliefSelect {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage() -> Stage {
         Stage {
             name: "belief_select",
@@ -71,12 +71,12 @@ impl BeliefSelect {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Selects in a grid of `size`; a [`Winner`] a pixel.
+    /// Selects the disparities of a grid of `size`: one [`Winner`] per pixel.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -7,17 +7,18 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [8, 8];
 
-/// A mean that moves by no more than this, in 1/16 pixels and grey levels together, has arrived.
+/// Convergence threshold: a mean has converged when it moves by at most this, in 1/16 of a pixel and of a grey level
+/// together.
 pub const STILL: i32 = 8;
 
-/// Mean-shift filtering in places and colours.
+/// Mean-shift filtering over position and colour (Comaniciu and Meer, PAMI 2002).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModeSeeking {
-    /// Half the side of the window without its centre, in pixels, 1 to 15.
+    /// Radius of the window, (side - 1) / 2, 1 to 15 pixels; 5 by default.
     pub radius: u32,
-    /// The largest distance of two colours (red, green and blue) that count as alike, in grey levels, 1 to 255.
+    /// Largest distance of two similar colours in RGB, 1 to 255 grey levels; 10 by default.
     pub range: u32,
-    /// The most steps of a pixel, 1 to 100.
+    /// Most iterations per pixel, 1 to 100; 10 by default.
     pub turns: u32,
 }
 
@@ -28,12 +29,12 @@ shader_struct! {
     }
 }
 
-/// The kernel of mean-shift filtering.
+/// The mean-shift kernel.
 #[derive(Debug)]
 pub struct MeanShift(Kernel);
 
 impl MeanShift {
-    /// What the kernel is made of.
+    /// Source, bindings and constants of the kernel.
     pub fn stage(seeking: &ModeSeeking) -> Stage {
         Stage {
             name: "mean_shift",
@@ -50,12 +51,12 @@ impl MeanShift {
         }
     }
 
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu, seeking: &ModeSeeking) -> Self {
         Self(Kernel::new(gpu, &Self::stage(seeking)))
     }
 
-    /// Writes the colour of each pixel's mode; both buffers hold a word a pixel, red in its lowest byte.
+    /// Writes the colour of each pixel's mode. Both buffers hold one `u32` per pixel, red in its lowest byte.
     pub fn prepare(&self, Size { width, height }: Size, pixels: &wgpu::Buffer, modes: &wgpu::Buffer) -> Dispatch {
         let params = Params { width, height };
         let groups = [width.div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];

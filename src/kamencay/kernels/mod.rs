@@ -14,7 +14,7 @@ pub use mean_shift::{MeanShift, ModeSeeking, STILL};
 
 use crate::{dense::config::Difference, gpu::Stage};
 
-/// Every stage of the hybrid method, for checks that need no GPU.
+/// Every stage of Kamencay's method, for checks that need no GPU.
 pub fn stages() -> Vec<Stage> {
     let part = Difference { weight: 1, limit: 1 };
     let costs = [0, 3].map(|radius| BeliefCost::stage(&WindowCost { radius, color: part, gradient: part }));

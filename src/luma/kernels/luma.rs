@@ -14,7 +14,7 @@ shader_struct! {
     }
 }
 
-/// The stage that turns RGBA8 into packed luma.
+/// The stage that converts RGBA8 to packed luma.
 pub fn stage() -> Stage {
     Stage {
         name: "luma",
@@ -29,12 +29,12 @@ pub fn stage() -> Stage {
 pub struct RgbaToLuma(Kernel);
 
 impl RgbaToLuma {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Turns `pixels`, one word per pixel with red in its lowest byte, into packed `luma`.
+    /// Converts `pixels`, one `u32` per pixel with red in its lowest byte, to packed `luma`.
     pub fn prepare(&self, Size { width, height }: Size, pixels: &wgpu::Buffer, luma: &wgpu::Buffer) -> Dispatch {
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&Params { width, height }, &[pixels, luma], groups)

@@ -1,4 +1,4 @@
-//! A texture's colours to packed luma, so that a renderer's pictures need not be read back.
+//! Conversion of a texture to packed luma, so that a renderer's pictures need not be read back.
 //! `shaders/luma/luma_texture.wgsl`.
 
 use crate::{
@@ -17,21 +17,21 @@ shader_struct! {
     }
 }
 
-/// How the texels of a format become luma.
+/// Conversion of a texture format to luma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TexelFormat {
-    /// Whether red is all there is, and is the luma.
+    /// Whether the format has only a red channel, which is the luma.
     pub grey: bool,
-    /// Whether loads decode sRGB, so that levels have to be encoded again.
+    /// Whether texture loads decode sRGB, so that the kernel must encode it again.
     pub srgb: bool,
 }
 
 impl TexelFormat {
-    /// The formats that become luma.
+    /// The accepted formats.
     ///
-    /// - Of bytes, and of bytes that are declared sRGB, luma is that of the bytes, as if they came out of a file.
-    /// - Halves are grey or colour levels as a screen shows them, from 0 to 1; what lies beyond is cut off, and what is not a
-    ///   number gives some luma or other. Linear light has to be made ready for a screen first.
+    /// - 8-bit formats, sRGB or not: luma is computed from the stored bytes, as if they came from a file.
+    /// - 16-bit floats: grey or colour levels as displayed, 0 to 1. Values outside are clamped; NaN gives an unspecified
+    ///   luma. Linear light must be tone-mapped and encoded for display first.
     pub const ALL: [wgpu::TextureFormat; 7] = [
         wgpu::TextureFormat::Rgba8Unorm,
         wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -42,7 +42,7 @@ impl TexelFormat {
         wgpu::TextureFormat::Rgba16Float,
     ];
 
-    /// How `format` is read; `None` for one that is not among [`Self::ALL`].
+    /// The conversion of `format`; `None` if it is not in [`Self::ALL`].
     pub fn new(format: wgpu::TextureFormat) -> Option<Self> {
         Self::ALL.contains(&format).then(|| Self { grey: format.components() == 1, srgb: format.is_srgb() })
     }
@@ -58,17 +58,17 @@ pub fn stage() -> Stage {
     }
 }
 
-/// The kernel.
+/// The kernel that converts a texture to packed luma.
 #[derive(Clone, Debug)]
 pub struct LumaTexture(Kernel);
 
 impl LumaTexture {
-    /// Compiles it.
+    /// Compiles the kernel.
     pub fn new(gpu: &Gpu) -> Self {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Turns the texels of `picture`, whose view has `size` pixels and this format, into packed `luma`.
+    /// Converts the texels of `picture`, a view of `size` pixels and this format, to packed `luma`.
     pub fn prepare(
         &self,
         Size { width, height }: Size,

@@ -1,4 +1,4 @@
-//! The hybrid method: mean shift, belief propagation, and all of it together.
+//! Kamencay's method: mean shift, belief propagation, and the whole method.
 
 use crate::{
     cpu::kamencay::{Grid, belief, belief_cost, belief_reduce, belief_select, compute_within, mean_shift},
@@ -30,10 +30,10 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::pipeline("kamencay", |size, dice| Box::new(KamencayTrial::draw(size, dice))),
 ];
 
-/// Drivers on the CPU take long for many disparities.
+/// Most disparities: CPU drivers are slow with many.
 const MOST_DISPARITIES: u32 = 24;
 
-/// Windows of any size are tried on pictures of so many pixels at most.
+/// Most pixels of a picture with windows of any size.
 const FEW_PIXELS: u32 = 4000;
 
 fn colours(size: Size, dice: &mut Dice) -> Picture {
@@ -41,7 +41,7 @@ fn colours(size: Size, dice: &mut Dice) -> Picture {
     Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
 }
 
-/// Left and right view of a slanted plane, with some noise in the left one; sometimes of nothing that both see.
+/// Draws a pair: a slanted plane with some noise in the left view; sometimes views with nothing in common.
 fn pair(size: Size, dice: &mut Dice) -> [Picture; 2] {
     let right = colours(size, dice);
     if dice.below(8) == 0 {
@@ -61,7 +61,7 @@ fn links(view: &Plane<u32>, segmentation: Segmentation, weights: LinkWeights) ->
     Links::new(view, &Segments::new(view, segmentation), whole, weights)
 }
 
-/// Data costs of all nodes, 0 to `255 scale`, with as many more as make whole fours of disparities.
+/// Data costs of all nodes, 0 to `255 scale`, padded to a multiple of four disparities.
 fn costs(Size { width, height }: Size, disparities: u32, scale: u16, dice: &mut Dice) -> Vec<u16> {
     let count = disparities.next_multiple_of(4);
     let noise = smooth_noise((width * count, height), dice.word());
@@ -71,18 +71,18 @@ fn costs(Size { width, height }: Size, disparities: u32, scale: u16, dice: &mut 
     (0..).zip(noise.data()).map(cost).collect()
 }
 
-/// So many bytes up to `most`, in whole fours.
+/// Draws `count` bytes up to `most`, a multiple of four.
 fn messages(count: usize, most: u32, dice: &mut Dice) -> Vec<u8> {
     let part = |byte: u8| (u32::from(byte) * (most + 1) / 256) as u8;
     (0..count / 4).flat_map(|_| dice.word().to_le_bytes().map(part)).collect()
 }
 
-/// Costs for an array of words.
+/// Widens costs to `u32`.
 fn words(costs: &[u16]) -> Vec<u32> {
     costs.iter().map(|&cost| cost.into()).collect()
 }
 
-/// Room for so many costs: full of neither 0 nor [`FAR`], which a kernel has to write.
+/// An output buffer of `costs` costs, filled with neither 0 nor [`FAR`], which a kernel has to write.
 fn costs_output(bench: &Bench<'_>, costs: u32) -> Result<wgpu::Buffer> {
     bench.upload(&vec![0xeeee_u16; costs as usize])
 }
@@ -90,9 +90,9 @@ fn costs_output(bench: &Bench<'_>, costs: u32) -> Result<wgpu::Buffer> {
 /// A picture to be filtered.
 #[derive(Clone, Debug)]
 pub struct MeanShiftTrial {
-    /// Red in the lowest byte; the highest one means nothing.
+    /// One `u32` per pixel, red in the lowest byte; the highest byte is ignored.
     pub pixels: Plane<u32>,
-    /// How far and how often each pixel looks around.
+    /// Parameters of mean shift.
     pub seeking: ModeSeeking,
 }
 
@@ -131,14 +131,14 @@ impl Trial for MeanShiftTrial {
     }
 }
 
-/// Two views of which a strip is compared.
+/// Two views, of which a strip is compared.
 #[derive(Clone, Debug)]
 pub struct BeliefCostTrial {
-    /// The left and the right view, as [`described`] leaves them.
+    /// Left and right view, from [`described`].
     pub views: [Plane<u32>; 2],
-    /// The rows whose costs are wanted.
+    /// The rows whose costs are computed.
     pub strip: Strip,
-    /// What the pixels are compared by.
+    /// The data cost.
     pub cost: WindowCost,
     /// The disparities.
     pub range: DisparityRange,
@@ -190,15 +190,15 @@ impl Trial for BeliefCostTrial {
 /// A grid to be halved.
 #[derive(Clone, Debug)]
 pub struct BeliefReduceTrial {
-    /// Of the grid.
+    /// Size of the grid, in nodes.
     pub size: Size,
-    /// The costs of each node's disparities, a multiple of four of them.
+    /// Data costs of each node, a multiple of four disparities.
     pub costs: Vec<u16>,
 }
 
 impl BeliefReduceTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        // The largest sums are beyond what a cost can be.
+        // The largest sums exceed the range of a cost.
         let (disparities, scale) = (1 + dice.below(MOST_DISPARITIES), dice.pick(&[1, 60, 120, 257]));
         Self { size, costs: costs(size, disparities, scale, dice) }
     }
@@ -228,20 +228,20 @@ impl Trial for BeliefReduceTrial {
     }
 }
 
-/// A grid half of whose nodes send.
+/// A grid in which half of the nodes send.
 #[derive(Clone, Debug)]
 pub struct BeliefTrial {
-    /// The costs of each node's disparities, a multiple of four of them.
+    /// Data costs of each node, a multiple of four disparities.
     pub costs: Vec<u16>,
-    /// The links, of which the grid has its size.
+    /// Links, which give the grid its size.
     pub links: Links,
-    /// What has been sent before: to all sides the same disparities.
+    /// Previous messages, all four sides with the same number of disparities.
     pub messages: Vec<u8>,
-    /// The same in the grid of half the size.
+    /// Messages of the grid of half the size.
     pub parents: Vec<u8>,
-    /// What it costs that neighbours differ.
+    /// Smoothness cost.
     pub smoothness: Smoothness,
-    /// Who sends.
+    /// The senders.
     pub turn: Turn,
 }
 
@@ -259,7 +259,7 @@ impl BeliefTrial {
         };
         let view = described(&colours(size, dice), Brightness::SAME);
         let links = links(&view, Segmentation { join: dice.below(30), least: dice.below(4) }, weights);
-        // As of a pixel, and as of a coarse grid's node, where they may be cut off at FAR.
+        // Costs of a pixel, or of a node of a coarse grid, where they can reach FAR.
         let scale = dice.pick(&[1, 3, 257]);
         let costs = costs(size, disparities, scale, dice);
         let parents = costs.len() / (size.width * size.height) as usize
@@ -310,16 +310,16 @@ impl Trial for BeliefTrial {
     }
 }
 
-/// A grid whose nodes have to decide.
+/// A grid whose nodes select their disparities.
 #[derive(Clone, Debug)]
 pub struct BeliefSelectTrial {
-    /// Of the grid.
+    /// Size of the grid, in nodes.
     pub size: Size,
-    /// How many disparities there are.
+    /// Number of disparities.
     pub disparities: u32,
-    /// The costs of each node's disparities and of as many more as make whole fours.
+    /// Data costs of each node, padded to a multiple of four disparities.
     pub costs: Vec<u16>,
-    /// What the nodes have sent.
+    /// Messages of the nodes.
     pub messages: Vec<u8>,
 }
 
@@ -327,7 +327,7 @@ impl BeliefSelectTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let disparities = 1 + dice.below(MOST_DISPARITIES);
         let costs = costs(size, disparities, 1, dice);
-        // With few different ones many beliefs are equally good.
+        // With few different messages many beliefs tie.
         let most = dice.pick(&[1, 100, 255]);
         Self { size, disparities, messages: messages(4 * costs.len(), most, dice), costs }
     }
@@ -356,7 +356,7 @@ impl Trial for BeliefSelectTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        // A grid has links; here nobody asks for them.
+        // A grid needs links, but the selection does not read them.
         let weights = LinkWeights { halving: 1, least: 0, inside: 0, across: 0 };
         let view = Plane::filled(self.size, 0);
         let links = links(&view, Segmentation { join: 0, least: 0 }, weights);
@@ -365,16 +365,16 @@ impl Trial for BeliefSelectTrial {
     }
 }
 
-/// A pair that is matched by the hybrid method.
+/// A pair for Kamencay's method.
 #[derive(Clone, Debug)]
 pub struct KamencayTrial {
     /// The left view.
     pub left: Picture,
     /// The right view.
     pub right: Picture,
-    /// What is asked.
+    /// Parameters of the method.
     pub config: KamencayConfig,
-    /// In strips whose messages take at most these bytes.
+    /// Most bytes of a strip's messages.
     pub message_bytes: u64,
 }
 

@@ -23,7 +23,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("luma_texture", |size, dice| Box::new(LumaTextureTrial::draw(size, dice))),
 ];
 
-/// A picture in colour, to become luma.
+/// An RGBA picture to be converted to luma.
 #[derive(Clone, Debug)]
 pub struct LumaTrial(pub Plane<[u8; 4]>);
 
@@ -59,23 +59,23 @@ impl Trial for LumaTrial {
     }
 }
 
-/// A picture in a texture, to become luma.
+/// A picture in a texture, to be converted to luma.
 #[derive(Clone, Debug)]
 pub struct LumaTextureTrial {
     /// The format of the texture.
     pub format: wgpu::TextureFormat,
-    /// Its texels.
+    /// Texels of the picture.
     pub texels: Texels,
 }
 
 impl LumaTextureTrial {
     fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
-        // No device need have larger textures.
+        // Larger textures are not required of a device.
         let size = (width.min(2048), height.min(2048));
         let format = dice.pick(&TexelFormat::ALL);
         let channels = [0; 4].map(|_| dice.picture(size));
         let bytes = Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
-        // Below 2, of either sign, and all of them numbers: most of them dark, or 1/8 to 1.
+        // Finite binary16 below 2, of either sign: most of them small, or 1/8 to 1.
         let mut half = |byte: u8| match dice.below(4) {
             0 => dice.word() as u16 & 0xbfff,
             _ => 0x3000 + u16::from(byte) * 12 + dice.below(13) as u16,
@@ -89,7 +89,7 @@ impl LumaTextureTrial {
         Self { format, texels }
     }
 
-    /// The texels as they lie in memory.
+    /// The bytes of the texels, in the memory layout of the format.
     fn bytes(&self) -> Vec<u8> {
         use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb};
         match &self.texels {

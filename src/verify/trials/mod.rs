@@ -1,4 +1,4 @@
-//! What each kernel and pipeline is tried on, in the rooms of the stages.
+//! The trials of all kernels and pipelines, in folders like the stages.
 
 mod dense;
 mod features;
@@ -20,7 +20,7 @@ pub use pipelines::DenseTrial;
 
 use super::trial::Subject;
 
-/// Everything that is tried, kernels first.
+/// All subjects, kernels first.
 pub fn subjects() -> impl Iterator<Item = &'static Subject> {
     let rooms: [&[&[Subject]]; 4] =
         [&[luma::SUBJECTS], &features::SUBJECTS, &dense::SUBJECTS, &[kamencay::SUBJECTS, pipelines::SUBJECTS]];

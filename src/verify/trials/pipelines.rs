@@ -1,4 +1,4 @@
-//! The dense half of each preset, from two views to a map.
+//! Dense matching by each preset, from two views to a map.
 
 use crate::{
     config::Preset,
@@ -24,16 +24,16 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::pipeline("paper", |size, dice| Box::new(DenseTrial::of_preset(Preset::Paper, size, dice))),
 ];
 
-/// A pair that is matched.
+/// A pair to be matched.
 #[derive(Clone, Debug)]
 pub struct DenseTrial {
     /// The left view.
     pub left: Luma,
     /// The right view.
     pub right: Luma,
-    /// What is asked.
+    /// Parameters of the matching.
     pub config: DenseConfig,
-    /// In bands of at most so many rows.
+    /// Most rows of a band.
     pub band_rows: u32,
 }
 
@@ -56,10 +56,10 @@ impl DenseTrial {
     }
 }
 
-/// A pair whose disparities go through the range from left to right, up and down, in more and more noise: for every
-/// penalty and every check there are pixels on which it decides.
+/// Draws a pair whose disparities cross the range from left to right, up and down, in increasing noise, so that every
+/// penalty and every check decides some pixels.
 fn uneven(Size { width, height }: Size, dice: &mut Dice) -> (DisparityRange, [Luma; 2]) {
-    // In a picture of one column only 0 has a partner.
+    // In a picture of one column only disparity 0 has a partner.
     let min = dice.between(-6, 1).min(width as i32 - 1);
     let range = DisparityRange { min, count: 24 + dice.below(25) };
     let [right, relief, grain] = [0; 3].map(|_| dice.word());

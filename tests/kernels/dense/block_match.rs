@@ -33,7 +33,7 @@ fn compare(what: &str, views: (&Luma, &Luma), view: View, config: &DenseConfig) 
     compare_tiled(what, views, view, config, None, Tile::HARDWARE);
 }
 
-/// Without a check of the other view, and with one.
+/// Compares without and with a left-right consistency check.
 fn compare_tiled(
     what: &str,
     (left, right): (&Luma, &Luma),
@@ -71,7 +71,7 @@ fn tiles_leave_no_trace() {
 #[test]
 fn the_twin_searches_the_same_cells() {
     let (left, right) = pair(130, 131, 61);
-    // From nothing to everything, and from one end or the other.
+    // Ranges from empty to whole, at either end.
     let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
     let (columns, rows) = (130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL));
     let cells = Plane::from_fn((columns, rows), |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
@@ -101,7 +101,7 @@ fn the_other_view_is_asked_at_half_the_size() {
 #[test]
 fn the_twin_matches_the_same_with_any_window() {
     let (left, right) = pair(97, 33, 21);
-    // The widest takes its compiler half a minute, so not all of them.
+    // A selection of windows: the widest takes half a minute to compile.
     for window in [3, 5, 9, 11, 13, 17] {
         compare(&format!("window {window}"), (&left, &right), View::Left, &config(window, -3, 30));
     }
@@ -146,17 +146,17 @@ fn black_white_and_noise() {
 
 #[test]
 fn by_hand() {
-    // A bright column in the dark, at 5 in the left view and at 3 in the right: disparity 2. A 3x3
-    // window sees it from the columns 4, 5 and 6; no other window of the left view sees anything,
-    // and a window without it costs nothing at any disparity that does not see it either.
+    // A bright column in the dark, at 5 in the left view and at 3 in the right: disparity 2. Of the left view's 3x3
+    // windows, only those around columns 4, 5 and 6 contain it; all others are black and cost nothing at any disparity
+    // whose window is black too.
     let view = |bright| Luma::from_fn((9, 1), |x, _| if x == bright { 100 } else { 0 });
     let config = config(3, 0, 4).with(|parameters| parameters.interpolation = Interpolation::None);
     let (left, right) = (view(5), view(3));
     let left = leaves(&BlockMatchTrial { left, right, view: View::Left, config, ranges: None, tile: Tile::HARDWARE });
     let d = |whole: i32| whole * SCALE;
-    // Column 2 sees the bright column of the right view at disparity 0, so that 1 is better; 3 at 0
-    // and 1, and 4 is 2 from the only place that sees it at the same side of the window.
+    // The window of column 2 meets the right view's bright column at disparity 0, so that 1 is better; that of column 3
+    // at 0 and 1; column 4 has disparity 2, the only one with the bright column at the same side of both windows.
     let expected = vec![d(0), d(0), d(1), d(2), d(2), d(2), d(2), d(0), d(0)];
-    // The disparities, the confidences, and the winners.
+    // Outputs: disparities, confidences, winners.
     assert_eq!(left[2], expected.into());
 }

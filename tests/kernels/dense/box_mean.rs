@@ -13,15 +13,22 @@ use hsad::{
 
 use crate::common::*;
 
-/// The means of the rows `wanted`, from the costs of the rows `known`.
-fn on_device(costs: &[u8], width: u32, side: u32, known: Range<u32>, wanted: Range<u32>, count: u32) -> Vec<u8> {
+/// The means of `output_rows`, from the costs of `input_rows`.
+fn on_device(
+    costs: &[u8],
+    width: u32,
+    side: u32,
+    input_rows: Range<u32>,
+    output_rows: Range<u32>,
+    count: u32,
+) -> Vec<u8> {
     let range = DisparityRange::new(0, count).unwrap();
-    let band = VolumeBand { width, first_row: 0, rows: known.end - known.start, range };
+    let band = VolumeBand { width, first_row: 0, rows: input_rows.end - input_rows.start, range };
     let row = 4 * band.row_words() as usize;
-    let costs = &costs[row * known.start as usize..row * known.end as usize];
+    let costs = &costs[row * input_rows.start as usize..row * input_rows.end as usize];
     let costs = upload(&bytemuck::pod_collect_to_vec::<u8, u32>(costs));
     let means = upload(&vec![u32::MAX; (band.row_words() * band.rows) as usize]);
-    let rows = wanted.start - known.start..wanted.end - known.start;
+    let rows = output_rows.start - input_rows.start..output_rows.end - input_rows.start;
     let dispatches = BoxMean::new(gpu(), side).prepare(&band, rows.clone(), &costs, &means);
     bench().run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
     bytemuck::cast_slice(&download::<u32>(&costs))[..row * rows.len()].to_vec()
@@ -43,7 +50,7 @@ fn the_twin_averages_the_same() {
     }
 }
 
-/// Every side, with the largest sums.
+/// Covers every side, with the largest sums.
 #[test]
 fn no_quotient_is_off() {
     for side in (1..=31).step_by(2) {
@@ -58,12 +65,12 @@ fn a_band_needs_no_more_than_half_a_window_around_it() {
     let (width, height, side) = (37, 40, 7);
     let costs = costs(width, height, 8);
     let expected = box_mean(&costs, Size::new(width, height), side);
-    for wanted in [0..1_u32, 2..9, 20..21, 30..40, 0..40] {
-        let known = wanted.start.saturating_sub(3)..(wanted.end + 3).min(height);
-        let actual = on_device(&costs, width, side, known, wanted.clone(), 8);
+    for output_rows in [0..1_u32, 2..9, 20..21, 30..40, 0..40] {
+        let input_rows = output_rows.start.saturating_sub(3)..(output_rows.end + 3).min(height);
+        let actual = on_device(&costs, width, side, input_rows, output_rows.clone(), 8);
         let row = 8 * width as usize;
-        let expected = &expected[row * wanted.start as usize..row * wanted.end as usize];
-        assert_same(&format!("rows {wanted:?}"), &actual, expected);
+        let expected = &expected[row * output_rows.start as usize..row * output_rows.end as usize];
+        assert_same(&format!("rows {output_rows:?}"), &actual, expected);
     }
 }
 
@@ -72,8 +79,8 @@ fn by_hand() {
     // Four disparities of 3x2 pixels: ramps along the row and along the column, a lone pixel, a constant.
     let pixel = |x: u8, y: u8| [10 * x, 30 * y, if (x, y) == (2, 0) { 90 } else { 0 }, 255];
     let costs: Vec<u8> = (0..2).flat_map(|y| (0..3).flat_map(move |x| pixel(x, y))).collect();
-    // Along the row 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column 0 0 30 is 10, 0 30 30 is 20.
-    // The lone one is in its row's mean once beside it and twice at the edge: 30, 60; and so in the columns'.
+    // Means along the row: 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column: 0 0 30 is 10, 0 30 30 is 20.
+    // The lone pixel counts once in its row beside it and twice at the edge: 30, 60; likewise in the columns.
     let expected =
         [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]];
     assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 4), expected.concat());

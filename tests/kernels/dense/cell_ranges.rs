@@ -1,4 +1,4 @@
-//! What is searched in each cell.
+//! The ranges of cells.
 
 use hsad::{
     disparity::{DisparityRange, NONE, SCALE},
@@ -17,7 +17,7 @@ fn the_twin_finds_the_same_ranges() {
             let (steps, holes) = (picture((half.0, half.1), 81), picture((half.0, half.1), 82));
             let map = Plane::from_fn(half, |x, y| {
                 let share = i64::from(steps.get(x, y)) * i64::from(count) * i64::from(SCALE) / 512;
-                // More and more holes to the right.
+                // Holes become denser to the right.
                 let hole = u32::from(holes.get(x, y)) < x * 300 / half.0;
                 if hole { NONE } else { min * SCALE / 2 + share as i32 }
             });
@@ -29,7 +29,7 @@ fn the_twin_finds_the_same_ranges() {
 
 #[test]
 fn a_cell_by_hand() {
-    // One cell, of 8x8 pixels at half the size: four blocks of 4x4.
+    // One cell, 8x8 pixels at half size: four blocks of 4x4.
     let range = DisparityRange::new(0, 64).unwrap();
     let found = |map: Vec<i32>| {
         let map = Plane::new((8, 8), map).unwrap();
@@ -39,7 +39,7 @@ fn a_cell_by_hand() {
     let mut map = vec![10 * SCALE; 64];
     // 2 x 10 - 2 to 2 x 10 + 2.
     assert_eq!(found(map.clone()), range(18, 5));
-    // Two pixels of a block that are off have no say, in however many blocks; three have. Halves go up.
+    // Two outliers in a block have no effect, in however many blocks; three have. Halves go up.
     for i in [0, 1, 4, 5] {
         map[i] = 4 * SCALE;
     }
@@ -50,7 +50,7 @@ fn a_cell_by_hand() {
     assert_eq!(found(map.clone()), range(8, 15));
     map[62] = 22 * SCALE;
     assert_eq!(found(map), range(8, 35));
-    // Of 64, 7 are at least 10 %, of which three must lie in one block.
+    // 7 of 64 pixels are at least 10 %; three of them must lie in one block.
     let mut thin = vec![NONE; 64];
     thin[..7].fill(10 * SCALE);
     assert_eq!(found(thin.clone()), range(18, 5));

@@ -1,4 +1,4 @@
-//! What the other view sees, told from one view's winners.
+//! The other view's disparities, claimed by the winners of one view.
 
 use hsad::{
     dense::View,
@@ -26,7 +26,8 @@ fn the_twin_lets_the_same_claims_hold() {
 
 #[test]
 fn by_hand() {
-    // Pixels 2 and 3 both claim pixel 1 of the right view, of which the second is cheaper; 0 leads outside.
+    // Pixels 2 and 3 both claim pixel 1 of the right view, pixel 3 at a lower cost; the partner of pixel 0 lies
+    // outside.
     let winners = Plane::new((4, 1), vec![Some((1, 1)), None, Some((9, 1)), Some((4, 2))]).unwrap();
     let range = DisparityRange::new(0, 3).unwrap();
     let trial = ClaimTrial { winners, view: View::Left, range, spare_rows: 1 };

@@ -30,9 +30,9 @@ fn the_twin_checks_the_same() {
                 let whole = |&d: &i32| if d == NONE { NONE } else { d.div_euclid(SCALE) * SCALE };
                 let what = format!("{width}x{height} {view:?} {max_difference}");
                 let claimed = others.map(whole);
-                let given = ConsistencyTrial { dense, view, others, claims_from: None, max_difference };
-                assert_twin(&what, &given);
-                assert_twin(&what, &ConsistencyTrial { others: claimed, claims_from: Some(-9), ..given });
+                let trial = ConsistencyTrial { dense, view, others, claims_from: None, max_difference };
+                assert_twin(&what, &trial);
+                assert_twin(&what, &ConsistencyTrial { others: claimed, claims_from: Some(-9), ..trial });
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Filling holes along their rows.
+//! Filling of holes along rows.
 
 use hsad::{
     disparity::{DisparityRange, NONE},
@@ -29,7 +29,7 @@ fn by_hand() {
     let range = DisparityRange::new(0, 20).unwrap();
     let map = Plane::new((5, 1), vec![NONE, 512, NONE, 1024, NONE]).unwrap();
     assert_eq!(leaves(&FillTrial { disparities: map, range }), [vec![512, 512, 512, 1024, 1024].into()]);
-    // A slope of 16/256 px a pixel goes on beyond the end of its surface.
+    // A slope of 16/256 px per pixel is continued beyond the end of its surface.
     let slanted = Plane::from_fn((40, 1), |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
     let filled = leaves(&FillTrial { disparities: slanted, range });
     let [Values::I32(filled)] = &filled[..] else { panic!("a disparity a pixel") };

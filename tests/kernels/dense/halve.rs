@@ -1,4 +1,4 @@
-//! Half the size.
+//! Downscaling to half the size.
 
 use hsad::{
     image::{Luma, Size},
@@ -16,7 +16,7 @@ fn the_twin_halves_the_same() {
 
 #[test]
 fn by_hand() {
-    // Means of four, of two, and one alone, halves up.
+    // Means of four pixels, of two, and a single pixel, halves up.
     let luma = Luma::new((3, 3), vec![1, 2, 3, 5, 6, 8, 9, 9, 7]).unwrap();
     assert_eq!(leaves(&HalveTrial(luma))[0], vec![0x0604_u32, 0x0709].into());
 }

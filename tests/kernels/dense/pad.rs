@@ -11,7 +11,7 @@ use crate::common::*;
 
 #[test]
 fn by_hand() {
-    // Of the row 10 20 30 the columns -4 to 7, twice, each pixel half as bright and one more.
+    // Columns -4 to 7 of the row 10 20 30, in two rows, with half the luma plus 1.
     let brightness = Brightness { gain: 128, offset: 256 };
     let picture = Luma::new((3, 1), vec![10, 20, 30]).unwrap();
     let params = PadParams { width: 3, height: 1, first_word: -1, first_row: -1, rows: 2, stride: 3, offset: 1 };

@@ -40,7 +40,8 @@ fn bands_leave_no_trace() {
 
 #[test]
 fn by_hand() {
-    // Two pixels of the same luma. From 5 9 30 90: stays at 5; 9; 9 + P1 = 25 before 30; the jump, 5 + P2.
+    // Two pixels of the same luma. From costs 5 9 30 90: no change, 5; no change, 9; P1, 9 + P1 = 25 before 30; a jump,
+    // 5 + P2.
     let trial = PathTrial {
         reference: Plane::new((2, 1), vec![7, 7]).unwrap(),
         costs: vec![5, 9, 30, 200, 1, 2, 3, 4],

@@ -33,11 +33,11 @@ fn the_twin_compares_the_same() {
 fn by_hand() {
     let luma = |levels: &[u8]| Plane::new((levels.len() as u32, 1), levels.to_vec()).unwrap();
     let views = [luma(&[10, 20, 30, 40, 200]), luma(&[10, 12, 99, 41, 90])];
-    // Partners of 0 to 4: 0; none; 2 - 1, at half of which it rounds up; 3 + 1; outside.
+    // Partners of pixels 0 to 4: 0; none; 2 - 1, since a half rounds up; 3 + 1; outside.
     let disparities = Plane::new((5, 1), vec![0, NONE, 128, -256, 5 * 256]).unwrap();
     let trial = ResidualTrial { views, brightness: Brightness::SAME, reference: View::Left, first_row: 0, disparities };
     assert_eq!(leaves(&trial), [pack(&luma(&[0, 0, 18, 31, 31])).into()]);
-    // Twice as bright, less 10: 10, 14, 188, 72, 170.
+    // Twice the luma minus 10: 10, 14, 188, 72, 170.
     let brighter = ResidualTrial { brightness: Brightness { gain: 512, offset: -2560 }, ..trial.clone() };
     assert_eq!(leaves(&brighter), [pack(&luma(&[0, 0, 16, 31, 31])).into()]);
     // Partners on the other side: 0; none; 3; 2; outside.

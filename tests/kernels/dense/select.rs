@@ -1,4 +1,4 @@
-//! From the costs of all paths to disparities.
+//! Selection of disparities by the summed costs of all paths.
 
 use hsad::{
     dense::{Interpolation, Penalties},
@@ -38,10 +38,10 @@ fn the_twin_selects_the_same() {
 
 #[test]
 fn by_hand() {
-    // Sums 60 20 30 80: the second wins, its rival is the last. Left of it 40 more, right 10 more: the
-    // parabola's vertex lies (40 - 10) / 2(40 + 10) = 0.3 px to the right.
+    // Sums 60 20 30 80: the second disparity wins, its rival is the last. The cost to its left is 40 more, to its right
+    // 10 more: the parabola's vertex lies (40 - 10) / 2(40 + 10) = 0.3 px to the right.
     let trial = SelectTrial {
-        // In the first pixel of a line its costs are those of the path.
+        // The path costs of the first pixel of a line are its matching costs.
         reference: Plane::filled((1, 1), 0),
         costs: vec![10, 5, 20, 40],
         stored: vec![vec![50, 15, 10, 40]],

@@ -1,4 +1,4 @@
-//! Disparities that their neighbours share.
+//! Support by neighbouring disparities.
 
 use hsad::{
     dense::Dense,
@@ -32,10 +32,10 @@ fn the_twin_keeps_the_same() {
 
 #[test]
 fn by_hand() {
-    // Three that differ by a pixel each from the next: only the middle one has two that share it.
+    // Three disparities, 1 px apart each: only the middle one has two others within 1 px.
     let disparity = Plane::new((4, 1), vec![0, 256, 512, NONE]).unwrap();
     let dense = Dense { confidence: Plane::new((4, 1), vec![5, 200, 7, 0]).unwrap(), disparity };
-    // An eighth of what the views differ by in all of the row, but not all confidence.
+    // The sum of residuals in the row lowers the confidence by an eighth, but not below 1.
     for (residual, lowered) in [(0, 0), (7, 3), (31, 13)] {
         let confidences = pack(&Plane::new((4, 1), vec![0, 1 + 5 * 2 + 3 - lowered, 0, 0]).unwrap());
         let residuals = Plane::new((4, 1), vec![residual, residual, residual, residual + 3]).unwrap();

@@ -31,7 +31,7 @@ fn the_twin_filters_the_same() {
 
 #[test]
 fn by_hand() {
-    // The middle one is as dark as its left neighbour, and the bright three to the right of it weigh nothing.
+    // Pixel 1 is as dark as its left neighbour, and the three bright pixels to its right have no weight.
     let luma = Plane::new((5, 1), vec![10, 10, 200, 200, 200]).unwrap();
     let map = Plane::new((5, 1), vec![100, 900, 500, 500, NONE]).unwrap();
     let filtered = |halving_bits, holes_only| {
@@ -42,7 +42,7 @@ fn by_hand() {
         filtered.clone()
     };
     assert_eq!(filtered(3, false)[..2], [100, 100]);
-    // All alike: of 100 500 500 900 the second.
+    // With equal weights: the second of 100 500 500 900.
     assert_eq!(filtered(31, false)[1], 500);
     assert_eq!(filtered(31, true), map.data());
 }

@@ -26,7 +26,7 @@ fn descriptors(picture: &Luma, points: &[[f32; 4]]) -> Vec<[f32; DESCRIPTOR_LENG
     described(picture, &at(points), false)
 }
 
-/// The descriptors at points (x, y, scale, whatever), upright.
+/// The upright descriptors at points (x, y, scale, ignored).
 fn upright(picture: &Luma, points: &[[f32; 4]]) -> Vec<[f32; DESCRIPTOR_LENGTH]> {
     described(picture, &at(points), true)
 }
@@ -45,7 +45,7 @@ fn a_ramp_shows_the_gaussian_of_the_subregions() {
     let picture = Luma::from_fn((101, 101), |x, _| (2 * x) as u8);
     let points = &[[50.0, 50.0, 2.0, 0.0]];
     let side = [(-0.5_f32).exp(), (-1.0_f32 / 18.0).exp(), (-1.0_f32 / 18.0).exp(), (-0.5_f32).exp()];
-    // Each value stands twice, as dx and |dx|; the squares of the products sum to (sum of g^2)^2.
+    // Each value occurs twice, as dx and |dx|; the squares of the products sum to (sum of g^2)^2.
     let length = 2.0_f32.sqrt() * side.iter().map(|g| g * g).sum::<f32>();
     let mut expected = Vec::new();
     for row in side {
@@ -69,7 +69,7 @@ fn signs_follow_the_rise() {
 
 #[test]
 fn the_orientation_turns_the_grid_and_the_responses() {
-    // A picture and the same turned by a quarter: (x, y) of the first is (60 - y, x) of the second.
+    // A picture, and the picture turned by a quarter: (x, y) of the first is (60 - y, x) of the second.
     let level = picture((61, 61), 5);
     let turned = Luma::from_fn((61, 61), |x, y| level.get(y, 60 - x));
     let first = descriptors(&level, &[[30.0, 30.0, 2.0, 0.0]])[0];
@@ -116,7 +116,7 @@ fn equals_the_twin() {
     }
 }
 
-/// Beyond edges, at any scale and orientation.
+/// Covers places beyond the edges, at any scale and orientation.
 #[test]
 fn equals_the_twin_anywhere() {
     let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0, n / 50.0]).collect();

@@ -12,7 +12,7 @@ fn responses(picture: &Luma, step: u32) -> Vec<i32> {
     responses.clone()
 }
 
-/// In 9x9 pixels the 9x9 filter fits only in the middle; everything else must be 0.
+/// In 9x9 pixels the 9x9 filter fits only in the middle; all other responses must be 0.
 fn assert_only_the_middle(picture: &Luma, expected: i32) {
     for (step, middle, points) in [(1, 4 * 9 + 4, 81), (2, 2 * 5 + 2, 25)] {
         let mut all = vec![0; 4 * points];
@@ -36,10 +36,10 @@ fn a_dark_pixel_has_a_positive_trace() {
 
 #[test]
 fn a_pixel_off_the_axes_makes_dxy() {
-    // As above, and Dxy = 255; 0.9 * 255 * 256 / 81 rounds to 725.
+    // Dxx and Dyy as before, and Dxy = 255; 0.9 * 255 * 256 / 81 rounds to 725.
     let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (5, 3) { 255 } else { 0 });
     assert_only_the_middle(&picture, (1612 * 1612 - 725 * 725) << 1);
-    // In the lower right quadrant Dxy = -255, and its square is the same.
+    // In the lower right quadrant Dxy = -255, with the same square.
     let picture = Luma::from_fn((9, 9), |x, y| if (x, y) == (5, 5) { 255 } else { 0 });
     assert_only_the_middle(&picture, (1612 * 1612 - 725 * 725) << 1);
     // At the corner only Dyy's rows and Dxx's columns miss it, and Dxy's quadrants end before it.

@@ -12,8 +12,8 @@ use crate::common::{assert_twin, bench, keypoint, pictures};
 
 const SIDE: u32 = 64;
 
-/// The keypoints in an octave of a 64x64 picture whose determinants are 0 but for `samples`:
-/// (column, row, layer), determinant. Also how many there would have been with more room.
+/// The keypoints in an octave of a 64x64 picture whose determinants are 0 except for `samples`: (column, row, layer),
+/// determinant. Also returns the number of keypoints found, which can exceed the capacity.
 fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32), i32)]) -> (u32, Vec<Keypoint>) {
     let grids = (0..config.octaves).map(|octave| Grid::new((SIDE, SIDE), config.step, octave));
     let mut responses: Vec<_> = grids.map(|grid| vec![0; (LAYERS * grid.width * grid.height) as usize]).collect();
@@ -24,7 +24,7 @@ fn maxima_with(config: &FeatureConfig, octave: u32, samples: &[((u32, u32, u32),
     NonmaxTrial { size: Size::new(SIDE, SIDE), config: config.clone(), responses }.keypoints(&bench()).unwrap()
 }
 
-/// As above, with a threshold of 100.
+/// The keypoints of [`maxima_with`], with a threshold of 100.
 fn maxima(octave: u32, samples: &[((u32, u32, u32), i32)]) -> Vec<Keypoint> {
     let config = FeatureConfig { octaves: 2, threshold: 100.0 / (65280.0 * 65280.0), ..FeatureConfig::default() };
     assert_eq!(integer_threshold(config.threshold), 100);

@@ -13,8 +13,8 @@ fn at(picture: &Luma, points: &[[f32; 3]]) -> OrientationTrial {
 fn orientations(picture: &Luma, points: &[[f32; 3]]) -> Vec<f32> {
     let trial = at(picture, points);
     let oriented = trial.oriented(&bench()).unwrap();
-    for (found, given) in oriented.iter().zip(&trial.keypoints) {
-        assert_eq!(Keypoint { orientation: given.orientation, ..*found }, *given, "only the orientation is written");
+    for (found, input) in oriented.iter().zip(&trial.keypoints) {
+        assert_eq!(Keypoint { orientation: input.orientation, ..*found }, *input, "only the orientation is written");
     }
     oriented.into_iter().map(|keypoint| keypoint.orientation).collect()
 }
@@ -52,7 +52,7 @@ fn keypoints_at_and_beyond_the_edge_are_in_range() {
     }
 }
 
-/// More keypoints than one row of workgroups holds: none is left out.
+/// More keypoints than one row of workgroups: none is left out.
 #[test]
 fn every_keypoint_of_many_gets_its_own() {
     let picture = Luma::from_fn((61, 61), |x, _| (4 * x) as u8);
@@ -74,7 +74,7 @@ fn equals_the_twin() {
     assert!(total > 1000, "{total}");
 }
 
-/// Beyond edges, at any scale.
+/// Covers places beyond the edges, at any scale.
 #[test]
 fn equals_the_twin_anywhere() {
     let points: Vec<_> = (0..300).map(|n| n as f32).map(|n| [n % 97.3, n % 131.9, 1.2 + n / 7.0]).collect();

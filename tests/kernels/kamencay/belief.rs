@@ -19,7 +19,7 @@ fn links(Size { width, height }: Size) -> Links {
     Links::new(&view, &segments, Strip { first_row: 0, rows: height }, weights)
 }
 
-/// So many bytes of noise, at most `most`.
+/// Noise of `count` bytes, at most `most`.
 pub fn noise(count: usize, seed: u32, most: u8) -> Vec<u8> {
     picture((count as u32, 1), seed)
         .data()
@@ -53,8 +53,8 @@ fn the_twin_sends_the_same() {
     }
 }
 
-/// Two nodes side by side. The left one has seen costs of 0 30 60 90 for four disparities and knows of a message
-/// from the right one that must not come back.
+/// Two nodes side by side. The left node has data costs 0 30 60 90 for four disparities, and a message from the right
+/// node, which must not be sent back.
 #[test]
 fn by_hand() {
     let view = Plane::filled((2, 1), 0x80_000000);
@@ -77,15 +77,15 @@ fn by_hand() {
         }
     };
     let node = sent(10, 25);
-    // Less the least, 7: 0 23 53 90; a step costs 10, 25 at most: 0, 10, 20, 25.
+    // Costs minus the least, 7: 0 23 53 90; a step costs 10, at most 25: 0, 10, 20, 25.
     assert_eq!(node[12..16], [0, 10, 20, 25]);
-    // Nobody is above, below or to the left; the other node is not of this parity.
+    // There is no neighbour above, below or to the left; the other node has the other parity.
     assert_eq!(node[..12], [0; 12]);
     assert_eq!(node[16..], [77; 16]);
     assert_eq!(sent(200, 255)[12..16], [0, 23, 53, 90]);
 }
 
-/// The whole range of what a kernel is made for compiles and sends.
+/// The largest number of disparities compiles and sends.
 #[test]
 fn many_disparities() {
     let count = 512;
@@ -100,7 +100,7 @@ fn many_disparities() {
     assert_twin("512 disparities", &trial);
 }
 
-/// Where all costs are cut off, messages come on top of the largest.
+/// Where all data costs are clamped, messages add to the largest cost.
 #[test]
 fn costs_that_are_cut_off_are_still_compared() {
     let (size, count) = (Size::new(3, 2), 8);
@@ -115,7 +115,7 @@ fn costs_that_are_cut_off_are_still_compared() {
     assert_twin("cut off", &trial);
 }
 
-/// A slope of 1, which the weight of a link rounds down to 0: differences cost nothing, up to any distance.
+/// A slope of 1, which the weight of a link rounds down to 0: differences are free, up to any distance.
 #[test]
 fn a_slope_that_links_round_to_nothing() {
     let (size, count) = (Size::new(1, 6), 12);

@@ -55,8 +55,8 @@ fn by_hand() {
     let range = DisparityRange::new(-1, 3).unwrap();
     let strip = Strip { first_row: 0, rows: 1 };
     let cost = WindowCost { radius: 0, ..COST };
-    // Pixel 1 at -1: channels differ by 200, 0 and 0, which counts as 60: 16 * 60 / 48 = 20. At 0: by 3, 0 and 9, the
-    // gradient by 10: (16 * 12 + 3 * 24 * 10) / 48 = 19. At 1 they are the same; then one that only fills a word.
+    // Pixel 1 at disparity -1: channels differ by 200, 0 and 0, truncated to 60: 16 * 60 / 48 = 20. At 0: by 3, 0 and
+    // 9, the gradient by 10: (16 * 12 + 3 * 24 * 10) / 48 = 19. At 1 the pixels are equal; the last cost is padding.
     let Values::U32(costs) = leaves(&BeliefCostTrial { views: [left, right], strip, cost, range }).remove(0) else {
         panic!("costs are words");
     };

@@ -1,4 +1,4 @@
-//! The hybrid method as a whole, in step with the twins.
+//! Kamencay's method as a whole, compared with the twins.
 
 use hsad::{
     Error,
@@ -17,7 +17,7 @@ use hsad::{
 
 use crate::common::*;
 
-/// Colours of smooth noise.
+/// A picture of smooth noise in colour.
 pub fn colours((width, height): (u32, u32), seed: u32) -> Picture {
     let channels = [0, 1, 2].map(|channel| picture((width, height), 3 * seed + channel));
     Picture::from_fn((width, height), |x, y| {
@@ -26,7 +26,7 @@ pub fn colours((width, height): (u32, u32), seed: u32) -> Picture {
     })
 }
 
-/// A right view, and a left one that is it shifted: by 5 px and one more from row to row of 16 px.
+/// A right view, and a left view shifted by 5 px, plus 1 px per 16 rows.
 fn pair(width: u32, height: u32) -> (Picture, Picture) {
     let right = colours((width, height), 1);
     let left =
@@ -49,7 +49,7 @@ fn compare(what: &str, (left, right): &(Picture, Picture), config: &KamencayConf
 fn the_twins_end_with_the_same_bytes() {
     for Size { width, height } in SIZES {
         for (min, count) in [(0, 13), (-2, 32)] {
-            // Some of these sizes have no pixel with a partner further away than 0.
+            // At some of these sizes only disparity 0 gives a pixel a partner.
             compare(&format!("{width}x{height}"), &pair(width, height), &config(min, count));
         }
     }
@@ -57,7 +57,7 @@ fn the_twins_end_with_the_same_bytes() {
     compare("right view", &pair(97, 33), &KamencayConfig { reference: View::Right, brightness, ..config(0, 9) });
 }
 
-/// Nothing to see, one disparity, no partner at all but for a few columns.
+/// Views without texture, a single disparity, partners in a few columns only.
 #[test]
 fn what_shows_nothing_gives_a_map_and_no_panic() {
     let flat = |level: u8| Picture::filled((41, 30), [level; 4]);

@@ -39,11 +39,11 @@ fn by_hand() {
     let grey = |level: u32| level | level << 8 | level << 16;
     let seeking = |range, turns| ModeSeeking { radius: 1, range, turns };
     let pixels = Plane::new((4, 1), [10, 13, 100, 107].map(grey).to_vec()).unwrap();
-    // Greys that differ by 3 are 5.2 apart, by 7 they are 12.1. The mean of 10 and 13 is 11.5, up.
+    // Greys that differ by 3 have distance 5.2 in RGB, by 7 distance 12.1. The mean of 10 and 13 is 11.5, rounded up.
     assert_eq!(on_device(&pixels, seeking(6, 1)), [12, 12, 100, 107].map(grey));
-    // 103.5 for the others.
+    // The mean of the other two is 103.5.
     assert_eq!(on_device(&pixels, seeking(13, 1)), [12, 12, 104, 104].map(grey));
-    // All within reach of each other: the second climbs on with the third, 41 at 1.0, and stays there.
+    // All colours are in range: the second pixel climbs on with the third, to 41 at 1.0, and stays there.
     assert_eq!(on_device(&pixels, seeking(255, 1))[1], grey(41));
 }
 

@@ -13,7 +13,7 @@ fn packed(width: u32, height: u32, pixels: &[[u8; 4]]) -> LumaTrial {
 fn primaries_weigh_77_150_29() {
     // (77 * 255 + 128) >> 8 = 77, (150 * 255 + 128) >> 8 = 149, (29 * 255 + 128) >> 8 = 29.
     let pixels = [[255, 0, 0, 9], [0, 255, 0, 9], [0, 0, 255, 9], [255, 255, 255, 9], [100, 100, 100, 0]];
-    // A row of five: the fifth starts a second word, whose other bytes are 0.
+    // A row of five pixels: the fifth starts a second word, whose other bytes are 0.
     assert_eq!(leaves(&packed(5, 1, &pixels)), [vec![0xFF_1D_95_4D_u32, 100].into()]);
 }
 

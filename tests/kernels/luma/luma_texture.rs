@@ -25,7 +25,7 @@ fn primaries_weigh_77_150_29_in_every_order() {
     }
 }
 
-/// Whatever the device loads for a byte, declared sRGB or not, that byte it is; in each channel alone too, and in grey.
+/// Every byte keeps its value, whether the format is sRGB or not; also in each channel alone, and in grey.
 #[test]
 fn every_byte_is_itself() {
     let all: Vec<u8> = (0..=255).collect();
@@ -44,13 +44,13 @@ fn every_byte_is_itself() {
     assert_eq!(leaves(&LumaTextureTrial { format: TextureFormat::R8Unorm, texels }), [expected.into()]);
 }
 
-/// All halves of 0 to 1, and some beyond either end.
+/// All binary16 from 0 to 1, and some beyond either end.
 #[test]
 fn every_half_is_the_nearest_byte() {
     let halves: Vec<u16> = (0..=0x3c00).chain([0x8000, 0xbc00, 0xfbff, 0x3c01, 0x4000, 0x7bff]).collect();
     let texels = Texels::GreyHalf(Plane::from_fn((1024, 16), |x, y| halves[(y * 1024 + x) as usize % halves.len()]));
     assert_twin("halves", &LumaTextureTrial { format: TextureFormat::R16Float, texels });
-    // 0.5 is 127.5, which goes up.
+    // 0.5 is 127.5, rounded up.
     let grey = |half| {
         let texels = Texels::RgbaHalf(Plane::filled((1, 1), [half, half, half, 0]));
         leaves(&LumaTextureTrial { format: TextureFormat::Rgba16Float, texels })

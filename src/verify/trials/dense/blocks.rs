@@ -30,11 +30,11 @@ pub(super) const SUBJECTS: &[Subject] = &[
 /// A picture to be padded.
 #[derive(Clone, Debug)]
 pub struct PadTrial {
-    /// The picture, of the size that the parameters say.
+    /// The picture, of the size given by the parameters.
     pub picture: Luma,
-    /// How it is padded.
+    /// Padding of the picture.
     pub params: PadParams,
-    /// How its brightness is changed.
+    /// Change of brightness.
     pub brightness: Brightness,
 }
 
@@ -80,34 +80,34 @@ impl Trial for PadTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         let mut plane = pad(&self.picture, &self.params, self.brightness);
-        // The kernel leaves what stands in front of the plane alone.
+        // The kernel does not write the words in front of the plane.
         plane[..self.params.offset as usize].fill(u32::MAX);
         Ok(vec![Array::exact("padded plane", plane)])
     }
 }
 
-/// A pair that is matched block by block.
+/// A pair for block matching.
 #[derive(Clone, Debug)]
 pub struct BlockMatchTrial {
     /// The left view.
     pub left: Luma,
     /// The right view.
     pub right: Luma,
-    /// The view whose pixels get a disparity.
+    /// The reference view.
     pub view: View,
-    /// The window, the range and the checks.
+    /// Window, range and checks.
     pub config: DenseConfig,
-    /// What is searched in each cell, where that is not the whole range; then no tile may lie in two cells.
+    /// The range of each cell, if not the whole range; then no tile may lie in two cells.
     pub ranges: Option<CellPlane>,
-    /// The pixels of a thread.
+    /// The pixels per thread.
     pub tile: Tile,
 }
 
 impl BlockMatchTrial {
-    fn matched(&self, bench: &Bench<'_>, wanted: ResultKind) -> Result<Vec<u32>> {
+    fn matched(&self, bench: &Bench<'_>, kind: ResultKind) -> Result<Vec<u32>> {
         let (gpu, Size { width, height }) = (bench.gpu, self.left.size());
         let layout = Layout::new(self.left.size(), 0, height, &self.config, self.tile)?;
-        // The twin's, so that this is about one kernel.
+        // Planes padded by the twin, so that only one kernel is verified.
         let [left, right] = layout.padding();
         let plane = |view, params| pad(view, params, Brightness::SAME);
         let (mut planes, right_plane) = (plane(&self.left, &left), plane(&self.right, &right));
@@ -117,7 +117,7 @@ impl BlockMatchTrial {
             None => Ranges::whole(gpu, self.config.searched(width)?),
             Some(cells) => Ranges::of_cells(bench.upload(&cell_words(cells))?, width),
         };
-        let others = match (self.config.parameters.consistency, wanted) {
+        let others = match (self.config.parameters.consistency, kind) {
             (Some(limit), ResultKind::Matches) => Some((self.others()?, limit)),
             _ => None,
         };
@@ -129,20 +129,20 @@ impl BlockMatchTrial {
             max_difference: *limit,
         });
         let map = MapLayout { width, rows: height };
-        let words = if wanted == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
+        let words = if kind == ResultKind::Matches { map.words() as u32 } else { map.pixels() };
         let matches = bench.output(words)?;
-        let kernel = BlockMatch::new(gpu, &self.config.parameters, self.view, wanted, self.tile);
+        let kernel = BlockMatch::new(gpu, &self.config.parameters, self.view, kind, self.tile);
         let dispatch = kernel.prepare(&layout, &texture, &ranges, others, MapBuffer { buffer: &matches, layout: map });
         bench.run(|encoder| dispatch.record(encoder));
         bench.download(&matches)
     }
 
-    /// The configuration with the disparities that are searched.
+    /// The configuration, with the range clipped to the width.
     fn searched(&self) -> Result<DenseConfig> {
         Ok(DenseConfig { range: self.config.searched(self.left.width())?, ..self.config.clone() })
     }
 
-    /// What the other view's winners are, over the whole range; coarse to fine those at half the size.
+    /// The winners of the other view, over the whole range; coarse to fine, at half size.
     fn others(&self) -> Result<Plane<i32>> {
         let (config, view) = (self.searched()?, self.view.other());
         Ok(if config.parameters.is_coarse_to_fine() {
@@ -164,7 +164,7 @@ impl BlockMatchTrial {
 
 impl BlockMatchTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        // Compilers of software drivers take seconds for a window, and for a wide one a minute.
+        // Software drivers take seconds to compile for a window, and a minute for a wide one.
         let window = if dice.below(16) == 0 { dice.pick(&[11, 13, 15, 21]) } else { dice.pick(&[3, 3, 5, 7, 9]) };
         let (interpolation, view) = (dice.interpolation(), dice.view());
         let tile = dice.pick(&[
@@ -175,7 +175,7 @@ impl BlockMatchTrial {
         ]);
         let uniqueness = dice.pick(&[0, 0, 1, 15, 100]);
         let range = dice.range(80);
-        // Also ranges that none of the costs of most pixels lie in.
+        // Some ranges leave most pixels without any cost.
         let away = if size.width > 64 { dice.between(-40, 40) } else { 0 };
         let range = DisparityRange { min: range.min + away, ..range };
         let [left, right] = dice.pair(size);
@@ -225,12 +225,12 @@ impl Trial for BlockMatchTrial {
     }
 }
 
-/// Two words a cell.
+/// Two `u32`s per cell.
 pub(super) fn cell_words(cells: &CellPlane) -> Vec<u32> {
     cells.data().iter().flat_map(|&(first, count)| [first, count]).collect()
 }
 
-/// Words that hold disparities.
+/// Converts words to disparities.
 pub(super) fn signed(words: &[u32]) -> Vec<i32> {
     words.iter().map(|word| word.cast_signed()).collect()
 }

@@ -1,4 +1,4 @@
-//! What is searched where, coarse to fine: half the size, and the ranges of cells.
+//! Coarse to fine: downscaling to half the size, and the ranges of cells.
 
 use super::blocks::cell_words;
 use crate::{
@@ -21,7 +21,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("cell_ranges", |size, dice| Box::new(CellRangesTrial::draw(size, dice))),
 ];
 
-/// A picture that is halved.
+/// A picture to be downscaled.
 #[derive(Clone, Debug)]
 pub struct HalveTrial(pub Luma);
 
@@ -47,14 +47,14 @@ impl Trial for HalveTrial {
     }
 }
 
-/// A map of half the size, for a picture of this one.
+/// A half-size map, for a picture of `size`.
 #[derive(Clone, Debug)]
 pub struct CellRangesTrial {
-    /// Of the picture.
+    /// Size of the picture.
     pub size: Size,
-    /// Of half the size.
+    /// Half-size map.
     pub map: DisparityMap,
-    /// Of which cells get a part.
+    /// The searched disparities, of which each cell gets a part.
     pub range: DisparityRange,
 }
 
@@ -66,7 +66,7 @@ impl CellRangesTrial {
         let (steps, holes) = (dice.picture(half), dice.picture(half));
         let map = Plane::from_fn(half, |x, y| {
             let share = i64::from(steps.get(x, y)) * i64::from(range.count) * i64::from(SCALE) / 512;
-            // More and more holes to the right.
+            // Holes become denser to the right.
             let hole = u32::from(holes.get(x, y)) < x * 300 / half.0;
             if hole { NONE } else { range.min * SCALE / 2 + share as i32 }
         });

@@ -1,4 +1,4 @@
-//! What becomes of a map of disparities: consistency, residuals, support, filling, medians.
+//! Map kernels: consistency, residuals, support, filling, medians, textures.
 
 use super::blocks::signed;
 use crate::{
@@ -6,8 +6,8 @@ use crate::{
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            CheckedAgainst, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture,
-            Residual, Support, Views, WeightedMedian,
+            CheckedAgainst, ComparedViews, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel,
+            MapTexture, Residual, Support, WeightedMedian,
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -32,7 +32,8 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
 ];
 
-/// Disparities of all kinds, in 1/256 px: smooth, noisy, none, from `least` to `most` and perhaps beyond.
+/// Draws a map of all kinds of disparities, in 1/256 px: smooth, noisy, none, from `least` to `most` and possibly
+/// beyond.
 fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
     let surface = dice.picture((width, height));
     let (holes, noise) = (dice.pick(&[0, 30, 128, 250]), 1 + dice.below(300));
@@ -42,14 +43,14 @@ fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> 
     })
 }
 
-/// The same with confidences, 0 where there is no disparity.
+/// Draws a map with confidences, 0 where there is no disparity.
 fn dense(size: Size, dice: &mut Dice) -> Dense {
     let disparity = map(size, dice, -30 * SCALE, 60 * SCALE);
     let confidence = disparity.map(|&disparity| if disparity == NONE { 0 } else { 1 + dice.below(255) as u8 });
     Dense { disparity, confidence }
 }
 
-/// A map and its confidences in one buffer, as kernels have them.
+/// A map and its confidences in one buffer, in the layout of the kernels.
 fn matches(dense: &Dense) -> Vec<u32> {
     let mut words: Vec<u32> = dense.disparity.data().iter().map(|disparity| disparity.cast_unsigned()).collect();
     words.extend(pack(&dense.confidence));
@@ -61,28 +62,28 @@ fn arrays(matches: &[u32], pixels: usize) -> Vec<Array> {
     vec![Array::exact("disparities", signed(disparities)), Array::exact("confidences", confidences.to_vec())]
 }
 
-/// Two maps that are held against each other.
+/// Two maps to be compared.
 #[derive(Clone, Debug)]
 pub struct ConsistencyTrial {
-    /// Of the reference view.
+    /// Map of the reference view.
     pub dense: Dense,
-    /// Which view that is.
+    /// The reference view.
     pub view: View,
-    /// Of the other view.
+    /// Map of the other view.
     pub others: DisparityMap,
-    /// Whether they are given as claims: then they are whole pixels, from this one on.
+    /// Disparity of index 0, in pixels, if the other view's disparities are claims, which are whole pixels.
     pub claims_from: Option<i32>,
-    /// The largest difference, in 1/256 px.
+    /// Largest accepted difference, in 1/256 px.
     pub max_difference: u32,
 }
 
 impl ConsistencyTrial {
-    /// The other view's disparities as the kernel is given them.
+    /// The other view's disparities as the kernel reads them.
     fn words(&self) -> Vec<u32> {
         let word = |disparity: i32| match self.claims_from {
             None => disparity.cast_unsigned(),
             Some(_) if disparity == NONE => 0,
-            // Any cost will do.
+            // The cost is arbitrary.
             Some(least) => !(77 << 16 | (disparity / SCALE - least) as u32),
         };
         self.others.data().iter().map(|&disparity| word(disparity)).collect()
@@ -134,16 +135,16 @@ impl Trial for ConsistencyTrial {
     }
 }
 
-/// Two views that are compared at the disparities of one.
+/// Two views to be compared at the disparities of one.
 #[derive(Clone, Debug)]
 pub struct ResidualTrial {
-    /// Left and right; the map is that of as many of their rows.
+    /// Left and right view; they can have more rows than the map.
     pub views: [Luma; 2],
-    /// Of the right view.
+    /// Change of the right view's brightness.
     pub brightness: Brightness,
-    /// Which view's the map is.
+    /// The reference view, to which the map belongs.
     pub reference: View,
-    /// The map, of the rows from this one on.
+    /// First row of the map in the views.
     pub first_row: u32,
     /// The map.
     pub disparities: DisparityMap,
@@ -177,7 +178,7 @@ impl Trial for ResidualTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.disparities.size());
         let [left, right] = [bench.upload_luma(&self.views[0])?, bench.upload_luma(&self.views[1])?];
-        let views = Views {
+        let views = ComparedViews {
             luma: [&left, &right],
             brightness: &uniform_buffer(gpu, "brightness", &self.brightness),
             reference: self.reference,
@@ -199,14 +200,14 @@ impl Trial for ResidualTrial {
     }
 }
 
-/// A map whose speckles are taken away.
+/// A map whose speckles are removed.
 #[derive(Clone, Debug)]
 pub struct SupportTrial {
     /// The map.
     pub dense: Dense,
-    /// How unlike the views look there.
+    /// Photometric residuals of its pixels.
     pub residuals: Plane<u8>,
-    /// How many neighbours must agree.
+    /// Least number of pixels that must agree.
     pub least: u32,
 }
 
@@ -249,7 +250,7 @@ impl Trial for SupportTrial {
 pub struct FillTrial {
     /// The map.
     pub disparities: DisparityMap,
-    /// What a filled disparity may be.
+    /// Range of the filled disparities.
     pub range: DisparityRange,
 }
 
@@ -291,20 +292,20 @@ impl Trial for FillTrial {
     }
 }
 
-/// A map on its way to a texture.
+/// A map to be copied to a texture.
 #[derive(Clone, Debug)]
 pub struct MapTextureTrial {
     /// The map.
     pub disparities: DisparityMap,
-    /// What its texels are.
+    /// Kind of the texels.
     pub texel: MapTexel,
-    /// In how many parts it comes.
+    /// Number of parts in which the map is copied.
     pub parts: u32,
 }
 
 impl MapTextureTrial {
     fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
-        // No device need have larger textures.
+        // Larger textures are not required of a device.
         let size = Size::new(width.min(2048), height.min(2048));
         let texel = dice.pick(&MapTexel::ALL);
         Self { disparities: map(size, dice, -300 * SCALE, 2000 * SCALE), texel, parts: 1 + dice.below(3) }
@@ -348,10 +349,10 @@ impl Trial for MapTextureTrial {
     }
 }
 
-/// A map that is filtered.
+/// A map to be filtered.
 #[derive(Clone, Debug)]
 pub struct MedianTrial {
-    /// The view whose map it is.
+    /// Luma of the view of the map.
     pub luma: Luma,
     /// The map.
     pub disparities: DisparityMap,

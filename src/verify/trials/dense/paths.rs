@@ -1,4 +1,4 @@
-//! Semi-global matching: census, matching cost, paths, selection, and what one view's winners tell of the other.
+//! Semi-global matching: census, matching cost, averaging, paths, selection, and claims.
 
 use super::blocks::signed;
 use crate::{
@@ -31,7 +31,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("claim", |size, dice| Box::new(ClaimTrial::draw(size, dice))),
 ];
 
-/// Four costs of eight bits a word.
+/// Packs four 8-bit costs per `u32`.
 fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.as_chunks().0.iter().map(|&four| u32::from_le_bytes(four)).collect()
 }
@@ -40,7 +40,7 @@ fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// A picture that is transformed.
+/// A picture for the census transform.
 #[derive(Clone, Debug)]
 pub struct CensusTrial(pub Luma);
 
@@ -74,16 +74,16 @@ impl Trial for CensusTrial {
     }
 }
 
-/// Costs that are averaged.
+/// Costs to be averaged.
 #[derive(Clone, Debug)]
 pub struct BoxMeanTrial {
-    /// Of the picture.
+    /// Size of the picture.
     pub size: Size,
-    /// A cost of each pixel and disparity, in whole words a pixel.
+    /// Costs of each pixel and disparity, padded to whole words per pixel.
     pub costs: Vec<u8>,
-    /// How many disparities there are.
+    /// Number of disparities.
     pub disparities: u32,
-    /// Of the window.
+    /// Side of the window, in pixels.
     pub side: u32,
 }
 
@@ -119,18 +119,18 @@ impl Trial for BoxMeanTrial {
     }
 }
 
-/// Two transformed views whose pixels are compared.
+/// Two census transforms whose pixels are compared.
 #[derive(Clone, Debug)]
 pub struct CostTrial {
-    /// The reference and the other view, as [`census`] leaves them.
+    /// Census transforms of the reference and of the other view, from [`census`].
     pub views: [Plane<u32>; 2],
-    /// Which view is the reference.
+    /// The reference view.
     pub view: View,
-    /// What they are compared by.
+    /// The matching cost.
     pub cost: Cost,
     /// The disparities.
     pub range: DisparityRange,
-    /// The rows whose costs are wanted.
+    /// The rows whose costs are computed.
     pub rows: std::ops::Range<u32>,
 }
 
@@ -183,24 +183,24 @@ fn penalties(dice: &mut Dice) -> Penalties {
     Penalties { p1: dice.below(least_p2 + 1), p2, least_p2, p2_scale: dice.pick(&[1, 8, 16, 255]) }
 }
 
-/// Costs of all pixels and as many disparities as make whole fours, from 0 to 127.
+/// Costs of all pixels, 0 to 127, padded to a multiple of four disparities.
 fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
     let noise = smooth_noise((width * count.next_multiple_of(4), height), seed);
     noise.data().iter().map(|&value| value / 2).collect()
 }
 
-/// Costs that a path is followed through.
+/// Costs for a path.
 #[derive(Clone, Debug)]
 pub struct PathTrial {
-    /// The view, its luma in the lowest byte.
+    /// The reference view, its luma in the lowest byte.
     pub reference: Plane<u32>,
-    /// The costs of each pixel's disparities, a multiple of four of them.
+    /// Costs of each pixel, a multiple of four disparities.
     pub costs: Vec<u8>,
-    /// Where the path goes.
+    /// Direction of the path.
     pub direction: Direction,
-    /// What changes cost.
+    /// Penalties for changes of disparity.
     pub penalties: Penalties,
-    /// In bands of so many rows, each beginning where the one before it ended.
+    /// Rows per band; each band continues the paths of the previous one.
     pub band_rows: u32,
 }
 
@@ -241,7 +241,7 @@ impl Trial for PathTrial {
             let rows = self.band_rows.min(height - first_row);
             let band = VolumeBand { width, first_row, rows, range: DisparityRange { min: 0, count } };
             let row = band.row_words() as usize;
-            // A row in front and one behind, for where lines come from.
+            // One halo row on either side, from which lines come.
             let mut paths = vec![u32::MAX; row * (rows as usize + 2)];
             if let Some(carried) = &carried {
                 let at = if direction.dy < 0 { row * (rows as usize + 1) } else { 0 };
@@ -267,20 +267,20 @@ impl Trial for PathTrial {
     }
 }
 
-/// The costs of several paths, of which one is followed on the way to disparities.
+/// The costs of several paths; the kernel follows the last one itself.
 #[derive(Clone, Debug)]
 pub struct SelectTrial {
-    /// The view, its luma in the lowest byte.
+    /// The reference view, its luma in the lowest byte.
     pub reference: Plane<u32>,
-    /// The costs that the last path is followed through.
+    /// The matching costs for the last path.
     pub costs: Vec<u8>,
-    /// The costs along the other paths.
+    /// The costs along the stored paths.
     pub stored: Vec<Vec<u8>>,
     /// The disparities.
     pub range: DisparityRange,
-    /// Where the last path goes, along the rows.
+    /// Direction of the last path, along the rows.
     pub last: Direction,
-    /// What changes cost on it.
+    /// Penalties of the last path.
     pub penalties: Penalties,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,
@@ -339,12 +339,12 @@ impl Trial for SelectTrial {
         let selection = Selection {
             stored: self.stored.len() as u32,
             interpolation: self.interpolation,
-            wanted: ResultKind::Matches,
+            kind: ResultKind::Matches,
             keys: true,
             uniqueness: self.uniqueness,
         };
         let kernel = Select::new(gpu, &self.penalties, band.words(), selection);
-        // The kernel expects zeros here.
+        // The kernel expects zeros.
         let matches = bench.upload(&vec![0_u32; (layout.words() as u32 + layout.pixels()) as usize])?;
         let (reference, costs) = (bench.upload(self.reference.data())?, bench.upload(&words(&self.costs))?);
         let stored = bench.upload(&words(&self.stored.concat()))?;
@@ -378,13 +378,13 @@ impl Trial for SelectTrial {
 /// Winners of one view that claim their partners in the other.
 #[derive(Clone, Debug)]
 pub struct ClaimTrial {
-    /// Costs and disparities in pixels.
+    /// Winners: costs, and disparities in pixels.
     pub winners: Plane<Option<(u32, i32)>>,
-    /// Whose winners they are.
+    /// The view of the winners.
     pub view: View,
-    /// In which the disparities lie.
+    /// Range of the disparities.
     pub range: DisparityRange,
-    /// Rows that the map has room for beyond those of the winners.
+    /// Rows allocated in the map beyond those of the winners.
     pub spare_rows: u32,
 }
 
@@ -393,7 +393,7 @@ impl ClaimTrial {
         let (view, range, spare_rows) = (dice.view(), dice.range(60), dice.below(7));
         let few = dice.coin();
         let winners = Plane::from_fn(size, |_, _| {
-            // With few costs many claims are equally good.
+            // With few different costs many claims tie.
             let cost = if few { dice.below(3) } else { dice.below(2040) };
             let disparity = range.min + dice.below(range.count) as i32;
             (dice.below(8) > 0).then_some((cost, disparity))
@@ -414,10 +414,10 @@ impl Trial for ClaimTrial {
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let Size { width, height: rows } = self.winners.size();
         let layout = MapLayout { width, rows: rows + self.spare_rows };
-        // A map in front of the keys.
+        // The map in front of the keys.
         let mut matches = vec![7; layout.key_offset() as usize];
         matches.extend(self.keys());
-        // The kernel expects zeros here.
+        // The kernel expects zeros.
         let claims = bench.upload(&vec![0_u32; (width * rows) as usize])?;
         let band = VolumeBand { width, first_row: 0, rows, range: self.range };
         let kernel = Claim::new(bench.gpu);
@@ -438,7 +438,7 @@ impl Trial for ClaimTrial {
 }
 
 impl ClaimTrial {
-    /// The winners as [`Select`] leaves them.
+    /// The winners as keys, as [`Select`] writes them.
     fn keys(&self) -> Vec<u32> {
         let key = |(cost, disparity): (u32, i32)| cost << 16 | (disparity - self.range.min) as u32;
         self.winners.data().iter().map(|winner| winner.map_or(u32::MAX, key)).collect()

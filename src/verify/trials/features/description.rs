@@ -33,7 +33,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::pipeline("features", |size, dice| Box::new(FeaturesTrial::draw(size, dice))),
 ];
 
-/// A list that holds `keypoints`, on the device, and the number of its workgroups.
+/// Uploads a list of `keypoints`, and their number of workgroups.
 fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu::Buffer)> {
     let count = keypoints.len() as u32;
     let list = KeypointList::new(bench.gpu, count)?;
@@ -45,7 +45,7 @@ fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu
     Ok((list, groups))
 }
 
-/// Places anywhere in a picture and around it, of any scale and orientation.
+/// Draws places in a picture and around it, of any scale and orientation.
 fn places_in(Size { width, height }: Size, dice: &mut Dice) -> Vec<Keypoint> {
     let count = 1 + dice.below(400);
     let mut sixty_fourths = |least: f32, length: f32| least + dice.below((64.0 * length) as u32) as f32 / 64.0;
@@ -61,7 +61,7 @@ fn places_in(Size { width, height }: Size, dice: &mut Dice) -> Vec<Keypoint> {
     (0..count).map(place).collect()
 }
 
-/// A column so far outside any picture that no neighbourhood reaches in.
+/// A column so far outside any picture that no neighbourhood reaches the picture.
 const NOTHING_THERE: f32 = -4096.0;
 
 fn keypoint_input(picture: &Luma, keypoints: &[Keypoint]) -> Vec<Array> {
@@ -74,7 +74,7 @@ fn place(keypoint: &Keypoint) -> Place {
     Place::new(keypoint.x, keypoint.y, keypoint.scale)
 }
 
-/// Keypoints of a picture whose orientations are sought.
+/// Keypoints of a picture that get their orientations.
 #[derive(Clone, Debug)]
 pub struct OrientationTrial {
     /// The picture.
@@ -84,12 +84,12 @@ pub struct OrientationTrial {
 }
 
 impl OrientationTrial {
-    /// What the device makes of the keypoints.
+    /// The keypoints with the device's orientations.
     ///
     /// # Errors
-    /// What the device says.
+    /// The errors of the device.
     pub fn oriented(&self, bench: &Bench<'_>) -> Result<Vec<Keypoint>> {
-        // What is not written would be out of range.
+        // An orientation that is never written stays NaN.
         let poisoned = |keypoint: &Keypoint| Keypoint { orientation: f32::NAN, ..*keypoint };
         let (list, groups) = list(bench, &self.keypoints.iter().map(poisoned).collect::<Vec<_>>())?;
         let integral = bench.upload(IntegralImage::new(&self.picture).sums().data())?;
@@ -100,7 +100,7 @@ impl OrientationTrial {
 
     fn arrays(keypoints: &[Keypoint]) -> Vec<Array> {
         let orientations: Vec<f32> = keypoints.iter().map(|keypoint| keypoint.orientation).collect();
-        // Nothing else of a keypoint changes.
+        // The other members of a keypoint do not change.
         let rest = |keypoint: &Keypoint| {
             let Keypoint { x, y, scale, orientation: _, response, octave, index } = *keypoint;
             [x.to_bits(), y.to_bits(), scale.to_bits(), response.cast_unsigned(), octave, index]
@@ -144,14 +144,14 @@ impl Trial for OrientationTrial {
     }
 }
 
-/// Keypoints of a picture that are described.
+/// Keypoints of a picture that get their descriptors.
 #[derive(Clone, Debug)]
 pub struct DescriptorTrial {
     /// The picture.
     pub picture: Luma,
     /// The keypoints.
     pub keypoints: Vec<Keypoint>,
-    /// Whether along the axes of the picture, or of each keypoint.
+    /// Whether descriptors are upright, with axes along the picture instead of the keypoint's orientation.
     pub upright: bool,
 }
 
@@ -200,12 +200,13 @@ impl Trial for DescriptorTrial {
 pub struct FeaturesTrial {
     /// The picture.
     pub picture: Luma,
-    /// What is looked for.
+    /// Parameters of detection.
     pub config: FeatureConfig,
 }
 
 impl FeaturesTrial {
-    /// Samples are exactly the same, places within a division's last digits, orientations and descriptors within theirs.
+    /// Outputs of the trial: samples are exact, places within the last digits of a division, orientations and
+    /// descriptors within their tolerances.
     fn arrays(features: &[Feature], upright: bool) -> Vec<Array> {
         let samples = |f: &Feature| [f.response.to_bits(), f.dark.into()];
         let places = |f: &Feature| [f.x, f.y, f.scale];
@@ -255,13 +256,13 @@ mod tests {
     use super::*;
     use crate::verify::array::Comparison;
 
-    /// Whether device and twin would be told apart.
+    /// Whether a comparison finds a fault.
     fn differ(actual: &[Array], expected: &[Array]) -> bool {
         let differs = |(actual, expected)| Comparison::new(actual, expected).fault.is_some();
         actual.iter().zip(expected).any(differs)
     }
 
-    /// What last digits decide is left out of the trial, and is not most of it.
+    /// Orientations that last digits decide are left out of the trial; they must be few.
     #[test]
     fn most_orientations_are_decided() {
         let trial = OrientationTrial::draw(Size::new(311, 239), &mut Dice::new("orientation", 8));

@@ -1,4 +1,4 @@
-//! Interest points: the determinant of the Hessian, its maxima, and the workgroups for what follows.
+//! Interest points: the determinant of the Hessian, its maxima, and the workgroups of the later stages.
 
 use super::tolerances::PLACES;
 use crate::{
@@ -41,9 +41,9 @@ const OCTAVES: [&str; 5] = ["octave 0", "octave 1", "octave 2", "octave 3", "oct
 pub struct HessianTrial {
     /// The picture.
     pub picture: Luma,
-    /// How many octaves there are, 1 to 5.
+    /// Number of octaves, 1 to 5.
     pub octaves: u32,
-    /// The step of the first one, 1 or 2.
+    /// Sampling step of the first octave, 1 or 2 pixels.
     pub step: u32,
 }
 
@@ -90,19 +90,19 @@ impl Trial for HessianTrial {
     }
 }
 
-/// Responses whose maxima are sought.
+/// Responses whose maxima are found.
 #[derive(Clone, Debug)]
 pub struct NonmaxTrial {
-    /// Of the picture.
+    /// Size of the picture.
     pub size: Size,
-    /// What is looked for.
+    /// Parameters of detection.
     pub config: FeatureConfig,
-    /// The responses of each octave, as [`Hessian::prepare`] leaves them.
+    /// Responses of each octave, from [`Hessian::prepare`].
     pub responses: Vec<Vec<i32>>,
 }
 
 impl NonmaxTrial {
-    /// What `config` looks for in a picture.
+    /// The responses of a picture.
     pub fn of_picture(picture: &Luma, config: FeatureConfig) -> Self {
         let integral = IntegralImage::new(picture);
         let octave = |octave| {
@@ -112,10 +112,10 @@ impl NonmaxTrial {
         Self { size: picture.size(), responses: (0..config.octaves).map(octave).collect(), config }
     }
 
-    /// How many keypoints the device finds, and those there is room for, in order.
+    /// The number of keypoints that the device finds, and the keypoints in the list, sorted.
     ///
     /// # Errors
-    /// What the device says.
+    /// The errors of the device.
     pub fn keypoints(&self, bench: &Bench<'_>) -> Result<(u32, Vec<Keypoint>)> {
         let list = KeypointList::new(bench.gpu, self.config.max_features)?;
         bench.poison(list.keypoints());
@@ -132,7 +132,7 @@ impl NonmaxTrial {
         Ok((found, keypoints))
     }
 
-    /// The same by the twin.
+    /// The keypoints that the twin finds, sorted.
     pub fn twins_keypoints(&self) -> Vec<Keypoint> {
         let Size { width, height } = self.size;
         let octave = |(index, responses): (u32, &Vec<i32>)| {
@@ -161,17 +161,18 @@ impl NonmaxTrial {
         (0..).zip(&self.responses).flat_map(octave).collect()
     }
 
-    /// What is left, where `found` were found. Which ones are kept of more than there is room for is not determined.
+    /// Outputs of the trial, with `found` keypoints found. If more are found than fit in the list, which of them are
+    /// kept is not determined.
     fn arrays(&self, found: u32, keypoints: &[Keypoint]) -> Vec<Array> {
-        let kept = if found > self.config.max_features { &[] } else { keypoints };
+        let listed = if found > self.config.max_features { &[] } else { keypoints };
         let samples = |k: &Keypoint| [k.octave, k.index, k.response.cast_unsigned(), k.orientation.to_bits()];
         let places = |k: &Keypoint| [k.x, k.y, k.scale];
         vec![
             Array::exact("number found", vec![found]),
-            Array::exact("octave, index, response, orientation", kept.iter().flat_map(samples).collect::<Vec<_>>()),
+            Array::exact("octave, index, response, orientation", listed.iter().flat_map(samples).collect::<Vec<_>>()),
             Array {
                 name: "x, y, scale",
-                values: kept.iter().flat_map(places).collect::<Vec<_>>().into(),
+                values: listed.iter().flat_map(places).collect::<Vec<_>>().into(),
                 tolerance: PLACES,
             },
         ]
@@ -212,12 +213,12 @@ impl Trial for NonmaxTrial {
     }
 }
 
-/// How many keypoints were found, from which the workgroups of what follows come.
+/// The size of a keypoint list, from which the workgroups of the later stages follow.
 #[derive(Clone, Debug)]
 pub struct WorkgroupsTrial {
-    /// How many were found.
+    /// Number of keypoints found.
     pub found: u32,
-    /// How many there is room for.
+    /// Capacity of the list, in keypoints.
     pub capacity: u32,
 }
 
@@ -257,7 +258,7 @@ mod tests {
     use super::*;
     use crate::verify::array::Comparison;
 
-    /// Whether device and twin would be told apart.
+    /// Whether a comparison finds a fault.
     fn differ(actual: &[Array], expected: &[Array]) -> bool {
         let differs = |(actual, expected)| Comparison::new(actual, expected).fault.is_some();
         actual.iter().zip(expected).any(differs)

@@ -18,7 +18,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("integral_columns", |size, dice| Box::new(ColumnsTrial::draw(size, dice))),
 ];
 
-/// A picture whose rows are summed.
+/// A picture to be summed along rows.
 #[derive(Clone, Debug)]
 pub struct RowsTrial(pub Luma);
 
@@ -49,7 +49,7 @@ impl Trial for RowsTrial {
     }
 }
 
-/// Sums of rows, a column and a row more than a picture has, whose columns are summed.
+/// Row sums, one column and one row more than a picture has, to be summed along columns.
 #[derive(Clone, Debug)]
 pub struct ColumnsTrial(pub Plane<u32>);
 

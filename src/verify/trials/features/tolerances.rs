@@ -1,4 +1,4 @@
-//! What is no integer has a tolerance, which stands here and nowhere else.
+//! The tolerances of all floats, which are defined here and nowhere else.
 
 use std::f32::consts::PI;
 
@@ -18,8 +18,9 @@ pub(super) const PLACES: Tolerance =
 pub(super) const ORIENTATIONS: Tolerance =
     Tolerance::Within { difference: 1e-3, angles: true, group: 1, length: None, outliers: None };
 
-/// Tolerance of any orientation: where a gradient is at the very end of a window, or two windows' sums are equally long, the last
-/// digit decides which window wins, and with it between any two directions. On lavapipe it is one of 15,088.
+/// Tolerance of any orientation: where a gradient lies at the very end of a window, or the sums of two windows are
+/// equally long, the last digit decides which window wins, and the two directions can be any. On lavapipe it is one of
+/// 15,088.
 pub(super) const ORIENTATIONS_ANYWHERE: Tolerance = Tolerance::Within {
     difference: 1e-3,
     angles: true,
@@ -28,19 +29,19 @@ pub(super) const ORIENTATIONS_ANYWHERE: Tolerance = Tolerance::Within {
     outliers: Some(Outliers { of_thousand: 5, difference: PI }),
 };
 
-/// A tolerance of descriptors: some may be off, and are descriptors all the same, as long as they should be.
+/// A tolerance of descriptors: outliers are accepted if they have the length of a descriptor.
 const fn of_descriptors(difference: f32, outliers: Option<Outliers>) -> Tolerance {
     Tolerance::Within { difference, angles: false, group: 64, length: Some(1e-4), outliers }
 }
 
-/// What samples of which some are rounded to another 1/16 px change of a descriptor's values: on lavapipe up to 0.011.
+/// Change of a descriptor's values where some samples are rounded to another 1/16 px: on lavapipe up to 0.011.
 const ANOTHER_SIXTEENTH: f32 = 0.016;
 
 /// Tolerance of the 64 values of a descriptor.
 ///
-/// Upright, all samples are the same integers in both, and only their cube roots and sums are floats (on lavapipe
-/// 6e-7 apart). Turned, the place of each sample is a float that is rounded to 1/16 px, sometimes the other way:
-/// allowed at one descriptor in 200, on lavapipe at fewer than one in 10,000.
+/// Upright, all samples are the same integers on device and twin, and only their cube roots and sums are floats (on
+/// lavapipe 6e-7 apart). Turned, the place of each sample is a float that is rounded to 1/16 px, sometimes the other
+/// way: accepted at one descriptor in 200, on lavapipe at fewer than one in 10,000.
 pub(super) const fn descriptors(upright: bool) -> Tolerance {
     if upright {
         return of_descriptors(1e-5, None);
@@ -48,9 +49,10 @@ pub(super) const fn descriptors(upright: bool) -> Tolerance {
     of_descriptors(1e-3, Some(Outliers { of_thousand: 5, difference: ANOTHER_SIXTEENTH }))
 }
 
-/// Tolerance of descriptors at places that are themselves only near, turned by orientations that are only near, some of which are
-/// others altogether. On lavapipe none of 11,648 is off upright; turned, one of 15,088 by 0.18, that with another
-/// orientation, and of some pictures more than one in 200 by up to 0.011: no case that is verified by default.
+/// Tolerance of descriptors at places and orientations that themselves have tolerances; some orientations are entirely
+/// different. On lavapipe, upright, none of 11,648 descriptors is off. Turned, one of 15,088 is off by 0.18, the one
+/// with another orientation, and in some pictures more than one in 200 by up to 0.011, in no case that is verified by
+/// default.
 pub(super) const fn descriptors_anywhere(upright: bool) -> Tolerance {
     if upright {
         return of_descriptors(1e-3, None);
