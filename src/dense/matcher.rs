@@ -7,8 +7,9 @@ use super::{
     inputs::Inputs,
     kernels::{MapRows, MapTexel, MapTexture},
     outputs::{Destination, Disparities, Outputs},
-    plan::{BandLimits, Plan, WordCopy, blocks, costs},
+    plan::{BandLimits, Plan, blocks, costs},
     readback::MapReadback,
+    word_copy::WordCopy,
 };
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;

@@ -14,6 +14,7 @@ mod matcher;
 mod outputs;
 mod plan;
 mod readback;
+mod word_copy;
 
 pub use config::{
     Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,

@@ -1,6 +1,6 @@
 //! Where a matcher's answers go.
 
-use super::plan::WordCopy;
+use super::word_copy::WordCopy;
 use crate::gpu::Dispatch;
 
 /// Where the caller wants the disparities.

@@ -9,7 +9,7 @@
 //! many rows as the averaging window reaches. The result does not depend on where bands are cut.
 
 use super::{
-    BandLimits, CopyTarget, Plan, WordCopy,
+    BandLimits, Plan,
     refine::{Unrefined, plan_refinement},
 };
 use crate::{
@@ -19,6 +19,7 @@ use crate::{
             BoxMean, Census, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer,
             MapLayout, Pad, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
         },
+        word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
     error::{Error, Result},

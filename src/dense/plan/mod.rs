@@ -5,21 +5,18 @@ mod coarse_to_fine;
 pub(super) mod costs;
 mod other_winners;
 mod refine;
-mod word_copy;
 
 use super::{
     config::{Brightness, DenseConfig, View},
     kernels::MapBuffer,
     outputs::Outputs,
+    word_copy::{CopyTarget, WordCopy},
 };
 use crate::{
     error::Result,
     gpu::{Dispatch, Gpu, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
     image::Size,
 };
-
-use word_copy::CopyTarget;
-pub(super) use word_copy::WordCopy;
 
 /// The largest band.
 #[derive(Clone, Copy, Debug)]

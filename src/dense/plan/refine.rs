@@ -3,11 +3,12 @@
 //! residuals and support -> weighted medians of the supported disparities -> filling -> a weighted median of the filled
 //! pixels -> weighted medians of all pixels -> a plain median.
 
-use super::{BandLimits, CopyTarget, Plan, WholeMap, WordCopy};
+use super::{BandLimits, Plan, WholeMap};
 use crate::{
     dense::{
         config::{Median, Refinement, View},
         kernels::{ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, WeightedMedian},
+        word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
     error::{Error, Result},

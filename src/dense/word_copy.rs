@@ -2,24 +2,24 @@
 
 /// A copy of `words` `u32`s from a buffer. Offsets are in words.
 #[derive(Debug)]
-pub(in crate::dense) struct WordCopy {
-    pub(in crate::dense) from: wgpu::Buffer,
-    pub(in crate::dense) from_word: u64,
-    pub(in crate::dense) to: CopyTarget,
-    pub(in crate::dense) to_word: u64,
-    pub(in crate::dense) words: u64,
+pub(super) struct WordCopy {
+    pub(super) from: wgpu::Buffer,
+    pub(super) from_word: u64,
+    pub(super) to: CopyTarget,
+    pub(super) to_word: u64,
+    pub(super) words: u64,
 }
 
 impl WordCopy {
     /// Records the copy to buffer `to`.
-    pub(in crate::dense) fn record(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
         encoder.copy_buffer_to_buffer(&self.from, 4 * self.from_word, to, 4 * self.to_word, Some(4 * self.words));
     }
 }
 
 /// The destination of a copy.
 #[derive(Debug)]
-pub(in crate::dense) enum CopyTarget {
+pub(super) enum CopyTarget {
     /// A buffer of the plan.
     Buffer(wgpu::Buffer),
     /// The caller's disparities, one `i32` per pixel.
