@@ -1,4 +1,4 @@
-//! All parameters for a pair, and presets of them.
+//! Parameters of the pipeline, and presets.
 
 use crate::{
     dense::{
@@ -13,7 +13,7 @@ use crate::{
     seeding::SeedingConfig,
 };
 
-/// How every pixel gets a disparity.
+/// Method of the disparity map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Block matching or semi-global matching: see [`crate::dense`].
@@ -22,25 +22,25 @@ pub enum Method {
     Kamencay(KamencayParameters),
 }
 
-/// All parameters of the pipeline. The default is that of [`Preset::Balanced`].
+/// Parameters of the pipeline. The default is [`Preset::Balanced`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// How interest points are found and described.
+    /// Detection and description of interest points.
     pub features: FeatureConfig,
-    /// How interest points are matched, and what the matches must show.
+    /// Matching of interest points, and the test of rectification.
     pub seeding: SeedingConfig,
-    /// The disparities to search; `None`: found from the matches.
+    /// Disparity range to search, in pixels; `None`, the default, derives it from the matches.
     pub range: Option<DisparityRange>,
-    /// A lower limit, in pixels, to a range that is found: no disparity below is searched; 0 searches to one side only.
-    /// `None`: no limit.
+    /// Lower limit of a range derived from the matches, in pixels: 0 excludes negative disparities. `None`, the default:
+    /// no limit.
     pub least: Option<i32>,
-    /// How every pixel gets a disparity.
+    /// Method of the disparity map.
     pub method: Method,
-    /// The view whose pixels get a disparity.
+    /// Reference view: the view whose pixels get disparities; the left one by default.
     pub reference: View,
-    /// Whether the right view is made as bright as the left one, as far as the matches tell.
+    /// Whether the right view gets the brightness of the left one, by the relation that the matches show; true by default.
     pub equalise: bool,
-    /// Whether a pair that is visibly not rectified is matched all the same.
+    /// Whether a pair that is measurably not rectified is matched all the same; false by default.
     pub force: bool,
 }
 
@@ -51,7 +51,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Refuses values outside their ranges, before any step begins.
+    /// Checks that all values lie in their ranges.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] with the accepted range.
@@ -66,8 +66,8 @@ impl Config {
         }
     }
 
-    /// The smallest side of a picture that the method takes, in pixels: that of the matching window, or of the census
-    /// transform. The windows of Kamencay's method may lie outside the picture.
+    /// Smallest accepted side of a picture, in pixels: the side of the matching window, or of the census transform. The
+    /// windows of Kamencay's method may lie outside the picture.
     pub(crate) fn smallest_side(&self) -> u32 {
         match &self.method {
             Method::Hsad(parameters) => parameters.smallest_side(),
@@ -75,7 +75,7 @@ impl Config {
         }
     }
 
-    /// Dense matching with these `parameters` in `range`, with the right view's brightness changed first.
+    /// The configuration of dense matching with `parameters` in `range`, with a change of the right view's brightness.
     pub(crate) fn dense(
         &self,
         parameters: &DenseParameters,
@@ -85,7 +85,7 @@ impl Config {
         DenseConfig { range, reference: self.reference, brightness, parameters: *parameters }
     }
 
-    /// Kamencay's method with these `parameters` in `range`, with the right view's brightness changed first.
+    /// The configuration of Kamencay's method with `parameters` in `range`, with a change of the right view's brightness.
     pub(crate) fn kamencay(
         &self,
         parameters: &KamencayParameters,
@@ -96,10 +96,10 @@ impl Config {
     }
 }
 
-/// The least determinant of the Hessian that OpenSURF accepts by default.
+/// Default threshold of OpenSURF for the determinant of the Hessian.
 const OPENSURF_THRESHOLD: f32 = 0.0004;
 
-/// A set of parameters that go together.
+/// A named set of parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
     /// Block matching in windows of 9x9, coarse to fine, checked for uniqueness and, at half the size, from the other view;
@@ -110,10 +110,9 @@ pub enum Preset {
     Balanced,
     /// Semi-global matching along four paths, checked, filled and refined further.
     Quality,
-    /// The paper to the letter: the right view is the reference and is searched for in the left to
-    /// the right only, in 7x7 windows, with a parabola between the nearest matching window and its
-    /// neighbours and no check; orientations are computed. The disparity range, of which the paper does not say where it
-    /// comes from, is found from all matches.
+    /// The paper to the letter: the right view is the reference, its pixels are searched in the left view to the right only,
+    /// in 7x7 windows, with parabola interpolation and no check; interest points have orientations. The paper does not say
+    /// where the disparity range comes from: it is derived from all matches.
     Paper,
 }
 
@@ -135,7 +134,7 @@ const SEMI_GLOBAL: SemiGlobal =
     SemiGlobal { penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 }, paths: Paths::Three };
 
 impl Preset {
-    /// All parameters of the preset.
+    /// Parameters of the pipeline.
     pub fn config(self) -> Config {
         let balanced = Config {
             features: FeatureConfig::default(),
@@ -159,12 +158,12 @@ impl Preset {
         }
     }
 
-    /// Dense matching by the preset in a known `range`, without any change of brightness: for a [`crate::Matcher`].
+    /// The configuration of a [`crate::Matcher`]: dense matching in `range`, without a change of brightness.
     pub fn dense_config(self, range: DisparityRange) -> DenseConfig {
         self.config().dense(&self.dense_parameters(), range, Brightness::SAME)
     }
 
-    /// The preset's parameters of dense matching.
+    /// Parameters of dense matching.
     pub fn dense_parameters(self) -> DenseParameters {
         let balanced = DenseParameters {
             aggregation: Aggregation::Costs(COSTS),

@@ -1,4 +1,4 @@
-//! Everything that can go wrong, each with the value, the limit and the way out.
+//! The errors of this crate. Each message has the value, the limit and the way out.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use crate::size::Size;
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why a call could not do what it was asked.
+/// The reason why a call failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -22,108 +22,108 @@ pub enum Error {
         right: Size,
     },
 
-    /// The picture has no use for the work asked of it, because of its size.
+    /// The picture is too small for a window or filter.
     #[error("a picture of {size} pixels is too small for {what}: {way_out}")]
     TooSmall {
         /// Size of the picture.
         size: Size,
-        /// What was asked.
+        /// The window or filter.
         what: String,
-        /// What to do about it.
+        /// The way out.
         way_out: String,
     },
 
-    /// A buffer for this picture would be larger than the device can bind, or than results that are the same on every
-    /// device and the CPU allow.
+    /// A buffer would exceed the limits of the device, or the limit up to which results are equal on every device and the
+    /// CPU.
     #[error("{what} needs {needed} bytes in one buffer, and there can be at most {limit}: {way_out}")]
     TooLarge {
-        /// What the memory is for.
+        /// The use of the buffer.
         what: String,
-        /// Bytes that are needed.
+        /// Size that is needed, in bytes.
         needed: u64,
-        /// Bytes that are possible.
+        /// Largest possible size, in bytes.
         limit: u64,
-        /// What to do about it.
+        /// The way out.
         way_out: String,
     },
 
     /// A parameter lies outside its range.
     #[error("{name} is {value}, but {expected}")]
     Parameter {
-        /// The parameter's name as its user writes it.
+        /// Name of the parameter: a field, or an option of the command line.
         name: &'static str,
-        /// The value that was given.
+        /// The value.
         value: String,
-        /// What would be accepted.
+        /// The accepted values.
         expected: String,
     },
 
-    /// A buffer or texture of the application cannot serve for its use.
+    /// A buffer, texture or view of the application has the wrong size, format, usage or dimension.
     #[error("{name} is {value}, but {expected}")]
     Resource {
-        /// What the buffer or texture was given as.
+        /// Role of the buffer, texture or view.
         name: &'static str,
-        /// What was given.
+        /// Its property that is wrong.
         value: String,
-        /// What would be accepted.
+        /// The accepted values.
         expected: String,
     },
 
-    /// The picture has more interest points than there is room for.
+    /// The picture has more interest points than the capacity of the list.
     #[error(
         "max_features is {room}, but the picture has {found} interest points: raise max_features, or raise the threshold"
     )]
     TooManyFeatures {
-        /// Interest points in the picture.
+        /// Number of interest points of the picture.
         found: usize,
-        /// Interest points that there is room for: [`crate::FeatureConfig::max_features`].
+        /// Capacity of the list: [`crate::FeatureConfig::max_features`].
         room: u32,
     },
 
-    /// The pair's rows do not correspond, so a search along rows would find nothing but noise.
+    /// The rows of the views do not correspond: a search along rows would find noise.
     #[error("the pair is not rectified: {diagnosis}; rectify it first, or search along rows all the same")]
     NotRectified {
-        /// The figures.
+        /// Measured row errors.
         diagnosis: String,
     },
 
-    /// Too few points of one view were found in the other to tell the disparity range.
+    /// Too few matches for a disparity range.
     #[error("the disparity range could not be found: {reason}; name the range to search")]
     NoRange {
-        /// What was found instead.
+        /// Numbers of matches.
         reason: String,
     },
 
-    /// No adapter at all.
+    /// No adapter.
     #[error(
         "no GPU adapter was found: install a Vulkan driver (Debian and Ubuntu: apt-get install mesa-vulkan-drivers, \
          a driver that needs no GPU)"
     )]
     NoAdapter,
 
-    /// No adapter of the name or index asked for.
+    /// No adapter with the requested name or index.
     #[error("no device matches '{wanted}'; there are: {available}")]
     NoSuchDevice {
-        /// What was asked for.
+        /// The requested name or index.
         wanted: String,
-        /// The devices that exist.
+        /// Names of all adapters.
         available: String,
     },
 
-    /// The device lacks what the kernels need.
+    /// The device lacks a limit or feature, or refuses a resource.
     #[error("the device cannot run this: {0}")]
     Unsupported(String),
 
-    /// The device does not compute what the CPU twins do.
+    /// Results of the device differ from those of the CPU twins.
     #[error(
         "{device} computes wrong results ({what}): use another device or the CPU, and repeat the failure with {command}"
     )]
     WrongResults {
-        /// The device's name.
+        /// Name of the device.
         device: String,
-        /// Which kernel, and in what it is wrong.
+        /// The kernel, and its first difference.
         what: String,
-        /// What repeats it.
+        /// A command that repeats the failure.
         command: String,
     },
 
@@ -131,7 +131,7 @@ pub enum Error {
     #[error("the device ran out of memory for {0}: use a smaller picture or another device")]
     OutOfMemory(String),
 
-    /// The device was lost; it has to be opened anew.
+    /// The device was lost and must be opened again.
     #[error("the device was lost ({0}): open it again")]
     DeviceLost(String),
 
@@ -140,16 +140,16 @@ pub enum Error {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 
-    /// A file's content is not what its format says.
+    /// The content of a file contradicts its format.
     #[error("{}: {reason}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what would be right.
+        /// The contradiction, and the accepted content.
         reason: String,
     },
 }

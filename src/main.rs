@@ -8,7 +8,7 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     without_desktop();
-    // What the library and wgpu log is for those who ask with RUST_LOG; everyone else gets one error.
+    // Log records of the library and of wgpu are shown only if RUST_LOG asks for them; a failure is one message.
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
     match cli::Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,

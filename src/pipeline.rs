@@ -1,4 +1,4 @@
-//! The whole way from two pictures to a disparity map.
+//! The pipeline from two pictures to a disparity map.
 
 use web_time::{Duration, Instant};
 
@@ -18,27 +18,27 @@ use crate::{
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
 
-/// Points are looked for in pictures of at most this many pixels; larger ones are reduced first.
+/// Largest number of pixels of a picture in which interest points are detected; larger pictures are downscaled first.
 const MAX_SPARSE_PIXELS: u64 = 1 << 21;
 
 /// A step of the pipeline, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Both pictures become luma on the device.
+    /// Conversion of both pictures to luma on the backend.
     Luma,
-    /// Interest points are found and described.
+    /// Detection and description of interest points.
     Features,
-    /// They are matched, and the range is found.
+    /// Matching of interest points; disparity range, rectification and brightness from the matches.
     Seeding,
-    /// Every pixel gets a disparity.
+    /// Dense matching, or Kamencay's method.
     Dense,
 }
 
 impl Step {
-    /// All of them.
+    /// All steps, in order.
     pub const ALL: [Self; 4] = [Self::Luma, Self::Features, Self::Seeding, Self::Dense];
 
-    /// Its name in one word.
+    /// Name of the step, one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Luma => "luma",
@@ -49,43 +49,43 @@ impl Step {
     }
 }
 
-/// Where the disparity range came from.
+/// Origin of the disparity range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeSource {
-    /// It was asked for.
+    /// Set by [`Config::range`].
     Asked,
-    /// It was found from the seeds.
+    /// Derived from the seeds.
     Seeds,
-    /// There were too few seeds: a quarter of the picture's width, from [`Config::least`] or 0 on.
+    /// Too few seeds: a quarter of the width of the picture, from [`Config::least`] or 0 upwards.
     Fallback(ThinSupport),
 }
 
-/// All that is known of a pair in the end.
+/// Results of the pipeline.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Interest points of the left and of the right view; with orientations, whatever was asked,
-    /// where those without told nothing of the pair.
+    /// Interest points of the left and of the right view. They have orientations, against
+    /// [`FeatureConfig::upright`], if upright points left rectification unknown and points with orientations did not.
     pub features: [Vec<Feature>; 2],
-    /// What their matches tell.
+    /// Seeds, disparity range, rectification, brightness relation and trust, from the matches of the interest points.
     pub seeding: Seeding,
-    /// The disparities that were searched: none that the picture's width rules out.
+    /// Searched disparity range, without the disparities that the width of the picture rules out.
     pub range: DisparityRange,
-    /// Who named them.
+    /// Origin of the range.
     pub range_source: RangeSource,
-    /// How the right view's brightness was changed before it was matched.
+    /// Change of the right view's brightness before dense matching.
     pub brightness: Brightness,
-    /// The map of the reference view.
+    /// Disparities and confidences of the reference view.
     pub dense: Dense,
-    /// What each step took, building its kernels and waiting for it included.
+    /// Duration of each step, with the compilation of its kernels and the wait for its results.
     pub times: Vec<(Step, Duration)>,
 }
 
-/// Computes everything, calling `begin` at the beginning of each step.
+/// Runs the pipeline on a pair, and calls `begin` at the beginning of each step.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`]; [`Error::Parameter`]; [`Error::TooSmall`] for pictures that hold no window;
-/// [`Error::NotRectified`] unless `config.force`; [`Error::NoRange`] where all that is found lies below
-/// `config.least`; and what the steps report.
+/// [`Error::NotRectified`] unless [`Config::force`]; [`Error::NoRange`] if the range of the seeds lies below
+/// [`Config::least`]; the errors of [`Pair`] and of [`Backend::kamencay`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn run(
     backend: &Backend,
@@ -96,10 +96,10 @@ pub fn run(
     block_on(run_async(backend, views, config, begin))
 }
 
-/// As [`run`], without blocking for longer than the work on the host takes.
+/// The asynchronous [`run`]. It blocks only for work on the host.
 ///
 /// # Errors
-/// As [`run`].
+/// See [`run`].
 pub async fn run_async(
     backend: &Backend,
     (left, right): (&Picture, &Picture),
@@ -129,7 +129,7 @@ pub async fn run_async(
         |features: &[Vec<Feature>; 2]| Seeding::find(sparse.views(), (&features[0], &features[1]), &config.seeding);
     let mut seeding = find(&features)?;
     if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
-        // Views that are turned against each other are recognised only with orientations.
+        // Upright descriptors of views that are rotated against each other do not match.
         let turned = sparse.features(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
         let found = find(&turned)?;
         if found.rectification.verdict != Verdict::Unknown {
@@ -171,7 +171,8 @@ pub async fn run_async(
     Ok(Outcome { features, seeding, range, range_source, brightness, dense, times })
 }
 
-/// The change that makes the right view as bright as the left one; none where what was found is not likely.
+/// The change that gives the right view the brightness of the left one; [`Brightness::SAME`] for a relation outside gains
+/// of 0.1 to 10 and offsets of 255 grey levels.
 pub fn equalising(found: &seeding::BrightnessRelation) -> Brightness {
     if !(0.1..=10.0).contains(&found.gain) || found.offset.abs() > 255.0 {
         return Brightness::SAME;
@@ -180,14 +181,14 @@ pub fn equalising(found: &seeding::BrightnessRelation) -> Brightness {
     Brightness { gain: fixed_point(1.0 / found.gain), offset: fixed_point(-found.offset / found.gain) }
 }
 
-/// The whole number by which a pair is reduced before points are looked for. A few thousand points tell
-/// all there is to tell, and matching them takes time with their square.
+/// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine
+/// range, rectification and brightness, and the time to match points grows with the square of their number.
 pub fn reduction(size: impl Into<Size>) -> u32 {
     let pixels = size.into().pixels();
     (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
 }
 
-/// The part of a range that was found that lies above the limit.
+/// The part of a range from the seeds that lies above `least`.
 fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange> {
     let Some(least) = least.filter(|&least| least > range.min) else { return Ok(range) };
     DisparityRange::inclusive(least, range.last()).map_err(|_| Error::NoRange {

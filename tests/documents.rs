@@ -17,7 +17,7 @@ const PAGES: [&str; 10] = [
 ];
 const FOLDERS: [&str; 7] = ["src/", "shaders/", "tests/", "docs/", "examples/", "data/", "benches/"];
 
-/// What a page names: paths between backticks, and targets of links, relative to the page.
+/// The paths that a page names: between backticks, and as targets of links, relative to the page.
 fn named(page: &str, text: &str) -> Vec<String> {
     let folder = Path::new(page).parent().unwrap();
     let quoted =

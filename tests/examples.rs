@@ -12,7 +12,7 @@ use hsad::{
     io::{color::turbo, load},
 };
 
-/// What an example prints.
+/// The standard output of an example.
 fn run(name: &str, arguments: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").expect("cargo runs the tests");
     let mut command = Command::new(cargo);
@@ -51,7 +51,7 @@ fn embed_draws_the_picture_and_its_disparities() {
     assert!(2 * colors > width * height, "only {colors} pixels differ from the first");
 }
 
-/// What it learns from the features of some frames makes the later ones right: their coverage is that of the first ones.
+/// Range and brightness from the features of some frames serve the later frames: their coverage is that of the first ones.
 #[test]
 fn stream_follows_the_cameras() {
     let text = run("stream", &["32"]);

@@ -1,8 +1,8 @@
-//! The views that a matcher matches.
+//! The input views of a matcher.
 
 use crate::luma::Input;
 
-/// Left and right view on their way into a [`super::Matcher`]: see [`super::Matcher::inputs`].
+/// Left and right view bound to a [`super::Matcher`]: see [`super::Matcher::inputs`].
 #[derive(Debug)]
 pub struct Inputs {
     pub(super) views: [Input; 2],

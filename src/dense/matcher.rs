@@ -1,4 +1,4 @@
-//! The dense half of one pair size: all kernels, all memory, and the order of things.
+//! The matcher of one pair size: kernels, buffers and their plan.
 
 use std::{sync::OnceLock, time::Duration};
 
@@ -24,19 +24,19 @@ use crate::{
     luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
 };
 
-/// A disparity for each pixel of the reference view, and how far it can be trusted.
+/// A disparity map of the reference view, and its confidences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dense {
-    /// Fixed-point disparities; see [`crate::disparity`].
+    /// Disparities in 1/256 px, or [`crate::disparity::NONE`].
     pub disparity: DisparityMap,
-    /// How far a disparity can be trusted, 1 to 255; 0 where there is none, or only what was filled in. Without
-    /// refinement it is the margin by which the winner's cost is below its best rival's, as a share of the
-    /// rival's; with it, 1 to 245, mostly how many of the pixels around share it, and less where the views look unlike.
+    /// Confidence of each disparity, 1 to 255; 0 for no disparity and for filled holes. Without refinement, the margin of
+    /// the winner's cost below its best rival's, as a share of the rival's cost. With refinement, 1 to 245: the number of
+    /// surrounding pixels with a similar disparity, less where the views differ.
     pub confidence: Plane<u8>,
 }
 
 impl Dense {
-    /// The share of pixels, 0 to 1, whose disparity was measured and not filled in.
+    /// Share of pixels with a measured disparity, 0 to 1: neither none nor filled.
     pub fn measured(&self) -> f64 {
         let confidences = self.confidence.data();
         confidences.iter().filter(|&&confidence| confidence > 0).count() as f64 / confidences.len() as f64
@@ -45,16 +45,15 @@ impl Dense {
 
 /// Dense matching of pairs of one size on an application's device.
 ///
-/// It is built once for a size and a configuration; what an application has for it in each frame, textures or buffers, is
-/// prepared once as [`Self::inputs`] and [`Self::outputs`], of which there may be as many as it has frames in flight. Then
-/// [`Self::record`] goes into an encoder: recording submits nothing, maps nothing, writes no buffer by the queue and creates
-/// nothing on the device.
+/// A matcher is built once per size and configuration. [`Self::inputs`] and [`Self::outputs`] bind the application's textures
+/// or buffers once; there may be one set per frame in flight. [`Self::record`] records into an encoder per frame: it submits
+/// nothing, maps nothing, writes no buffer through the queue and creates nothing on the device.
 ///
-/// The disparities that are searched are part of the kernels: for others build another matcher. Only
-/// [`Self::set_brightness`] changes what is there.
+/// The disparity range and all parameters are constants of the kernels: a change needs another matcher. Only the brightness
+/// of the right view can change: [`Self::set_brightness`].
 ///
-/// Pictures whose planes do not fit in one buffer are matched in bands of rows; no result depends
-/// on where they are cut.
+/// Pairs that exceed the device's buffer limits are matched in bands of rows. The result does not depend on where bands are
+/// cut.
 #[derive(Debug)]
 pub struct Matcher {
     gpu: Gpu,
@@ -62,7 +61,7 @@ pub struct Matcher {
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
     plan: Plan,
-    /// Compiled when the first texture needs them.
+    /// Compiled for the first input texture.
     luma_texture: OnceLock<LumaTexture>,
     map_textures: [OnceLock<MapTexture>; 2],
 }
@@ -71,25 +70,26 @@ impl Matcher {
     /// Compiles the kernels and allocates all memory for pairs of `size`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a configuration that cannot be, [`Error::TooLarge`] for a row that
-    /// the device cannot bind, [`Error::Unsupported`] for a limit that it lacks, and what the device says.
+    /// [`Error::Parameter`] for a value of `config` or a `size` outside its range, [`Error::TooLarge`] for a row that exceeds
+    /// the buffer limits, [`Error::Unsupported`] for a limit that the device lacks, [`Error::OutOfMemory`],
+    /// [`Error::DeviceLost`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new(gpu: &Gpu, size: impl Into<Size>, config: &DenseConfig) -> Result<Self> {
         block_on(Self::new_async(gpu, size, config))
     }
 
-    /// As [`Matcher::new`], awaited.
+    /// The asynchronous [`Matcher::new`].
     ///
     /// # Errors
-    /// As [`Matcher::new`].
+    /// See [`Matcher::new`].
     pub async fn new_async(gpu: &Gpu, size: impl Into<Size>, config: &DenseConfig) -> Result<Self> {
         Self::with_band_rows(gpu, size, config, u32::MAX).await
     }
 
-    /// As [`Self::new`], with at most `band_rows` rows at once: less memory for a little more work.
+    /// [`Self::new`] with at most `band_rows` rows per band: less memory, a little more work.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// See [`Self::new`].
     pub async fn with_band_rows(
         gpu: &Gpu,
         size: impl Into<Size>,
@@ -99,7 +99,7 @@ impl Matcher {
         Self::build(gpu, size.into(), config, None, band_rows).await
     }
 
-    /// As [`Self::new`], of packed luma that is on the device already.
+    /// [`Self::new`] with packed luma that is on the device already.
     pub(crate) async fn with_luma(
         gpu: &Gpu,
         size: Size,
@@ -137,37 +137,36 @@ impl Matcher {
         .await
     }
 
-    /// Bytes of device memory that this matcher holds.
+    /// Device memory of this matcher, in bytes.
     pub fn memory(&self) -> u64 {
         self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + self.plan.bytes
     }
 
-    /// In how many bands of rows the pair is matched.
+    /// Number of bands of rows in which a pair is matched.
     pub fn bands(&self) -> usize {
         self.plan.bands
     }
 
-    /// The packed luma of the left and of the right view (see [`crate::luma`]) that is matched: what [`Self::record`]
-    /// writes, and a [`crate::features::Detector`] can read too. Both have `STORAGE`, `COPY_SRC` and
-    /// `COPY_DST`.
+    /// Packed luma of the left and of the right view (see [`crate::luma`]), which [`Self::record`] writes and matches. A
+    /// [`crate::Detector`] can read the same buffers. Usages: `STORAGE`, `COPY_SRC`, `COPY_DST`.
     pub fn luma(&self) -> [&wgpu::Buffer; 2] {
         self.luma.each_ref()
     }
 
-    /// Prepares the conversion of two views to the matcher's [`Self::luma`]; the inputs hold on to the views.
+    /// Binds two views as inputs of this matcher. The inputs keep the textures or buffers alive.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an invalid size, format or usage; [`Error::Unsupported`] with what else the device has
-    /// against it.
+    /// [`Error::Resource`] for an invalid size, format, usage or dimension; [`Error::Unsupported`] for a resource of another
+    /// device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn inputs(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
         block_on(self.inputs_async(left, right))
     }
 
-    /// As [`Matcher::inputs`], awaited.
+    /// The asynchronous [`Matcher::inputs`].
     ///
     /// # Errors
-    /// As [`Matcher::inputs`].
+    /// See [`Matcher::inputs`].
     pub async fn inputs_async(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
         let input =
             |name, source, luma| Input::with_kernel(&self.gpu, name, self.size, source, luma, &self.luma_texture);
@@ -177,20 +176,20 @@ impl Matcher {
         Ok(Inputs { views: [left, right], of: left_luma.clone() })
     }
 
-    /// Prepares the copies of the results to `disparities` and, if they are wanted, to `confidences`: a buffer with
-    /// `COPY_DST` for 0 to 255 per pixel, four per word, in rows of `width.div_ceil(4)` words. The outputs hold on to both.
+    /// Binds the destination of the disparities and, optionally, a buffer with `COPY_DST` for the confidences: one byte per
+    /// pixel, in rows of `width.div_ceil(4)` `u32`s. The outputs keep both alive.
     ///
     /// # Errors
-    /// As [`Self::inputs`].
+    /// See [`Self::inputs`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn outputs(&self, disparities: Destination<'_>, confidences: Option<&wgpu::Buffer>) -> Result<Outputs> {
         block_on(self.outputs_async(disparities, confidences))
     }
 
-    /// As [`Matcher::outputs`], awaited.
+    /// The asynchronous [`Matcher::outputs`].
     ///
     /// # Errors
-    /// As [`Matcher::outputs`].
+    /// See [`Matcher::outputs`].
     pub async fn outputs_async(
         &self,
         disparities: Destination<'_>,
@@ -222,7 +221,7 @@ impl Matcher {
         Ok(outputs)
     }
 
-    /// What brings each of the plan's answers to a texture.
+    /// One dispatch per copy of disparities in the plan, into a texture.
     async fn to_texture(&self, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
         let (name, format) = ("the disparities", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
@@ -248,16 +247,15 @@ impl Matcher {
         })
         .await
         .map_err(|error| refused_view(name, error))?;
-        // Only now that nothing is wrong with it.
+        // A kernel that failed validation is not kept.
         stored.get_or_init(|| kernel);
         Ok(dispatches)
     }
 
-    /// Changes the right view's brightness from now on, as [`DenseConfig::brightness`] does from the beginning: for what the
-    /// queue is given after this. On a lost device nothing changes.
+    /// Replaces [`DenseConfig::brightness`] for everything submitted after this call. No effect on a lost device.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for what 32 bits do not hold.
+    /// [`Error::Parameter`] if a result would exceed 32 bits.
     pub fn set_brightness(&self, brightness: Brightness) -> Result<()> {
         brightness.validate()?;
         self.gpu.queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));
@@ -276,7 +274,7 @@ impl Matcher {
         self.record_luma(encoder, outputs);
     }
 
-    /// As [`Self::record`], of the luma that the caller has written to [`Self::luma`].
+    /// Records the matching of the luma that the caller has written to [`Self::luma`].
     ///
     /// # Panics
     /// If `outputs` were prepared for another matcher.
@@ -285,7 +283,7 @@ impl Matcher {
         self.plan.record(encoder, outputs, None);
     }
 
-    /// Submits the matching of what [`Self::luma`] holds, and waits for the result.
+    /// Submits the matching of [`Self::luma`], and waits for the result.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
@@ -294,19 +292,19 @@ impl Matcher {
         block_on(self.run_async())
     }
 
-    /// As [`Matcher::run`], awaited.
+    /// The asynchronous [`Matcher::run`].
     ///
     /// # Errors
-    /// As [`Matcher::run`].
+    /// See [`Matcher::run`].
     pub async fn run_async(&self) -> Result<Dense> {
         self.run_timed(None).await
     }
 
-    /// As [`Self::run`], with what each kernel took by the device's own clock, in the order in which they ran; of the
-    /// first 2,048, and without copies and clears.
+    /// [`Self::run`] with the duration of each of the first 2,048 kernels by the device's clock, in order of execution;
+    /// copies and clears are not timed.
     ///
     /// # Errors
-    /// As [`Self::run`], and [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
+    /// See [`Self::run`]; [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
     pub async fn profile(&self) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
         let kernels: Vec<_> = self.plan.kernels().collect();
         let stopwatch = guarded(&self.gpu, "timestamps", || Stopwatch::new(&self.gpu, kernels.len())).await?;
@@ -314,8 +312,7 @@ impl Matcher {
         Ok((dense, kernels.into_iter().zip(stopwatch.read(&self.gpu.queue).await?).collect()))
     }
 
-    /// Memory of the host for the map of a frame, prepared once like [`Self::outputs`]; for as many frames in flight there
-    /// are as many.
+    /// Allocates staging buffers for the map of one frame; one readback per frame in flight.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], [`Error::DeviceLost`].

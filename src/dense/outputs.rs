@@ -1,36 +1,36 @@
-//! Where a matcher's answers go.
+//! The destinations of a matcher's results.
 
 use super::word_copy::WordCopy;
 use crate::gpu::Dispatch;
 
-/// Where the caller wants the disparities.
+/// Destination of the disparities.
 #[derive(Clone, Copy, Debug)]
 pub enum Destination<'a> {
-    /// In a buffer with `COPY_DST`: an `i32` a pixel, row by row, in 1/256 px or [`crate::disparity::NONE`].
+    /// A buffer with `COPY_DST`: one `i32` per pixel, row by row, in 1/256 px or [`crate::disparity::NONE`].
     Buffer(&'a wgpu::Buffer),
-    /// In a texture with `STORAGE_BINDING`, in the mip level that the view shows, which has the pair's size. `R32Sint`
-    /// holds what a buffer does, `R32Float` pixels or [`crate::disparity::NONE_IN_PIXELS`].
+    /// A texture with `STORAGE_BINDING`; the mip level that the view shows has the size of the pair. `R32Sint`: values as in
+    /// a buffer. `R32Float`: pixels, or [`crate::disparity::NONE_IN_PIXELS`].
     Texture(&'a wgpu::TextureView),
 }
 
-/// Where the answers go, prepared for a [`super::Matcher`]: see [`super::Matcher::outputs`].
+/// Destinations bound to a [`super::Matcher`]: see [`super::Matcher::outputs`].
 #[derive(Debug)]
 pub struct Outputs {
     pub(super) disparities: Disparities,
     pub(super) confidences: Option<wgpu::Buffer>,
-    /// The first buffer of the matcher that it was made for.
+    /// First buffer of the matcher that the outputs were prepared for.
     pub(super) of: wgpu::Buffer,
 }
 
 #[derive(Debug)]
 pub(super) enum Disparities {
     Buffer(wgpu::Buffer),
-    /// For each of the plan's answers what brings it to the texture.
+    /// One dispatch per copy of disparities in the plan.
     Texture(Vec<Dispatch>),
 }
 
 impl Disparities {
-    /// Where they go, if not to a texture.
+    /// The buffer, unless the destination is a texture.
     pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
         match self {
             Self::Buffer(buffer) => Some(buffer),
@@ -40,7 +40,7 @@ impl Disparities {
 }
 
 impl Outputs {
-    /// Records what `copy`, the plan's answer of this `index`, is to be for the caller.
+    /// Records `copy`, the plan's copy of disparities number `index`, to the destination.
     pub(super) fn record_disparities(&self, encoder: &mut wgpu::CommandEncoder, copy: &WordCopy, index: usize) {
         match &self.disparities {
             Disparities::Buffer(to) => copy.record(encoder, to),
@@ -48,7 +48,7 @@ impl Outputs {
         }
     }
 
-    /// Records a copy of confidences, if they are wanted.
+    /// Records a copy of confidences, if there is a buffer for them.
     pub(super) fn record_confidences(&self, encoder: &mut wgpu::CommandEncoder, copy: &WordCopy) {
         if let Some(to) = &self.confidences {
             copy.record(encoder, to);

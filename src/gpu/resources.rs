@@ -1,11 +1,11 @@
-//! The buffers and textures of an application: refused where they do not fit their use.
+//! Checks of an application's buffers and textures.
 
 use crate::{
     error::{Error, Result},
     image::Size,
 };
 
-/// Refuses a buffer that is too small or may not be used so.
+/// Refuses a buffer that is too small or lacks a usage.
 pub(crate) fn check_buffer(
     name: &'static str,
     buffer: &wgpu::Buffer,
@@ -23,9 +23,9 @@ pub(crate) fn check_buffer(
     Ok(())
 }
 
-/// Refuses a texture of which no view has `size` pixels, or that may not be used so.
+/// Refuses a texture without a mip level of `size` pixels, or without a usage.
 ///
-/// Which of its mip levels a view shows cannot be told: any that has the size will do.
+/// wgpu does not tell which mip level a view shows.
 pub(crate) fn check_texture(
     name: &'static str,
     texture: &wgpu::Texture,
@@ -35,7 +35,7 @@ pub(crate) fn check_texture(
     let refuse = |value, expected| Err(Error::Resource { name, value, expected });
     if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
         let value = format!("a texture of {:?} with {} samples", texture.dimension(), texture.sample_count());
-        return refuse(value, "it must be a plain one of two dimensions".into());
+        return refuse(value, "it must have two dimensions and one sample".into());
     }
     let level = |level: u32| ((texture.width() >> level).max(1), (texture.height() >> level).max(1));
     if !(0..texture.mip_level_count()).any(|mip| level(mip) == (width, height)) {

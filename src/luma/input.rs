@@ -1,4 +1,4 @@
-//! A view of the pair as an application has it, and how it becomes packed luma.
+//! The conversion of an application's texture or buffer to packed luma.
 
 use std::sync::OnceLock;
 
@@ -12,22 +12,21 @@ use crate::{
     image::Size,
 };
 
-/// Where a picture is.
+/// A picture on a device.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<'a> {
-    /// Packed luma (see [`crate::luma`]) in a buffer with `COPY_SRC`. Like every buffer of a submission, it must be neither
-    /// mapped nor destroyed then.
+    /// Packed luma (see [`crate::luma`]) in a buffer with `COPY_SRC`. The buffer must be neither mapped nor destroyed at
+    /// submission.
     Luma(&'a wgpu::Buffer),
-    /// A view of a texture with `TEXTURE_BINDING`, in the texture's own format: one of [`TexelFormat::ALL`], which says
-    /// how they become luma. It shows a mip level that has the pair's size, its first one; wgpu does not tell which that is,
-    /// so that only a texture without such a level is refused.
+    /// A view of a texture with `TEXTURE_BINDING`, in the texture's format, one of [`TexelFormat::ALL`]. The first mip level
+    /// of the view must have the size of the pair; wgpu does not tell which level a view shows, so that only a texture
+    /// without any such level is refused.
     Texture(&'a wgpu::TextureView),
-    /// The same in another of the formats that the texture may be seen in, with or without sRGB, which the view itself does
-    /// not tell.
+    /// A view in another of the texture's view formats, which differs in sRGB alone. wgpu does not tell a view's format.
     TextureAs(&'a wgpu::TextureView, wgpu::TextureFormat),
 }
 
-/// A picture on its way into packed luma.
+/// A prepared conversion to packed luma.
 #[derive(Debug)]
 pub struct Input(Conversion);
 
@@ -38,13 +37,13 @@ enum Conversion {
 }
 
 impl Input {
-    /// Prepares the conversion of `source`, of `size` pixels, to packed luma in the first bytes of `luma`, which needs
-    /// `STORAGE` and `COPY_DST`. The input holds on to both. A [`crate::Matcher`] has inputs of its own; this one is for a
-    /// [`crate::features::Detector`] alone.
+    /// Prepares the conversion of `source`, of `size` pixels, to packed luma at the beginning of `luma`, a buffer with
+    /// `STORAGE` and `COPY_DST`. The input keeps both alive. It serves a [`crate::Detector`] without a [`crate::Matcher`],
+    /// whose own inputs do the same.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an invalid size, format or usage; [`Error::Unsupported`] with what else the device has
-    /// against it.
+    /// [`Error::Resource`] for an invalid size, format, usage or dimension; [`Error::Unsupported`] for a resource of another
+    /// device.
     pub async fn new(gpu: &Gpu, size: impl Into<Size>, source: Source<'_>, luma: &wgpu::Buffer) -> Result<Self> {
         let size = size.into();
         check_packed(luma, size)?;
@@ -52,7 +51,7 @@ impl Input {
         Self::with_kernel(gpu, "the picture", size, source, luma, &OnceLock::new()).await
     }
 
-    /// As [`Self::new`] for the picture called `name` in errors, with a kernel that is compiled at most once.
+    /// [`Self::new`] for a picture called `name` in errors, with a kernel that is compiled at most once.
     pub(crate) async fn with_kernel(
         gpu: &Gpu,
         name: &'static str,
@@ -93,12 +92,12 @@ impl Input {
         })
         .await
         .map_err(|error| refused_view(name, error))?;
-        // Only now that nothing is wrong with it.
+        // A kernel that failed validation is not kept.
         kernel.get_or_init(|| compiled);
         Self(Conversion::Run(dispatch)).tried(gpu, name).await
     }
 
-    /// Itself, if the device has nothing against its being recorded.
+    /// The input, if the device accepts its recording.
     async fn tried(self, gpu: &Gpu, name: &str) -> Result<Self> {
         try_recording(gpu, name, |encoder| self.record(encoder)).await?;
         Ok(self)

@@ -41,7 +41,7 @@ unsafe impl GlobalAlloc for Recorder {
     }
 }
 
-/// What `work` returns, and the largest number of bytes that this thread asked for at once meanwhile.
+/// The result of `work`, and the size of the largest allocation of this thread meanwhile, in bytes.
 pub fn largest_allocation<T>(work: impl FnOnce() -> T) -> (T, usize) {
     LARGEST.set(0);
     let result = work();

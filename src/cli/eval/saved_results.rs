@@ -54,7 +54,7 @@ impl SavedResults {
         }))
     }
 
-    /// The same dependencies, in the subfolder `name`.
+    /// Saved results in the subfolder `name`, with the same dependencies.
     #[must_use]
     pub fn below(mut self, name: &str) -> Self {
         if let Some(location) = &mut self.0 {

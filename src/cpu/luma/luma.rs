@@ -15,7 +15,7 @@ pub fn luma(width: u32, height: u32, rgba: &[u8]) -> Result<Luma> {
         return Err(Error::Parameter {
             name: "picture",
             value: format!("{} bytes", rgba.len()),
-            expected: "RGBA takes four bytes a pixel".into(),
+            expected: "RGBA takes four bytes per pixel".into(),
         });
     }
     Luma::new((width, height), pixels.iter().map(|&[r, g, b, _]| luma_of([r, g, b])).collect())

@@ -186,7 +186,7 @@ fn what_cannot_be_is_refused_by_both_alike() {
     ));
 }
 
-/// The same adapter with the smallest limits that WebGPU knows.
+/// A device of the same adapter with the smallest limits of WebGPU.
 fn strict() -> Gpu {
     with_limits(wgpu::Limits::downlevel_defaults())
 }
