@@ -254,13 +254,7 @@ impl Trial for FeaturesTrial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::array::Comparison;
-
-    /// Whether a comparison finds a fault.
-    fn differ(actual: &[Array], expected: &[Array]) -> bool {
-        let differs = |(actual, expected)| Comparison::new(actual, expected).fault.is_some();
-        actual.iter().zip(expected).any(differs)
-    }
+    use crate::verify::trials::features::differ;
 
     /// Orientations that last digits decide are left out of the trial; they must be few.
     #[test]

@@ -256,13 +256,7 @@ impl Trial for WorkgroupsTrial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::array::Comparison;
-
-    /// Whether a comparison finds a fault.
-    fn differ(actual: &[Array], expected: &[Array]) -> bool {
-        let differs = |(actual, expected)| Comparison::new(actual, expected).fault.is_some();
-        actual.iter().zip(expected).any(differs)
-    }
+    use crate::verify::trials::features::differ;
 
     #[test]
     fn a_changed_keypoint_is_seen() {
