@@ -87,10 +87,10 @@ pub enum Error {
         diagnosis: String,
     },
 
-    /// Too few matches for a disparity range.
+    /// No disparity range: too few matches, or a range below [`crate::Config::least`].
     #[error("the disparity range could not be found: {reason}; name the range to search")]
     NoRange {
-        /// Numbers of matches.
+        /// Numbers of matches, or the range.
         reason: String,
     },
 

@@ -73,7 +73,7 @@
 //!     seeding::{Seeding, SeedingConfig},
 //! };
 //!
-//! /// Matches the next frames as bright as this one was found to be, and returns the range that this one shows.
+//! /// Sets the brightness of later frames from this frame, and returns the disparity range of this frame.
 //! fn learn(matcher: &Matcher, views: (&Luma, &Luma), points: (&[Feature], &[Feature])) -> hsad::Result<DisparityRange> {
 //!     let seeding = Seeding::find(views, points, &SeedingConfig::default())?;
 //!     if let Some(relation) = &seeding.brightness {
@@ -110,7 +110,7 @@
 //! - Pixel centres lie at whole numbers, the origin at the top left, x to the right, y down; planes are row-major.
 //! - A left pixel `(x, y)` with disparity `d` corresponds to the right pixel `(x - d, y)`; disparities may be negative.
 //! - A disparity is an `i32` in 1/256 px ([`disparity::SCALE`]); [`disparity::NONE`] says 'none', 0 is a disparity.
-//! - Ties go to the smaller disparity; lists are in raster order of their scale.
+//! - Ties go to the smaller disparity; features are sorted by octave, layer, row and column.
 //! - Dense matching, the integral image, the determinant of the Hessian and the list of interest points are integer
 //!   arithmetic: the same bytes on every device and on none. Sub-sample positions, orientations and descriptors are `f32`,
 //!   with tolerances stated where they are verified.

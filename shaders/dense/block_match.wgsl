@@ -48,7 +48,7 @@ struct Params {
     // log2 of the side of a cell of `ranges`, in pixels.
     cell_shift: u32,
     cell_columns: u32,
-    // Excess of the rival's cost over the winner's cost, at least, in per cent.
+    // Uniqueness: least excess of the rival's cost over the winner's cost, in per cent.
     uniqueness: u32,
     // Index of the first u32 of the confidences in `matches`.
     confidence_offset: u32,

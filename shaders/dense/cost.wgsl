@@ -15,15 +15,15 @@
 //   NEW                 first element of `b` that a step loads
 //   CENSUS_WEIGHT       weight of the Hamming distance, per bit, in 2^-WEIGHT_BITS
 //   DIFFERENCE_WEIGHT   weight of the difference of lumas, in 2^-WEIGHT_BITS
-//   DIFFERENCE_LIMIT    largest difference of lumas, in grey levels
+//   DIFFERENCE_LIMIT    truncation of the difference of lumas, in grey levels
 //   GRADIENT_WEIGHT     weight of the difference of gradients, in 2^-WEIGHT_BITS
-//   GRADIENT_LIMIT      largest difference of gradients, in grey levels
+//   GRADIENT_LIMIT      truncation of the difference of gradients, in grey levels
 //   WEIGHT_BITS         fractional bits of the weights
 //   MAX_COST            largest cost
 
 struct Params {
     width: u32,
-    // Rows of the band, and the picture row where the band begins.
+    // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
     min_disparity: i32,

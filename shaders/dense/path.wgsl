@@ -9,7 +9,7 @@
 
 struct Params {
     width: u32,
-    // Rows of the band, and the picture row where the band begins.
+    // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
     // Index in `paths` where the band begins in the volume of this path.

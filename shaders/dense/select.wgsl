@@ -14,7 +14,7 @@
 
 struct Params {
     width: u32,
-    // Rows of the band, and the picture row where the band begins.
+    // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
     // Index in `paths` where the band begins in the volume of this path.
@@ -29,7 +29,7 @@ struct Params {
     volume_words: u32,
     min_disparity: i32,
     disparities: u32,
-    // Excess of the rival's cost over the winner's cost, at least, in per cent.
+    // Uniqueness: least excess of the rival's cost over the winner's cost, in per cent.
     uniqueness: u32,
     // Indices in `matches` of the first u32 of the confidences and of the first key.
     confidence_offset: u32,

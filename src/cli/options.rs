@@ -143,7 +143,8 @@ pub struct MatchOptions {
     /// Reference view, whose pixels get a disparity [default: left, paper right]
     #[arg(long, value_parser = views())]
     reference: Option<View>,
-    /// Uniqueness margin: per cent by which the second best disparity must cost more than the best, 0 to 100
+    /// Uniqueness margin: per cent by which the best rival, two or more disparities away, must cost more than the best
+    /// disparity, 0 to 100
     /// [default: 1, fast 10, paper 0]
     #[arg(long, value_name = "PERCENT")]
     uniqueness: Option<u32>,
@@ -155,8 +156,8 @@ pub struct MatchOptions {
     #[arg(long)]
     no_lr_check: bool,
     /// Match the other view separately for the left-right consistency check, instead of deriving its
-    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time;
-    /// balanced and quality only (for fast see --whole-range)
+    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time; block
+    /// matching over the whole range always does so, and fast only with --whole-range
     #[arg(long, conflicts_with = "no_lr_check")]
     search_both_views: bool,
     /// Leave holes where the left-right consistency check fails or too few neighbours agree
@@ -253,6 +254,13 @@ impl MatchOptions {
                     });
                 }
                 let search = if whole_range { Search::Whole } else { search };
+                if search_both_views && search == Search::CoarseToFine {
+                    return Err(Error::Parameter {
+                        name: "preset",
+                        value: self.preset.unwrap_or_default().to_string(),
+                        expected: "--search-both-views needs --whole-range with fast".into(),
+                    });
+                }
                 Ok(Aggregation::Sad { side: window.unwrap_or(side), search })
             }
             Aggregation::Costs(_) if window.is_some() => {

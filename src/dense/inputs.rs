@@ -7,5 +7,5 @@ use crate::luma::Input;
 pub struct Inputs {
     pub(super) views: [Input; 2],
     /// First buffer of the matcher that the inputs were prepared for.
-    pub(super) of: wgpu::Buffer,
+    pub(super) matcher: wgpu::Buffer,
 }

@@ -173,7 +173,7 @@ impl Matcher {
         let [left_luma, right_luma] = self.luma();
         let left = input("the left view", left, left_luma).await?;
         let right = input("the right view", right, right_luma).await?;
-        Ok(Inputs { views: [left, right], of: left_luma.clone() })
+        Ok(Inputs { views: [left, right], matcher: left_luma.clone() })
     }
 
     /// Binds the destination of the disparities and, optionally, a buffer with `COPY_DST` for the confidences: one byte per
@@ -211,12 +211,12 @@ impl Matcher {
         for (name, buffer) in [("the disparities", disparities.buffer()), ("the confidences", confidences)] {
             let Some(buffer) = buffer else { continue };
             if buffers.contains(buffer) {
-                let value = "a buffer that has another use here".into();
-                return Err(Error::Resource { name, value, expected: "it needs one of its own".into() });
+                let value = "a buffer that the matcher also uses for luma or for the other result".into();
+                return Err(Error::Resource { name, value, expected: "it needs a buffer of its own".into() });
             }
             buffers.push(buffer.clone());
         }
-        let outputs = Outputs { disparities, confidences: confidences.cloned(), of: self.luma[0].clone() };
+        let outputs = Outputs { disparities, confidences: confidences.cloned(), matcher: self.luma[0].clone() };
         try_recording(&self.gpu, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
         Ok(outputs)
     }
@@ -236,13 +236,13 @@ impl Matcher {
         let (kernel, dispatches) = guarded(&self.gpu, name, || {
             let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(&self.gpu, texel));
             let width = self.size.width;
-            let dispatch = |answer: &WordCopy| {
+            let dispatch = |copy: &WordCopy| {
                 let row = |word: u64| (word / u64::from(width)) as u32;
-                let (rows, first_row) = (row(answer.words), row(answer.to_word));
-                let rows = MapRows { width, rows, first_word: answer.from_word as u32, first_row };
-                kernel.prepare(rows, &answer.from, view)
+                let (rows, first_row) = (row(copy.words), row(copy.to_word));
+                let rows = MapRows { width, rows, first_word: copy.from_word as u32, first_row };
+                kernel.prepare(rows, &copy.from, view)
             };
-            let dispatches = self.plan.answers().map(dispatch).collect();
+            let dispatches = self.plan.copies_of_disparities().map(dispatch).collect();
             Ok((kernel, dispatches))
         })
         .await
@@ -269,7 +269,7 @@ impl Matcher {
     /// # Panics
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
-        assert_eq!(inputs.of, self.luma[0], "the inputs were prepared for another matcher");
+        assert_eq!(inputs.matcher, self.luma[0], "the inputs were prepared for another matcher");
         inputs.views.iter().for_each(|view| view.record(encoder));
         self.record_luma(encoder, outputs);
     }
@@ -279,7 +279,7 @@ impl Matcher {
     /// # Panics
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        assert_eq!(outputs.of, self.luma[0], "the outputs were prepared for another matcher");
+        assert_eq!(outputs.matcher, self.luma[0], "the outputs were prepared for another matcher");
         self.plan.record(encoder, outputs, None);
     }
 

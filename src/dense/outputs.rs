@@ -19,7 +19,7 @@ pub struct Outputs {
     pub(super) disparities: Disparities,
     pub(super) confidences: Option<wgpu::Buffer>,
     /// First buffer of the matcher that the outputs were prepared for.
-    pub(super) of: wgpu::Buffer,
+    pub(super) matcher: wgpu::Buffer,
 }
 
 #[derive(Debug)]

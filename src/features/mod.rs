@@ -1,4 +1,5 @@
-//! Sparse features (paper, steps 2-4): interest points of a picture, each with a descriptor.
+//! Features (paper, steps 2-4): interest points of a picture, each with a descriptor. On a device they are a list of
+//! keypoints and a buffer of descriptors.
 //!
 //! luma -> integral image -> determinant of the Hessian -> non-maximum suppression -> orientation
 //! -> descriptor. Bay, Ess, Tuytelaars, Van Gool: 'Speeded-Up Robust Features (SURF)', CVIU 110,

@@ -52,7 +52,7 @@ pub(crate) fn check_limits(gpu: &Gpu) -> Result<()> {
     match REQUIRED_LIMITS.iter().find(|limit| (limit.of)(&limits) < limit.least) {
         None => Ok(()),
         Some(limit) => Err(Error::Unsupported(format!(
-            "its limit {} is {}, and {} are needed: request it with wgpu::Limits::downlevel_defaults() or more",
+            "its limit {} is {}, but at least {} is needed: request it with wgpu::Limits::downlevel_defaults() or more",
             limit.name,
             (limit.of)(&limits),
             limit.least

@@ -71,7 +71,8 @@ impl Input {
                 let own = view.texture().format();
                 if format.remove_srgb_suffix() != own.remove_srgb_suffix() {
                     let value = format!("a view in the format {format:?}");
-                    let expected = format!("the texture has {own:?}, and its views that with or without sRGB");
+                    let expected =
+                        format!("the texture has {own:?}: a view's format is that, with or without the suffix Srgb");
                     return Err(Error::Resource { name, value, expected });
                 }
                 (view, format)

@@ -67,6 +67,7 @@ fn values_out_of_range() {
         (&["--cost-window", "33"], "the window of costs is 33"),
         (&["--cost-window", "3", "--preset", "fast"], "preset is fast, but --paths and --cost-window need balanced"),
         (&["--paths", "0", "--preset", "paper"], "preset is paper"),
+        (&["--search-both-views", "--preset", "fast"], "preset is fast, but --search-both-views needs --whole-range"),
         (&["--disparities", "0"], "the number of disparities is 0"),
         (&["--disparities", "4000000000"], "the disparity range is 0 to 3999999999"),
         (&["--min-disparity", "-2000000000"], "the disparity range is -2000000000"),

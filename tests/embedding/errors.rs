@@ -73,8 +73,8 @@ fn resources_that_will_not_do() {
     output(Destination::Buffer(&good), Some(&small), &["the confidences", "1200 bytes are needed"]);
     output(Destination::Buffer(&good), Some(&usage), &["the confidences", "needs BufferUsages(COPY_DST)"]);
     output(Destination::Buffer(&good), Some(&elsewhere.buffer(BYTES, copied)), &["device"]);
-    output(Destination::Buffer(&good), Some(&good), &["the confidences", "another use here"]);
-    output(Destination::Buffer(&good), Some(matcher.luma()[1]), &["the confidences", "another use here"]);
+    output(Destination::Buffer(&good), Some(&good), &["the confidences", "a buffer of its own"]);
+    output(Destination::Buffer(&good), Some(matcher.luma()[1]), &["the confidences", "a buffer of its own"]);
     let map = TextureFormat::R32Float;
     let unsigned = texture(TextureFormat::R32Uint, SIZE, written);
     output(Destination::Texture(&unsigned), None, &["format R32Uint", "R32Sint", "R32Float"]);
@@ -192,7 +192,7 @@ fn a_limit_that_is_too_low_is_named() {
         for error in [matcher, detector.expect_err("an error")] {
             assert!(matches!(error, Error::Unsupported(_)));
             let text = error.to_string();
-            assert!(text.contains(&format!("limit {name} is {has}, and {} are needed", limit.least)), "{text}");
+            assert!(text.contains(&format!("limit {name} is {has}, but at least {} is needed", limit.least)), "{text}");
         }
         assert_eq!(existing(), before);
         application.assert_quiet();

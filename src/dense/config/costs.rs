@@ -68,8 +68,8 @@ impl CostAggregation {
         self.window / 2
     }
 
-    /// Penalties of the path kernels. Without stored paths only the last path is followed, at no penalty, which leaves
-    /// all costs unchanged.
+    /// Penalties of the path kernels. Without semi-global aggregation the selection kernel follows one path without
+    /// penalties, which leaves all costs unchanged.
     pub(in crate::dense) fn followed_with(&self) -> Penalties {
         self.semi_global.map_or(Penalties::NONE, |semi_global| semi_global.penalties)
     }

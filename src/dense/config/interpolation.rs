@@ -10,7 +10,7 @@ pub enum Interpolation {
     None,
     /// The vertex of a parabola: (c- - c+) / 2(c- - 2c + c+).
     Parabola,
-    /// The tip of two lines of equal slope: (c- - c+) / 2(max(c-, c+) - c). Shimizu and Okutomi: 'Precise sub-pixel
+    /// The intersection of two lines of opposite slope: (c- - c+) / 2(max(c-, c+) - c). Shimizu and Okutomi: 'Precise sub-pixel
     /// estimation on area-based matching', ICCV 2001: absolute differences have a pointed minimum, which a parabola pulls
     /// to whole pixels.
     #[default]

@@ -36,7 +36,7 @@ pub enum Search {
     /// The whole range.
     Whole,
     /// Per cell of 16x16 pixels, the disparities that a half-size map shows in and around the cell, with a margin of 2;
-    /// the whole range where that map has holes. Objects too thin or too small for the half-size map can be lost. The
+    /// the whole range if less than 10 % of them have a disparity. Objects too thin or too small for the half-size map can be lost. The
     /// other view is searched at half the size only.
     CoarseToFine,
 }

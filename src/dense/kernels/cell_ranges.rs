@@ -10,7 +10,7 @@ use crate::{
 /// a cell without texture passes for unique.
 pub const MARGIN: u32 = 2;
 
-/// Percentage of a cell's pixels that must have a disparity; with fewer the whole range is searched.
+/// Least percentage of pixels with a disparity in a cell and around it; below, the whole range is searched.
 pub const LEAST: u32 = 10;
 
 /// Side of the blocks of the map that determine a range, in pixels: each contributes its third smallest and its third

@@ -82,7 +82,7 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
-    // Without paths the code contains no penalties and no sum.
+    // Without stored paths and penalties the text contains neither.
     for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
         for interpolation in Interpolation::ALL {
             stages.extend(

@@ -143,7 +143,7 @@ impl Plan {
     }
 
     /// The copies to the caller's disparities, in order; together they cover every pixel once.
-    pub(super) fn answers(&self) -> impl Iterator<Item = &WordCopy> {
+    pub(super) fn copies_of_disparities(&self) -> impl Iterator<Item = &WordCopy> {
         self.steps.iter().filter_map(|step| match step {
             Step::Copy(copy) if matches!(copy.to, CopyTarget::Disparities) => Some(copy),
             _ => None,
