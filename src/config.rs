@@ -9,6 +9,7 @@ use crate::{
     error::Result,
     features::FeatureConfig,
     kamencay::{KamencayConfig, KamencayParameters},
+    matching::MatchConfig,
     names::names,
     seeding::SeedingConfig,
 };
@@ -57,7 +58,8 @@ impl Config {
     /// [`crate::Error::Parameter`] with the accepted range.
     pub fn validate(&self) -> Result<()> {
         self.features.validate()?;
-        self.seeding.matching.validate()?;
+        let in_row = MatchConfig { max_dy: Some(self.seeding.max_dy), ..self.seeding.matching.clone() };
+        in_row.validate()?;
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
         match &self.method {
@@ -118,7 +120,7 @@ pub enum Preset {
 
 names!(Preset, "the preset", { Fast => "fast", Balanced => "balanced", Quality => "quality", Paper => "paper" });
 
-/// Measured on real pairs: see docs/benchmarks.md.
+/// Costs of the semi-global presets, tuned on real pairs: see docs/benchmarks.md.
 const COSTS: CostAggregation = CostAggregation {
     cost: Cost {
         census: 20,
@@ -233,6 +235,14 @@ mod tests {
         let bad = [
             (with(even), "window is 8"),
             (with(|parameters| parameters.uniqueness = 101), "uniqueness is 101"),
+            (
+                with(|parameters| parameters.refinement.as_mut().unwrap().medians_after = u32::MAX),
+                "medians_after is 4294967295",
+            ),
+            (
+                Config { seeding: SeedingConfig { max_dy: f32::NAN, ..Default::default() }, ..balanced() },
+                "max_dy is NaN",
+            ),
             (Config { least: Some(i32::MIN), ..balanced() }, "the disparity range"),
             (
                 Config { range: Some(DisparityRange { min: 0, count: 0 }), ..balanced() },

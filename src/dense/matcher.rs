@@ -255,7 +255,7 @@ impl Matcher {
     /// Replaces [`DenseConfig::brightness`] for everything submitted after this call. No effect on a lost device.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if a result would exceed 32 bits.
+    /// [`Error::Parameter`] for a gain or offset outside its range.
     pub fn set_brightness(&self, brightness: Brightness) -> Result<()> {
         brightness.validate()?;
         self.gpu.queue.write_buffer(&self.plan.brightness(View::Right), 0, bytemuck::bytes_of(&brightness));

@@ -13,18 +13,19 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchConfig {
     /// Ratio test: largest ratio of the distance of the nearest descriptor to that of its rival, above 0, at most 1;
-    /// 1 keeps every nearest descriptor.
+    /// 1 keeps every nearest descriptor, 0.85 by default.
     pub ratio: f32,
-    /// Keep a match only if each of the two features is the other's nearest.
+    /// Whether a match needs each of its two features to be the nearest of the other; true by default.
     pub mutual: bool,
-    /// Match bright blobs only with bright ones and dark blobs only with dark ones (the sign of the Laplacian; Bay et
-    /// al. 2008, section 4.3).
+    /// Whether bright blobs match only bright ones and dark blobs only dark ones (sign of the Laplacian; Bay et al. 2008,
+    /// section 4.3); true by default.
     pub same_contrast: bool,
-    /// Largest row difference of a match, in pixels, at least 0; only for pairs known to be rectified. `None`: any row.
+    /// Largest row difference of a match, in pixels, at least 0; only for pairs known to be rectified. `None`, the default: any row.
     pub max_dy: Option<f32>,
-    /// Range of the disparity (left column minus right column) of a match, in pixels, both ends included. `None`: any.
+    /// Range of the disparity (left column minus right column) of a match, in pixels, both ends included. `None`, the default:
+    /// any.
     pub disparities: Option<DisparityRange>,
-    /// Number of matches to keep, the most confident ones, at least 1. `None`: all.
+    /// Number of matches to keep, the most confident ones, at least 1. `None`, the default: all.
     pub strongest: Option<usize>,
 }
 

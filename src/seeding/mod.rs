@@ -31,7 +31,7 @@ const DEVIATIONS: f32 = 1.4826;
 pub struct SeedingConfig {
     /// Parameters of descriptor matching. `max_dy` is ignored, since the row differences have to be measured first.
     pub matching: MatchConfig,
-    /// Largest row difference of two features in a rectified pair, in pixels.
+    /// Largest row difference of two features in a rectified pair, in pixels, at least 0; 1.5 by default.
     pub max_dy: f32,
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{array::Array, bench::Bench, dice::Dice};
+pub(super) use super::{array::Array, bench::Bench, dice::Dice};
 use crate::{error::Result, image::Size};
 
 /// A trial: one kernel or a sequence of kernels, with all inputs.

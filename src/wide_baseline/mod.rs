@@ -27,12 +27,12 @@ use detector_cache::DetectorCache;
 /// Parameters of [`match_views`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct WideBaselineConfig {
-    /// Parameters of the interest point detector and descriptor.
+    /// Parameters of the interest point detector and descriptor; by default a threshold of 0.00003.
     pub features: FeatureConfig,
     /// Parameters of descriptor matching. `max_dy` is set to 1.5 px if rows correspond after the alignment.
     pub matching: MatchConfig,
-    /// Rotate, scale and smooth the views so that they become alike, and keep only matches that their neighbours
-    /// support. Otherwise the views are matched as they are, in any row.
+    /// Whether the views are rotated, scaled and smoothed until they are alike, and only matches that their neighbours
+    /// support are kept; true by default. Otherwise the views are matched as they are, in any row.
     pub adapt: bool,
 }
 

@@ -200,8 +200,7 @@ impl DenseParameters {
             }
             Aggregation::Costs(costs) => costs.validate()?,
         }
-        let support = self.refinement.map_or(0, |refinement| refinement.support);
-        check(support <= 49, "support", support, "it must be 0 to 49 pixels")?;
+        self.refinement.map_or(Ok(()), |refinement| refinement.validate())?;
         check(self.uniqueness <= 100, "uniqueness", self.uniqueness, "it must be 0 to 100 per cent")?;
         let consistency = self.consistency.unwrap_or(0);
         check(consistency <= 1 << 16, "consistency", consistency, "it must be at most 65536 (256 px)")

@@ -4,7 +4,7 @@ use super::cost::MAX_COST;
 use crate::error::{Result, check_range};
 
 /// The penalties for changes of disparity along a path (P1 and P2 of Hirschmueller, PAMI 2008, eq. 13), in units of the
-/// matching cost.
+/// matching cost. The presets balanced and quality have `p1` 16, `p2` 80, `least_p2` 16 and `p2_scale` 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Penalties {
     /// P1: penalty for a change of 1 px, 0 to `least_p2`.

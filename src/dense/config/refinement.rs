@@ -1,5 +1,7 @@
 //! The refinement of a map after its checks.
 
+use crate::error::{Result, check_range};
+
 /// A weighted median filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Median {
@@ -18,17 +20,24 @@ pub struct Refinement {
     /// Least support: the number of pixels of the 7x7 window, the centre included, whose disparities must lie within 1
     /// px of the centre's for the centre to keep its disparity, 0 to 49.
     pub support: u32,
-    /// Number of passes of a 5x5 weighted median before filling.
+    /// Number of passes of a 5x5 weighted median before filling, 0 to 100.
     pub medians_before: u32,
     /// Whether holes are filled.
     pub fill: bool,
     /// Whether filled pixels are filtered by a 9x9 weighted median.
     pub median_of_filled: bool,
-    /// Number of passes of a 5x5 weighted median over all pixels after filling; a plain 3x3 median follows.
+    /// Number of passes of a 5x5 weighted median over all pixels after filling, 0 to 100; a plain 3x3 median follows.
     pub medians_after: u32,
 }
 
 impl Refinement {
+    /// Checks that all values lie in their ranges.
+    pub(super) fn validate(&self) -> Result<()> {
+        check_range("support", self.support, 0..=49)?;
+        check_range("medians_before", self.medians_before, 0..=100)?;
+        check_range("medians_after", self.medians_after, 0..=100)
+    }
+
     /// The filters before filling.
     pub fn before(&self) -> impl Iterator<Item = Median> + use<> {
         (0..self.medians_before).map(|_| Median { radius: 2, halving_bits: 3, holes_only: false })

@@ -14,10 +14,8 @@ use crate::{
         kernels::{Belief, BeliefCost, BeliefReduce, BeliefSelect, GridBuffers, MeanShift, Turn, Winner},
     },
     verify::{
-        array::Array,
-        bench::Bench,
-        dice::{Dice, smooth_noise},
-        trial::{Subject, Trial},
+        dice::smooth_noise,
+        trial::{Array, Bench, Dice, Subject, Trial},
     },
 };
 

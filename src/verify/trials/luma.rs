@@ -10,12 +10,7 @@ use crate::{
         kernels::{luma::RgbaToLuma, luma_texture::LumaTexture},
         pack, packed_bytes,
     },
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -8,12 +8,7 @@ use crate::{
     error::Result,
     image::{Luma, Plane, Size},
     luma::pack,
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

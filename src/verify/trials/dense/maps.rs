@@ -15,12 +15,7 @@ use crate::{
     gpu::uniform_buffer,
     image::{Luma, Plane, Size},
     luma::pack,
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

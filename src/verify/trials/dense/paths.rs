@@ -15,10 +15,8 @@ use crate::{
     image::{Luma, Plane, Size},
     luma::pack,
     verify::{
-        array::Array,
-        bench::Bench,
-        dice::{Dice, smooth_noise},
-        trial::{Subject, Trial},
+        dice::smooth_noise,
+        trial::{Array, Bench, Dice, Subject, Trial},
     },
 };
 

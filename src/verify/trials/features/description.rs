@@ -19,12 +19,7 @@ use crate::{
     },
     gpu::block_on,
     image::{Luma, Size},
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

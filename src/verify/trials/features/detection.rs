@@ -19,12 +19,7 @@ use crate::{
         keypoints::{DISPATCH_WIDTH, Keypoint, KeypointList},
     },
     image::{Luma, Plane, Size},
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[

@@ -5,12 +5,7 @@ use crate::{
     error::Result,
     features::kernels::{integral_columns::IntegralColumns, integral_rows::IntegralRows},
     image::{Luma, Plane, Size},
-    verify::{
-        array::Array,
-        bench::Bench,
-        dice::Dice,
-        trial::{Subject, Trial},
-    },
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
