@@ -59,6 +59,7 @@ cargo clippy --all-targets -- -D warnings
 cargo clippy --lib --no-default-features -- -D warnings
 
 say 'documentation'
+RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --no-default-features
 RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 
 say 'tests'

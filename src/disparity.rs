@@ -11,7 +11,7 @@ pub const SCALE: i32 = 256;
 /// The sentinel of a pixel without disparity. Zero is a disparity like any other.
 pub const NONE: i32 = i32::MIN;
 
-/// The sentinel in a texture of disparities in pixels: [`NONE`] / [`SCALE`], below every disparity. It is finite
+/// The sentinel in a texture of disparities in pixels: [`NONE`] / [`SCALE`], below every disparity; finite
 /// because WGSL does not guarantee infinities and NaN.
 pub const NONE_IN_PIXELS: f32 = NONE as f32 / SCALE as f32;
 

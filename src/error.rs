@@ -50,7 +50,7 @@ pub enum Error {
     /// A parameter lies outside its range.
     #[error("{name} is {value}, but {expected}")]
     Parameter {
-        /// Name of the parameter: a field, or an option of the command line.
+        /// Name of the parameter.
         name: &'static str,
         /// The value.
         value: String,

@@ -8,8 +8,9 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     without_desktop();
-    // Log records of the library and of wgpu are shown only if RUST_LOG asks for them; a failure is one message.
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
+    // Log records of the library and of wgpu are shown only if RUST_LOG asks for them, but for a dump that failed: a failure
+    // is one message.
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off,hsad::gpu::dump=warn")).init();
     match cli::Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

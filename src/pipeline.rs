@@ -63,7 +63,7 @@ pub enum RangeSource {
 /// Results of the pipeline.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Interest points of the left and of the right view. They have orientations, against
+    /// Interest points of the left and of the right view. Points with orientations, against
     /// [`FeatureConfig::upright`], if upright points left rectification unknown and points with orientations did not.
     pub features: [Vec<Feature>; 2],
     /// Seeds, disparity range, rectification, brightness relation and trust, from the matches of the interest points.
@@ -96,7 +96,7 @@ pub fn run(
     block_on(run_async(backend, views, config, begin))
 }
 
-/// The asynchronous [`run`]. It blocks only for work on the host.
+/// The asynchronous [`run`]. Work on the host blocks.
 ///
 /// # Errors
 /// See [`run`].

@@ -167,6 +167,6 @@ fn stream() -> Result<(), AnyError> {
     run(&mut stream, &scene, false, tell)?;
     let overlapped = run(&mut stream, &scene, false, drop)?;
     let in_turn = run(&mut stream, &scene, true, drop)?;
-    println!("{overlapped:.1} frames a second; {in_turn:.1} with each one waited for");
+    println!("{overlapped:.1} frames per second; {in_turn:.1} with each one waited for");
     Ok(())
 }

@@ -111,7 +111,7 @@ impl Slot {
         let seeding = match seeded {
             false => None,
             true => {
-                let [left, right] = self.features.each_ref().map(|readback| block_on(readback.read()));
+                let [left, right] = self.features.each_mut().map(|readback| block_on(readback.read()));
                 let views = frame.each_ref().map(Picture::luma);
                 Some(Seeding::find((&views[0], &views[1]), (&left?, &right?), &SeedingConfig::default())?)
             }

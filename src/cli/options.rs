@@ -258,7 +258,7 @@ impl MatchOptions {
                     return Err(Error::Parameter {
                         name: "preset",
                         value: self.preset.unwrap_or_default().to_string(),
-                        expected: "--search-both-views needs --whole-range with fast".into(),
+                        expected: "it checks against a half-size map: --whole-range searches both views".into(),
                     });
                 }
                 Ok(Aggregation::Sad { side: window.unwrap_or(side), search })

@@ -132,7 +132,7 @@ impl Verify {
                 if ran < cases.len() { "; the device was lost, and the remaining cases were not run" } else { "" };
             bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, self.output.display());
         }
-        print(&format!("all {ran} cases pass, in {}\n", time(seconds)))?;
+        print(&format!("{ran} of {ran} cases pass, in {}\n", time(seconds)))?;
         Ok(())
     }
 

@@ -18,9 +18,36 @@ pub fn in_options(error: &Error) -> String {
             "{device} computes wrong results ({what}): use another device (hsad devices) or --device cpu, and repeat \
              the failure with {command}"
         ),
+        Error::TooManyFeatures { found, room } => format!(
+            "--max-features is {room}, but the picture has {found} interest points: raise --max-features, or raise \
+             --threshold"
+        ),
+        Error::Parameter { name, value, expected } => match OPTIONS.iter().find(|(parameter, _)| parameter == name) {
+            Some((_, option)) => format!("{option} is {value}, but {expected}"),
+            None => error.to_string(),
+        },
         _ => error.to_string(),
     }
 }
+
+/// Parameters of the library, and the options that set them.
+const OPTIONS: [(&str, &str); 15] = [
+    ("condition", "--condition"),
+    ("max-lr-difference", "--max-lr-difference"),
+    ("max_features", "--max-features"),
+    ("octaves", "--octaves"),
+    ("only", "--only"),
+    ("preset", "--preset"),
+    ("ratio", "--ratio"),
+    ("size", "--size"),
+    ("step", "--step"),
+    ("strongest", "--strongest"),
+    ("the number of disparities", "--disparities"),
+    ("the window of costs", "--cost-window"),
+    ("threshold", "--threshold"),
+    ("uniqueness", "--uniqueness"),
+    ("window", "--window"),
+];
 
 #[cfg(test)]
 mod tests {
@@ -30,10 +57,14 @@ mod tests {
     fn errors_name_the_options_that_help() {
         let no_range = Error::NoRange { reason: "3 points".into() };
         let wrong = Error::WrongResults { device: "GPU".into(), what: "pad".into(), command: "hsad verify".into() };
+        let even = |name| Error::Parameter { name, value: "8".into(), expected: "it must be odd".into() };
         for (error, options) in [
             (Error::NotRectified { diagnosis: "turned".into() }, &["turned", "--force"][..]),
             (no_range, &["3 points", "--min-disparity", "--disparities"]),
             (wrong, &["GPU", "pad", "--device cpu", "hsad verify"]),
+            (Error::TooManyFeatures { found: 9, room: 5 }, &["--max-features is 5", "9", "--threshold"]),
+            (even("the window of costs"), &["--cost-window is 8, but it must be odd"]),
+            (even("another"), &["another is 8, but it must be odd"]),
             (Error::NoAdapter, &[&Error::NoAdapter.to_string()]),
         ] {
             let text = in_options(&error);

@@ -6,6 +6,6 @@ use crate::luma::Input;
 #[derive(Debug)]
 pub struct Inputs {
     pub(super) views: [Input; 2],
-    /// First buffer of the matcher that the inputs were prepared for.
+    /// First luma buffer of the matcher that the inputs were prepared for.
     pub(super) matcher: wgpu::Buffer,
 }

@@ -15,10 +15,10 @@ use super::{
 use crate::gpu::block_on;
 use crate::{
     disparity::DisparityMap,
-    error::{Error, Result},
+    error::{Error, Result, check_range},
     gpu::{
-        Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded,
-        refused_view, storage_buffer, try_recording,
+        Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded, refused,
+        storage_buffer, try_recording,
     },
     image::{Luma, Plane, Size},
     luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
@@ -118,6 +118,7 @@ impl Matcher {
     ) -> Result<Self> {
         config.validate()?;
         check_size(size)?;
+        check_range("band_rows", band_rows, 1..=u32::MAX)?;
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
             let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
@@ -156,8 +157,7 @@ impl Matcher {
     /// Binds two views as inputs of this matcher. The inputs keep the textures or buffers alive.
     ///
     /// # Errors
-    /// [`Error::Resource`] for an invalid size, format, usage or dimension; [`Error::Unsupported`] for a resource of another
-    /// device.
+    /// [`Error::Resource`] for an invalid size, format, usage or dimension, and for a resource of another device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn inputs(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
         block_on(self.inputs_async(left, right))
@@ -170,6 +170,18 @@ impl Matcher {
     pub async fn inputs_async(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
         let input =
             |name, source, luma| Input::with_kernel(&self.gpu, name, self.size, source, luma, &self.luma_texture);
+        for (name, source) in [("the left view", &left), ("the right view", &right)] {
+            if let Source::Luma(buffer) = source
+                && self.luma.contains(*buffer)
+            {
+                let value = "the matcher's own luma".into();
+                return Err(Error::Resource {
+                    name,
+                    value,
+                    expected: "`record_luma` matches that without inputs".into(),
+                });
+            }
+        }
         let [left_luma, right_luma] = self.luma();
         let left = input("the left view", left, left_luma).await?;
         let right = input("the right view", right, right_luma).await?;
@@ -197,18 +209,18 @@ impl Matcher {
     ) -> Result<Outputs> {
         let Size { width, height } = self.size;
         if let Some(buffer) = confidences {
-            check_buffer("the confidences", buffer, packed_bytes((width, height)), wgpu::BufferUsages::COPY_DST)?;
+            check_buffer("the confidence map", buffer, packed_bytes((width, height)), wgpu::BufferUsages::COPY_DST)?;
         }
         let disparities = match disparities {
             Destination::Buffer(buffer) => {
                 let bytes = 4 * u64::from(width) * u64::from(height);
-                check_buffer("the disparities", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
+                check_buffer("the disparity map", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
                 Disparities::Buffer(buffer.clone())
             }
             Destination::Texture(view) => Disparities::Texture(self.to_texture(view).await?),
         };
         let mut buffers = self.luma.to_vec();
-        for (name, buffer) in [("the disparities", disparities.buffer()), ("the confidences", confidences)] {
+        for (name, buffer) in [("the disparity map", disparities.buffer()), ("the confidence map", confidences)] {
             let Some(buffer) = buffer else { continue };
             if buffers.contains(buffer) {
                 let value = "a buffer that the matcher also uses for luma or for the other result".into();
@@ -217,13 +229,15 @@ impl Matcher {
             buffers.push(buffer.clone());
         }
         let outputs = Outputs { disparities, confidences: confidences.cloned(), matcher: self.luma[0].clone() };
-        try_recording(&self.gpu, "the results", |encoder| self.plan.record(encoder, &outputs, None)).await?;
+        try_recording(&self.gpu, "the outputs", |encoder| self.plan.record(encoder, &outputs, None))
+            .await
+            .map_err(|error| refused("the outputs", error))?;
         Ok(outputs)
     }
 
     /// One dispatch per copy of disparities in the plan, into a texture.
     async fn to_texture(&self, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
-        let (name, format) = ("the disparities", view.texture().format());
+        let (name, format) = ("the disparity map", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
             return Err(Error::Resource {
                 name,
@@ -246,7 +260,7 @@ impl Matcher {
             Ok((kernel, dispatches))
         })
         .await
-        .map_err(|error| refused_view(name, error))?;
+        .map_err(|error| refused(name, error))?;
         // A kernel that failed validation is not kept.
         stored.get_or_init(|| kernel);
         Ok(dispatches)
@@ -269,7 +283,7 @@ impl Matcher {
     /// # Panics
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
-        assert_eq!(inputs.matcher, self.luma[0], "the inputs were prepared for another matcher");
+        assert!(inputs.matcher == self.luma[0], "inputs of another matcher: use this matcher's `inputs`");
         inputs.views.iter().for_each(|view| view.record(encoder));
         self.record_luma(encoder, outputs);
     }
@@ -279,7 +293,7 @@ impl Matcher {
     /// # Panics
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        assert_eq!(outputs.matcher, self.luma[0], "the outputs were prepared for another matcher");
+        assert!(outputs.matcher == self.luma[0], "outputs of another matcher: use this matcher's `outputs`");
         self.plan.record(encoder, outputs, None);
     }
 
@@ -329,7 +343,7 @@ impl Matcher {
     }
 
     async fn run_timed(&self, stopwatch: Option<&Stopwatch>) -> Result<Dense> {
-        let (gpu, readback) = (&self.gpu, self.readback().await?);
+        let (gpu, mut readback) = (&self.gpu, self.readback().await?);
         guarded(gpu, "dense matching", || {
             let mut encoder = gpu.encoder("dense");
             self.plan.record(&mut encoder, readback.outputs(), stopwatch);

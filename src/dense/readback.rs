@@ -28,7 +28,7 @@ impl MapReadback {
     ///
     /// # Errors
     /// [`crate::Error::DeviceLost`].
-    pub async fn read(&self) -> Result<Dense> {
+    pub async fn read(&mut self) -> Result<Dense> {
         let Size { width, height } = self.size;
         let disparity = Plane::new((width, height), self.disparities.read(width as usize * height as usize).await?)?;
         let words: Vec<u32> = self.confidences.read(width.div_ceil(4) as usize * height as usize).await?;

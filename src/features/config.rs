@@ -11,7 +11,7 @@ pub struct FeatureConfig {
     /// Octaves, 1 to 5; 5 by default. Each has four filter sizes, in pixels: 9 15 21 27, 15 27 39 51, 27 51 75 99, 51
     /// 99 147 195, 99 195 291 387.
     pub octaves: u32,
-    /// Sampling step of the first octave, 1 or 2 pixels; 1 by default. It doubles with each octave.
+    /// Sampling step of the first octave, 1 or 2 pixels; 1 by default; it doubles with each octave.
     pub step: u32,
     /// Least determinant of the Hessian, above 0 and at most 1, on OpenSURF's scale (grey values 0 to 1); 0.0001 by
     /// default. OpenSURF's own default is 0.0004; the default here finds nearly twice the matches, and a larger share

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, storage_buffer, try_recording},
+    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, refused, storage_buffer, try_recording},
     image::{Luma, Size},
     luma::{check_packed, check_size, upload},
 };
@@ -45,7 +45,7 @@ pub struct Detector {
 pub struct DetectorInput {
     dispatch: Dispatch,
     /// Integral image of the detector that the input was prepared for.
-    of: wgpu::Buffer,
+    detector: wgpu::Buffer,
 }
 
 /// The values of one descriptor.
@@ -100,14 +100,16 @@ impl Detector {
     /// The input keeps the buffer alive.
     ///
     /// # Errors
-    /// [`Error::Resource`] if the buffer is too small or lacks the usage; [`Error::Unsupported`] with
-    /// any other validation error of the device.
+    /// [`Error::Resource`] if the buffer is too small, lacks the usage or belongs to another device.
     pub async fn input(&self, luma: &wgpu::Buffer) -> Result<DetectorInput> {
         check_packed(luma, self.size)?;
         let prepare = || Ok(self.integral_rows.prepare(self.size, luma, &self.integral));
-        let dispatch = guarded(&self.gpu, "the picture", prepare).await?;
-        let input = DetectorInput { dispatch, of: self.integral.clone() };
-        try_recording(&self.gpu, "the picture", |encoder| self.record(encoder, &input)).await?;
+        let dispatch =
+            guarded(&self.gpu, "the picture", prepare).await.map_err(|error| refused("the picture", error))?;
+        let input = DetectorInput { dispatch, detector: self.integral.clone() };
+        try_recording(&self.gpu, "the picture", |encoder| self.record(encoder, &input))
+            .await
+            .map_err(|error| refused("the picture", error))?;
         Ok(input)
     }
 
@@ -143,7 +145,7 @@ impl Detector {
     /// # Panics
     /// If `input` was prepared for another detector.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
-        assert_eq!(input.of, self.integral, "the input was prepared for another detector");
+        assert!(input.detector == self.integral, "input of another detector: use this detector's `input`");
         encoder.clear_buffer(self.list.found(), 0, None);
         input.dispatch.record(encoder);
         self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
@@ -161,6 +163,7 @@ impl Detector {
             let readback = |label, buffer: &wgpu::Buffer| Readback::new(gpu, label, buffer.size());
             Ok(FeatureReadback {
                 capacity: self.list.capacity(),
+                detector: self.integral.clone(),
                 count: readback("number of keypoints", self.list.found()),
                 keypoints: readback("keypoints", self.list.keypoints()),
                 descriptors: readback("descriptors", &self.descriptors),
@@ -170,7 +173,11 @@ impl Detector {
     }
 
     /// Records the copy of the features to `readback`, after [`Self::record`].
+    ///
+    /// # Panics
+    /// If `readback` was allocated for another detector.
     pub fn record_readback(&self, encoder: &mut wgpu::CommandEncoder, readback: &FeatureReadback) {
+        assert!(readback.detector == self.integral, "readback of another detector: use this detector's `readback`");
         readback.count.record(encoder, self.list.found());
         readback.keypoints.record(encoder, self.list.keypoints());
         readback.descriptors.record(encoder, &self.descriptors);

@@ -10,6 +10,8 @@ use crate::{
 #[derive(Debug)]
 pub struct FeatureReadback {
     pub(super) capacity: u32,
+    /// Integral image of the detector that the readback was allocated for.
+    pub(super) detector: wgpu::Buffer,
     pub(super) count: Readback,
     pub(super) keypoints: Readback,
     pub(super) descriptors: Readback,
@@ -22,7 +24,7 @@ impl FeatureReadback {
     /// # Errors
     /// [`Error::TooManyFeatures`] if more features were found than [`super::FeatureConfig::max_features`];
     /// [`Error::DeviceLost`].
-    pub async fn read(&self) -> Result<Vec<Feature>> {
+    pub async fn read(&mut self) -> Result<Vec<Feature>> {
         let keypoint_count = self.count.read::<u32>(1).await?[0];
         if keypoint_count > self.capacity {
             return Err(Error::TooManyFeatures { found: keypoint_count as usize, room: self.capacity });

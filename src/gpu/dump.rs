@@ -6,7 +6,7 @@ use crate::fnv::fnv1a;
 
 /// Writes `text` of stage `name` to the folder that `HSAD_DUMP_WGSL` names, if it is set.
 pub(super) fn dump(name: &str, text: &str) {
-    let Some(folder) = std::env::var_os("HSAD_DUMP_WGSL") else { return };
+    let Some(folder) = std::env::var_os("HSAD_DUMP_WGSL").filter(|folder| !folder.is_empty()) else { return };
     if let Err(error) = write(Path::new(&folder), name, text) {
         log::warn!("HSAD_DUMP_WGSL: {name} is not written to {}: {error}", folder.display());
     }

@@ -68,7 +68,7 @@ impl Gpu {
                 })?
             }
             DeviceChoice::Cpu => {
-                return Err(Error::NoSuchDevice { wanted: "cpu".into(), available: "adapters only".into() });
+                return Err(Error::Unsupported("the CPU twins are no GPU: Backend::open takes this choice".into()));
             }
         };
         let adapter = adapters.swap_remove(index);

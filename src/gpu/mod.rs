@@ -36,7 +36,7 @@ pub(crate) use kernel::{Bindable, Dispatch, Kernel};
 pub(crate) use limits::{BUFFER_LIMITS, check_limits};
 pub use limits::{Limit, REQUIRED_LIMITS};
 pub(crate) use readback::Readback;
-pub(crate) use resources::{check_buffer, check_texture, refused_view};
+pub(crate) use resources::{check_buffer, check_texture, refused};
 pub(crate) use shader_struct::shader_struct;
 pub(crate) use shader_struct::{Member, ShaderType, Shape};
 pub(crate) use stage::{Binding, Stage};

@@ -48,12 +48,23 @@ impl Readback {
         }
         let bytes = (count * size_of::<T>()) as u64;
         let slice = self.staging.slice(..bytes.next_multiple_of(4));
-        mapped(slice, &self.device).await.map_err(Error::DeviceLost)?;
+        let unmap = Unmap(&self.staging);
+        if let Err(reason) = mapped(slice, &self.device).await {
+            // Nothing is mapped.
+            std::mem::forget(unmap);
+            return Err(Error::DeviceLost(reason));
+        }
         let view = slice.get_mapped_range().map_err(|e| Error::DeviceLost(e.to_string()))?;
-        let values = bytemuck::pod_collect_to_vec::<u8, T>(&view[..bytes as usize]);
-        drop(view);
-        self.staging.unmap();
-        Ok(values)
+        Ok(bytemuck::pod_collect_to_vec::<u8, T>(&view[..bytes as usize]))
+    }
+}
+
+/// Unmaps a buffer at the end of a read, also of a read that is cancelled while its mapping is pending.
+struct Unmap<'a>(&'a wgpu::Buffer);
+
+impl Drop for Unmap<'_> {
+    fn drop(&mut self) {
+        self.0.unmap();
     }
 }
 

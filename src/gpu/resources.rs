@@ -48,14 +48,13 @@ pub(crate) fn check_texture(
     Ok(())
 }
 
-/// The error of a view that passed [`check_texture`] and that the device refuses, with the properties of a view that wgpu
-/// does not tell.
-pub(crate) fn refused_view(name: &'static str, error: Error) -> Error {
+/// The error of a resource that the device refuses: it names the properties that wgpu does not tell beforehand.
+pub(crate) fn refused(name: &'static str, error: Error) -> Error {
     let Error::Unsupported(reason) = error else { return error };
     let reason = reason.strip_prefix(name).and_then(|reason| reason.strip_prefix(": ")).unwrap_or(&reason);
     Error::Resource {
         name,
-        value: format!("a view that cannot be used ({reason})"),
-        expected: "it must show one layer and one mip level in two dimensions, on the device of this matcher".into(),
+        value: format!("refused by the device ({reason})"),
+        expected: "it must belong to this device and not be destroyed, and a view must have two dimensions".into(),
     }
 }

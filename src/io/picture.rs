@@ -16,7 +16,7 @@ impl Picture {
     pub fn from_rgba8(size: impl Into<Size>, rgba: &[u8]) -> Result<Self> {
         let size = size.into();
         let (pixels, rest) = rgba.as_chunks();
-        let expected = format!("{size} pixels need {} bytes", 4 * size.pixels());
+        let expected = format!("{size} pixels need {} bytes", 4 * u128::from(size.pixels()));
         check(
             rest.is_empty() && pixels.len() as u64 == size.pixels(),
             "rgba",
@@ -46,6 +46,18 @@ impl Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_of_another_size_are_refused() {
+        assert_eq!(
+            Picture::from_rgba8((1, 2), &[1, 2, 3, 4, 5, 6, 7, 8]).unwrap().data(),
+            [[1, 2, 3, 4], [5, 6, 7, 8]]
+        );
+        for (size, bytes) in [((1, 2), 7), ((1, 2), 9), ((1, 2), 4), ((u32::MAX, u32::MAX), 0)] {
+            let error = Picture::from_rgba8(size, &vec![0; bytes]).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("rgba is {bytes} bytes")), "{error}");
+        }
+    }
 
     #[test]
     fn luma_ignores_alpha() {

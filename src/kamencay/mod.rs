@@ -6,7 +6,7 @@
 //! the segments go into the matching, in which sums of absolute differences in local windows are refined by belief
 //! propagation; the segments' disparities make the final map.
 //!
-//! colours and gradients -> mean shift -> [`segments`](Segments) and [`Links`] -> data cost -> belief propagation from
+//! colours and gradients -> mean shift -> segments and links -> data cost -> belief propagation from
 //! coarse to fine -> selection -> a disparity for each segment. The steps on pictures and volumes are kernels with CPU
 //! twins; segments and their disparities are computed on the host, by the same code for both. All arithmetic is
 //! integer, and the result is the same on every device and on the CPU.
@@ -32,7 +32,7 @@
 //! - The paper has no confidences. Here a confidence has three equal parts: the share of the segment's pixels that agree
 //!   with its plane, the margin of the belief, and the normalised cross-correlation of the views in a window of 9x9.
 //!   Without the cross-correlation the most confident pixels of a whole segment can be wrong.
-//! - Pictures whose messages do not fit in 128 MiB are solved in strips of rows that overlap by [`OVERLAP`] rows.
+//! - Pictures whose messages do not fit in 128 MiB are solved in strips of rows that overlap by 16 rows.
 //!   Strips show in the result, but depend on nothing but the size and the range.
 
 mod alikeness;

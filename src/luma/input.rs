@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, refused_view, try_recording},
+    gpu::{Dispatch, Gpu, check_buffer, check_limits, check_texture, guarded, refused, try_recording},
     image::Size,
 };
 
@@ -38,12 +38,11 @@ enum Conversion {
 
 impl Input {
     /// Prepares the conversion of `source`, of `size` pixels, to packed luma at the beginning of `luma`, a buffer with
-    /// `STORAGE` and `COPY_DST`. The input keeps both alive. It serves a [`crate::Detector`] without a [`crate::Matcher`],
+    /// `STORAGE` and `COPY_DST`. The input keeps both alive and serves a [`crate::Detector`] without a [`crate::Matcher`],
     /// whose own inputs do the same.
     ///
     /// # Errors
-    /// [`Error::Resource`] for an invalid size, format, usage or dimension; [`Error::Unsupported`] for a resource of another
-    /// device.
+    /// [`Error::Resource`] for an invalid size, format, usage or dimension, and for a resource of another device.
     pub async fn new(gpu: &Gpu, size: impl Into<Size>, source: Source<'_>, luma: &wgpu::Buffer) -> Result<Self> {
         let size = size.into();
         check_packed(luma, size)?;
@@ -92,15 +91,15 @@ impl Input {
             Ok((compiled, dispatch))
         })
         .await
-        .map_err(|error| refused_view(name, error))?;
+        .map_err(|error| refused(name, error))?;
         // A kernel that failed validation is not kept.
         kernel.get_or_init(|| compiled);
         Self(Conversion::Run(dispatch)).tried(gpu, name).await
     }
 
     /// The input, if the device accepts its recording.
-    async fn tried(self, gpu: &Gpu, name: &str) -> Result<Self> {
-        try_recording(gpu, name, |encoder| self.record(encoder)).await?;
+    async fn tried(self, gpu: &Gpu, name: &'static str) -> Result<Self> {
+        try_recording(gpu, name, |encoder| self.record(encoder)).await.map_err(|error| refused(name, error))?;
         Ok(self)
     }
 

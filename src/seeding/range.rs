@@ -12,7 +12,7 @@ use crate::{
 const NEEDED: usize = 20;
 /// Margin beyond the farthest of many seeds, as a share of the seeds' extent.
 const FAR_MARGIN: f32 = 0.15;
-/// Margin beyond the nearest of many seeds, as a share of the seeds' extent. It is larger than at the far end, because
+/// Margin beyond the nearest of many seeds, as a share of the seeds' extent; larger than at the far end, because
 /// near objects are large, smooth and often cut by the border, and so bear few features or none. The nine scenes need
 /// up to 0.34 here and 0.08 at the far end.
 const NEAR_MARGIN: f32 = 0.4;

@@ -65,16 +65,16 @@ fn resources_that_will_not_do() {
     let copied = BufferUsages::COPY_DST;
     let good = application.buffer(BYTES, copied);
     let small = application.buffer(BYTES - 4, copied);
-    output(Destination::Buffer(&small), None, &["the disparities", "4796 bytes", "4800 bytes are needed"]);
+    output(Destination::Buffer(&small), None, &["the disparity map", "4796 bytes", "4800 bytes are needed"]);
     let usage = application.buffer(BYTES, BufferUsages::STORAGE);
-    output(Destination::Buffer(&usage), None, &["the disparities", "needs BufferUsages(COPY_DST)"]);
+    output(Destination::Buffer(&usage), None, &["the disparity map", "needs BufferUsages(COPY_DST)"]);
     output(Destination::Buffer(&elsewhere.buffer(BYTES, copied)), None, &["device"]);
     let small = application.buffer(BYTES / 4 - 4, copied);
-    output(Destination::Buffer(&good), Some(&small), &["the confidences", "1200 bytes are needed"]);
-    output(Destination::Buffer(&good), Some(&usage), &["the confidences", "needs BufferUsages(COPY_DST)"]);
+    output(Destination::Buffer(&good), Some(&small), &["the confidence map", "1200 bytes are needed"]);
+    output(Destination::Buffer(&good), Some(&usage), &["the confidence map", "needs BufferUsages(COPY_DST)"]);
     output(Destination::Buffer(&good), Some(&elsewhere.buffer(BYTES, copied)), &["device"]);
-    output(Destination::Buffer(&good), Some(&good), &["the confidences", "a buffer of its own"]);
-    output(Destination::Buffer(&good), Some(matcher.luma()[1]), &["the confidences", "a buffer of its own"]);
+    output(Destination::Buffer(&good), Some(&good), &["the confidence map", "a buffer of its own"]);
+    output(Destination::Buffer(&good), Some(matcher.luma()[1]), &["the confidence map", "a buffer of its own"]);
     let map = TextureFormat::R32Float;
     let unsigned = texture(TextureFormat::R32Uint, SIZE, written);
     output(Destination::Texture(&unsigned), None, &["format R32Uint", "R32Sint", "R32Float"]);
@@ -123,8 +123,8 @@ fn views_and_instances_that_will_not_do() {
     let error = matcher.inputs(Source::Texture(&layers), Source::Texture(&plain)).unwrap_err().to_string();
     assert_eq!(
         error,
-        "the left view is a view that cannot be used (Texture binding 1 expects dimension = D2, but given a view with \
-         dimension = D2Array), but it must show one layer and one mip level in two dimensions, on the device of this matcher"
+        "the left view is refused by the device (Texture binding 1 expects dimension = D2, but given a view with \
+         dimension = D2Array), but it must belong to this device and not be destroyed, and a view must have two dimensions"
     );
 
     let foreign = Application::of_instance(&Instance::new(InstanceDescriptor::new_without_display_handle()));
@@ -139,7 +139,7 @@ fn views_and_instances_that_will_not_do() {
 }
 
 #[test]
-#[should_panic(expected = "the inputs were prepared for another matcher")]
+#[should_panic(expected = "inputs of another matcher")]
 fn inputs_of_another_matcher() {
     let application = Application::new();
     let [one, other] = [(); 2].map(|()| Matcher::new(&application.gpu, SIZE, &config()).unwrap());
@@ -147,6 +147,30 @@ fn inputs_of_another_matcher() {
     let inputs = other.inputs(Source::Texture(&view), Source::Texture(&view)).unwrap();
     let readback = block_on(one.readback()).unwrap();
     application.bench().run(|encoder| one.record(encoder, &inputs, readback.outputs()));
+}
+
+#[test]
+#[should_panic(expected = "readback of another detector")]
+fn a_readback_of_another_detector() {
+    let application = Application::new();
+    let [one, other] = [16, 99].map(|max_features| {
+        let config = FeatureConfig { max_features, ..FeatureConfig::default() };
+        block_on(Detector::new(&application.gpu, SIZE, &config)).unwrap()
+    });
+    let readback = block_on(other.readback()).unwrap();
+    application.bench().run(|encoder| one.record_readback(encoder, &readback));
+}
+
+#[test]
+fn luma_of_the_matcher_is_no_input_and_no_rows_are_no_band() {
+    let application = Application::new();
+    let matcher = Matcher::new(&application.gpu, SIZE, &config()).unwrap();
+    let [left, right] = matcher.luma().map(Source::Luma);
+    let error = matcher.inputs(right, left).unwrap_err().to_string();
+    assert!(error.starts_with("the left view is the matcher's own luma") && error.contains("record_luma"), "{error}");
+    let error = block_on(Matcher::with_band_rows(&application.gpu, SIZE, &config(), 0)).unwrap_err().to_string();
+    assert!(error.starts_with("band_rows is 0, but it must be 1 to"), "{error}");
+    application.assert_quiet();
 }
 
 /// An error about the size of a picture names the limit that it exceeds.

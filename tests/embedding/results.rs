@@ -1,5 +1,10 @@
 //! Results from textures and buffers, in textures and buffers, equal those of the CPU twins to the byte.
 
+use std::{
+    pin::pin,
+    task::{Context, Waker},
+};
+
 use hsad::{
     config::Preset,
     dense::{Brightness, Dense, DenseConfig, Destination, Matcher},
@@ -103,6 +108,30 @@ fn frames_take_turns_in_one_encoder() {
         let (disparities, rest) = disparities.split_at((SIZE.width * SIZE.height) as usize);
         assert_answers("a frame", disparities, &bench.download::<u32>(confidences).unwrap(), &expected);
         assert_eq!(rest, [-1]);
+    }
+    application.assert_quiet();
+}
+
+/// A read that is dropped while its mapping is pending leaves the readback as it was.
+#[test]
+fn a_cancelled_read_can_be_repeated() {
+    let application = Application::new();
+    let matcher = Matcher::new(&application.gpu, SIZE, &config()).unwrap();
+    let views = pair(SIZE, 5);
+    for (view, luma) in views.iter().zip(matcher.luma()) {
+        application.bench().write(luma, &pack(view));
+    }
+    let expected = compute(&views[0], &views[1], &config()).unwrap();
+    let mut readback = block_on(matcher.readback()).unwrap();
+    for _ in 0..3 {
+        let mut encoder = application.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        // Enough work for the mapping to be pending at the first poll.
+        (0..20).for_each(|_| matcher.record_luma(&mut encoder, readback.outputs()));
+        application.gpu.queue.submit([encoder.finish()]);
+        let cancelled = pin!(readback.read()).poll(&mut Context::from_waker(Waker::noop()));
+        drop(cancelled);
+        let map = block_on(readback.read()).unwrap();
+        assert_eq!((map.disparity, map.confidence), (expected.disparity.clone(), expected.confidence.clone()));
     }
     application.assert_quiet();
 }

@@ -26,7 +26,7 @@ fn features_of_a_texture_are_read_from_their_buffers() {
     let detector = block_on(Detector::new(gpu, size, &features)).unwrap();
     let input = block_on(detector.input(matcher.luma()[0])).unwrap();
     let map = block_on(matcher.readback()).unwrap();
-    let readback = block_on(detector.readback()).unwrap();
+    let mut readback = block_on(detector.readback()).unwrap();
     bench.run(|encoder| {
         matcher.record(encoder, &inputs, map.outputs());
         detector.record(encoder, &input);

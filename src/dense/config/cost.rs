@@ -15,7 +15,7 @@ pub struct Difference {
     pub limit: u32,
 }
 
-/// The matching cost of a pixel and its partner: the sum of three parts, rounded down and at most [`MAX_COST`].
+/// The matching cost of a pixel and its partner: the sum of three parts, rounded down and at most 127.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Weight of each of the 24 bits in which the 5x5 census transforms differ, in 1/16, 0 to 4096.

@@ -13,7 +13,7 @@ const WORKGROUP: [u32; 2] = [8, 8];
 /// The largest data cost of a pixel.
 pub const MAX_DATA_COST: u32 = 255;
 
-/// The data cost: the mean of truncated absolute differences over a window, rounded down and at most [`MAX_DATA_COST`].
+/// The data cost: the mean of truncated absolute differences over a window, rounded down and at most 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowCost {
     /// Radius of the window, (side - 1) / 2, 0 to 7 pixels; 1 by default.
