@@ -14,6 +14,7 @@ use crate::{
     image::Size,
     io::Picture,
     kamencay::KamencayConfig,
+    names::names,
     pair::Pair,
     seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
@@ -34,20 +35,7 @@ pub enum Step {
     Dense,
 }
 
-impl Step {
-    /// All steps, in order.
-    pub const ALL: [Self; 4] = [Self::Luma, Self::Features, Self::Seeding, Self::Dense];
-
-    /// Name of the step, one word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Luma => "luma",
-            Self::Features => "features",
-            Self::Seeding => "seeding",
-            Self::Dense => "dense",
-        }
-    }
-}
+names!(Step, "the step", { Luma => "luma", Features => "features", Seeding => "seeding", Dense => "dense" });
 
 /// Origin of the disparity range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

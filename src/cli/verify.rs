@@ -132,7 +132,8 @@ impl Verify {
                 if ran < cases.len() { "; the device was lost, and the remaining cases were not run" } else { "" };
             bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, self.output.display());
         }
-        print(&format!("{ran} of {ran} cases pass, in {}\n", time(seconds)))?;
+        let passed = if ran == 1 { "the case passes".into() } else { format!("all {ran} cases pass") };
+        print(&format!("{passed}, in {}\n", time(seconds)))?;
         Ok(())
     }
 
