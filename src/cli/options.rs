@@ -31,7 +31,7 @@ use super::terminal::{self, Progress};
 #[derive(Args)]
 pub struct RunOptions {
     /// Device to compute on: best, cpu, or the index or a part of the name of a device (see hsad devices)
-    #[arg(long, default_value = "best")]
+    #[arg(long, default_value_t = DeviceChoice::Best)]
     device: DeviceChoice,
     /// First run every kernel once on the device and refuse it if any result differs from the CPU twin's (see
     /// hsad verify)

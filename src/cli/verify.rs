@@ -39,7 +39,7 @@ use super::{
 Exit codes: 0 all cases pass, 1 a case fails, 2 usage")]
 pub struct Verify {
     /// Device to verify: best, or the index or a part of the name of a device (see hsad devices)
-    #[arg(long, default_value = "best")]
+    #[arg(long, default_value_t = DeviceChoice::Best)]
     device: DeviceChoice,
     /// Verify at one size (131x67) instead of all
     #[arg(long)]

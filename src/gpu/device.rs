@@ -1,6 +1,6 @@
 //! The choice of an adapter.
 
-use std::str::FromStr;
+use std::{fmt, str::FromStr};
 
 /// The requested device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -12,6 +12,16 @@ pub enum DeviceChoice {
     Named(String),
     /// No adapter: the CPU twins.
     Cpu,
+}
+
+impl fmt::Display for DeviceChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Best => "best",
+            Self::Cpu => "cpu",
+            Self::Named(name) => name,
+        })
+    }
 }
 
 impl FromStr for DeviceChoice {
