@@ -126,7 +126,7 @@ impl Detector {
     /// Device memory of this detector without the picture, in bytes: mostly that of [`FeatureConfig::max_features`]
     /// descriptors.
     pub fn memory(&self) -> u64 {
-        let buffers = [&self.integral, self.list.found(), self.list.keypoints(), &self.groups, &self.descriptors];
+        let buffers = [&self.integral, self.list.count(), self.list.keypoints(), &self.groups, &self.descriptors];
         buffers.into_iter().chain(&self.responses).map(wgpu::Buffer::size).sum()
     }
 
@@ -146,7 +146,7 @@ impl Detector {
     /// If `input` was prepared for another detector.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
         assert!(input.detector == self.integral, "input of another detector: use this detector's `input`");
-        encoder.clear_buffer(self.list.found(), 0, None);
+        encoder.clear_buffer(self.list.count(), 0, None);
         input.dispatch.record(encoder);
         self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
     }
@@ -164,7 +164,7 @@ impl Detector {
             Ok(FeatureReadback {
                 capacity: self.list.capacity(),
                 detector: self.integral.clone(),
-                count: readback("number of keypoints", self.list.found()),
+                count: readback("number of keypoints", self.list.count()),
                 keypoints: readback("keypoints", self.list.keypoints()),
                 descriptors: readback("descriptors", &self.descriptors),
             })
@@ -178,7 +178,7 @@ impl Detector {
     /// If `readback` was allocated for another detector.
     pub fn record_readback(&self, encoder: &mut wgpu::CommandEncoder, readback: &FeatureReadback) {
         assert!(readback.detector == self.integral, "readback of another detector: use this detector's `readback`");
-        readback.count.record(encoder, self.list.found());
+        readback.count.record(encoder, self.list.count());
         readback.keypoints.record(encoder, self.list.keypoints());
         readback.descriptors.record(encoder, &self.descriptors);
     }
@@ -194,7 +194,7 @@ impl Detector {
         let (gpu, list) = (&self.gpu, &self.list);
         let count = submit(gpu, |encoder| {
             let count = Readback::new(gpu, "number of keypoints", size_of::<u32>() as u64);
-            count.record(encoder, list.found());
+            count.record(encoder, list.count());
             count
         })
         .await?;

@@ -50,7 +50,7 @@ pub(crate) const PARAMS: Binding = Binding::Uniform(Params::SHAPE);
 /// The keypoints of a picture on the device, in buffers with usages `STORAGE`, `COPY_SRC` and `COPY_DST`.
 #[derive(Debug)]
 pub struct KeypointList {
-    found: wgpu::Buffer,
+    count: wgpu::Buffer,
     keypoints: wgpu::Buffer,
     capacity: u32,
 }
@@ -63,15 +63,15 @@ impl KeypointList {
     pub fn new(gpu: &Gpu, capacity: u32) -> Result<Self> {
         let bytes = u64::from(capacity) * size_of::<Keypoint>() as u64;
         Ok(Self {
-            found: storage_buffer(gpu, "number of keypoints", size_of::<u32>() as u64)?,
+            count: storage_buffer(gpu, "number of keypoints", size_of::<u32>() as u64)?,
             keypoints: storage_buffer(gpu, "keypoints", bytes)?,
             capacity,
         })
     }
 
     /// One `u32`: the number of keypoints found, which can exceed the capacity.
-    pub fn found(&self) -> &wgpu::Buffer {
-        &self.found
+    pub fn count(&self) -> &wgpu::Buffer {
+        &self.count
     }
 
     /// The [`Keypoint`]s, in no particular order.

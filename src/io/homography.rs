@@ -64,8 +64,8 @@ mod tests {
             (b"\xff\xfe1", "UTF-8"),
         ] {
             let error = decode(text, Path::new("H1to2p")).unwrap_err().to_string();
-            let told = error.starts_with("H1to2p: ") && error.ends_with("nine numbers, row by row");
-            assert!(told && error.contains(expected), "{error}");
+            let is_framed = error.starts_with("H1to2p: ") && error.ends_with("nine numbers, row by row");
+            assert!(is_framed && error.contains(expected), "{error}");
         }
     }
 }

@@ -35,7 +35,7 @@ fn features_of_a_texture_are_read_from_their_buffers() {
     let expected = block_on(detect(gpu, &luma, &features)).unwrap();
 
     let list = detector.keypoints();
-    let found = bench.download::<u32>(list.found()).unwrap()[0] as usize;
+    let found = bench.download::<u32>(list.count()).unwrap()[0] as usize;
     assert!(found > 100 && list.capacity() == 5000, "{found}");
     let keypoints = bench.download::<Keypoint>(list.keypoints()).unwrap();
     let descriptors = bench.download::<[f32; DESCRIPTOR_LENGTH]>(detector.descriptors()).unwrap();

@@ -28,9 +28,9 @@ pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, directi
                 let stay = before[d];
                 let neighbours = [d.checked_sub(1), Some(d + 1)].into_iter().flatten();
                 let step = neighbours.filter_map(|n| before.get(n)).map(|cost| cost + penalties.p1).min();
-                let way = stay.min(least + p2).min(step.unwrap_or(u32::MAX));
+                let cheapest = stay.min(least + p2).min(step.unwrap_or(u32::MAX));
                 let cost = &mut out[place(x, y) + d];
-                *cost = (u32::from(*cost) + way - least) as u8;
+                *cost = (u32::from(*cost) + cheapest - least) as u8;
             }
         }
     }

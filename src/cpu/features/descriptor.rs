@@ -7,7 +7,7 @@
 
 use crate::{
     cpu::features::{
-        haar::{self, Place},
+        haar::{self, QuantizedPoint},
         integral::IntegralImage,
     },
     features::DESCRIPTOR_LENGTH,
@@ -27,10 +27,10 @@ const FLAT: f32 = 1e-6;
 /// The gradients of all samples, by row and column.
 type Gradients = [[(f32, f32); SAMPLES]; SAMPLES];
 
-/// The descriptor of a place: the sums of dx, dy, |dx|, |dy| per subregion, row by row.
+/// The descriptor at a point: the sums of dx, dy, |dx|, |dy| per subregion, row by row.
 ///
 /// Without an orientation the descriptor is upright, which differs from an orientation of 0.
-pub fn descriptor(integral: &IntegralImage, at: Place, orientation: Option<f32>) -> [f32; DESCRIPTOR_LENGTH] {
+pub fn descriptor(integral: &IntegralImage, at: QuantizedPoint, orientation: Option<f32>) -> [f32; DESCRIPTOR_LENGTH] {
     let gradients = gradients(integral, at, orientation);
     let mut descriptor = [0.0; DESCRIPTOR_LENGTH];
     for (index, values) in descriptor.chunks_mut(4).enumerate() {
@@ -43,7 +43,7 @@ pub fn descriptor(integral: &IntegralImage, at: Place, orientation: Option<f32>)
 }
 
 /// The compressed gradients of samples 2 scales apart, in the axes of the point.
-fn gradients(integral: &IntegralImage, at: Place, orientation: Option<f32>) -> Gradients {
+fn gradients(integral: &IntegralImage, at: QuantizedPoint, orientation: Option<f32>) -> Gradients {
     let (sin, cos) = orientation.unwrap_or(0.0).sin_cos();
     let scale = at.scale as f32;
     // Side of the wavelets: 1.5 scales upright, else 4.
@@ -117,7 +117,7 @@ mod tests {
     }
 
     fn describe_picture(f: impl FnMut(u32, u32) -> u8, (x, y): (f32, f32), orientation: Option<f32>) -> [f32; 64] {
-        descriptor(&IntegralImage::new(&Luma::from_fn((81, 81), f)), Place::new(x, y, 2.0), orientation)
+        descriptor(&IntegralImage::new(&Luma::from_fn((81, 81), f)), QuantizedPoint::new(x, y, 2.0), orientation)
     }
 
     fn distance(a: &[f32; 64], b: &[f32; 64]) -> f32 {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::{
     cpu::features::{
         descriptor::descriptor,
-        haar::Place,
+        haar::QuantizedPoint,
         hessian::Octave,
         integral::IntegralImage,
         nonmax::{Extremum, candidates, integer_threshold, locate},
@@ -45,9 +45,9 @@ fn extrema(integral: &IntegralImage, config: &FeatureConfig) -> Vec<Extremum> {
 
 fn feature(integral: &IntegralImage, at: Extremum, upright: bool) -> Feature {
     let Extremum { x, y, scale, response, dark } = at;
-    let place = Place::new(x, y, scale);
-    let orientation = (!upright).then(|| orientation(integral, place));
-    let descriptor = descriptor(integral, place, orientation);
+    let point = QuantizedPoint::new(x, y, scale);
+    let orientation = (!upright).then(|| orientation(integral, point));
+    let descriptor = descriptor(integral, point, orientation);
     Feature { x, y, scale, response, dark, orientation: orientation.unwrap_or(0.0), descriptor }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::cpu::features::integral::IntegralImage;
 
-/// The place of an interest point, rounded once to 1/16 px, so that all devices sample the same pixels around it.
+/// Position and scale of an interest point, rounded once to 1/16 px, so that all devices sample the same pixels around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct QuantizedPoint {
     /// Distance from the left edge of the picture, in 1/16 px.
     pub x: i32,
     /// Distance from the top edge of the picture, in 1/16 px.
@@ -13,8 +13,8 @@ pub struct Place {
     pub scale: i32,
 }
 
-impl Place {
-    /// The place of a point at `(x, y)` pixels, where the centre of the first pixel is `(0, 0)`.
+impl QuantizedPoint {
+    /// The quantized point at `(x, y)` pixels, where the centre of the first pixel is `(0, 0)`.
     pub fn new(x: f32, y: f32, scale: f32) -> Self {
         let sixteenths = |pixels: f32| (pixels * 16.0 + 0.5).floor() as i32;
         Self { x: sixteenths(x) + 8, y: sixteenths(y) + 8, scale: sixteenths(scale) }
@@ -47,8 +47,8 @@ mod tests {
 
     #[test]
     fn places_are_rounded_to_sixteenths_from_the_corner() {
-        assert_eq!(Place::new(0.0, 10.0, 1.2), Place { x: 8, y: 168, scale: 19 });
-        assert_eq!(Place::new(2.53125, 2.53124, 2.0), Place { x: 49, y: 48, scale: 32 });
+        assert_eq!(QuantizedPoint::new(0.0, 10.0, 1.2), QuantizedPoint { x: 8, y: 168, scale: 19 });
+        assert_eq!(QuantizedPoint::new(2.53125, 2.53124, 2.0), QuantizedPoint { x: 49, y: 48, scale: 32 });
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_PI_3, TAU};
 
 use crate::cpu::features::{
-    haar::{self, Place},
+    haar::{self, QuantizedPoint},
     integral::IntegralImage,
 };
 
@@ -15,14 +15,14 @@ const SIGMA: f32 = 2.5;
 /// exactly those directions are common and must not lie on a window's end.
 const WINDOWS: u32 = 48;
 
-/// The orientation at a place, in radians, 0 to below 2 pi; 0 without any gradient.
-pub fn orientation(integral: &IntegralImage, at: Place) -> f32 {
+/// The orientation at a point, in radians, 0 to below 2 pi; 0 without any gradient.
+pub fn orientation(integral: &IntegralImage, at: QuantizedPoint) -> f32 {
     direction(windows(&gradients(integral, at), 0.0).fold((0.0, 0.0), longer))
 }
 
 /// Whether the orientation is robust: the same for every implementation whose angles of gradients differ by up to
 /// 0.0002 and whose sums of windows differ by up to one in a thousand. A robust orientation differs by 0.0005 at most.
-pub fn is_decided(integral: &IntegralImage, at: Place) -> bool {
+pub fn is_decided(integral: &IntegralImage, at: QuantizedPoint) -> bool {
     /// Least length of a gradient that counts, in grey levels: smaller ones are lost in the rounding of sums.
     const LEAST_LENGTH: f32 = 0.25;
     let gradients = gradients(integral, at);
@@ -60,7 +60,7 @@ fn direction((dx, dy): (f32, f32)) -> f32 {
 }
 
 /// The weighted Haar responses of side 4 scales in the neighbourhood: angle, dx, dy.
-fn gradients(integral: &IntegralImage, at: Place) -> Vec<(f32, f32, f32)> {
+fn gradients(integral: &IntegralImage, at: QuantizedPoint) -> Vec<(f32, f32, f32)> {
     let disc = (-RADIUS..=RADIUS).flat_map(|j| (-RADIUS..=RADIUS).map(move |i| (i, j)));
     disc.filter(|(i, j)| i * i + j * j < RADIUS * RADIUS)
         .map(|(i, j)| {
@@ -101,7 +101,7 @@ mod tests {
         for (sx, sy, expected) in [(1, 0, 0.0), (0, 1, FRAC_PI_2), (-1, 0, PI), (-1, -1, PI * 1.25)] {
             let ramp = |x: u32, y: u32| (sx * (x as i32 - 45) + sy * (y as i32 - 45) + 128) as u8;
             let integral = IntegralImage::new(&Luma::from_fn((91, 91), ramp));
-            assert_angle(orientation(&integral, Place::new(45.0, 45.0, 2.0)), expected);
+            assert_angle(orientation(&integral, QuantizedPoint::new(45.0, 45.0, 2.0)), expected);
         }
     }
 
@@ -112,21 +112,25 @@ mod tests {
         // A quarter turn from the x axis to the y axis takes (x, y) to (size - 1 - y, x).
         let turned = Luma::from_fn((size, size), |x, y| picture.get(y, size - 1 - x));
         for (x, y) in [(40, 40), (30, 44), (47, 35)] {
-            let before = orientation(&IntegralImage::new(&picture), Place::new(x as f32, y as f32, 1.75));
+            let before = orientation(&IntegralImage::new(&picture), QuantizedPoint::new(x as f32, y as f32, 1.75));
             let (tx, ty) = ((size - 1 - y) as f32, x as f32);
-            assert_angle(orientation(&IntegralImage::new(&turned), Place::new(tx, ty, 1.75)), before + FRAC_PI_2);
+            assert_angle(
+                orientation(&IntegralImage::new(&turned), QuantizedPoint::new(tx, ty, 1.75)),
+                before + FRAC_PI_2,
+            );
         }
     }
 
     #[test]
     fn flat_has_orientation_zero() {
         let integral = IntegralImage::new(&Luma::filled((64, 64), 99));
-        assert_eq!(orientation(&integral, Place::new(32.0, 32.0, 2.0)), 0.0);
+        assert_eq!(orientation(&integral, QuantizedPoint::new(32.0, 32.0, 2.0)), 0.0);
     }
 
     #[test]
     fn what_last_digits_decide_is_told_apart() {
-        let decided = |picture: &Luma, scale| is_decided(&IntegralImage::new(picture), Place::new(45.0, 45.0, scale));
+        let decided =
+            |picture: &Luma, scale| is_decided(&IntegralImage::new(picture), QuantizedPoint::new(45.0, 45.0, scale));
         assert!(decided(&Luma::from_fn((91, 91), |x, y| (x + y) as u8), 2.0));
         assert!(decided(&Luma::filled((91, 91), 7), 2.0), "no gradient at all: everyone says 0");
         // A ridge rises from both sides alike.

@@ -82,8 +82,8 @@ fn message(h: &[u32], slope: u32, limit: u32) -> impl Iterator<Item = u8> {
     let reach = limit.checked_div(slope).map_or(h.len(), |reach| reach as usize);
     (0..h.len()).map(move |d| {
         let near = d.saturating_sub(reach)..=(d + reach).min(h.len() - 1);
-        let way = near.map(|e| h[e] + slope * e.abs_diff(d) as u32).min();
-        (way.map_or(limit, |way| way - least)).min(limit) as u8
+        let cheapest = near.map(|e| h[e] + slope * e.abs_diff(d) as u32).min();
+        (cheapest.map_or(limit, |cheapest| cheapest - least)).min(limit) as u8
     })
 }
 

@@ -17,9 +17,9 @@ pub fn mean_shift(pixels: &Plane<u32>, seeking: &ModeSeeking) -> Plane<u32> {
             let mut point = at(pixels, pixel % width, pixel / width);
             for _ in 0..seeking.turns {
                 let Some(mean) = mean_around(pixels, point, seeking) else { break };
-                let way: i32 = (0..5).map(|axis| (mean[axis] - point[axis]).abs()).sum();
+                let shift: i32 = (0..5).map(|axis| (mean[axis] - point[axis]).abs()).sum();
                 point = mean;
-                if way <= STILL {
+                if shift <= STILL {
                     break;
                 }
             }

@@ -44,7 +44,7 @@ impl Descriptor {
         groups: &wgpu::Buffer,
         descriptors: &wgpu::Buffer,
     ) -> Dispatch {
-        let bound: [&dyn Bindable; 4] = [integral, list.found(), list.keypoints(), descriptors];
+        let bound: [&dyn Bindable; 4] = [integral, list.count(), list.keypoints(), descriptors];
         self.0.dispatch_indirect(&Params { width, height }, &bound, groups)
     }
 }

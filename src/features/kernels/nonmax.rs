@@ -71,7 +71,7 @@ impl Nonmax {
             sizes: FILTER_SIZES[octave as usize],
         };
         let groups = [grid.width.div_ceil(2).div_ceil(WORKGROUP[0]), grid.height.div_ceil(2).div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(&params, &[responses, list.found(), list.keypoints()], groups)
+        self.0.dispatch(&params, &[responses, list.count(), list.keypoints()], groups)
     }
 }
 

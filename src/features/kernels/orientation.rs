@@ -46,7 +46,7 @@ impl Orientation {
         list: &KeypointList,
         groups: &wgpu::Buffer,
     ) -> Dispatch {
-        let bound: [&dyn Bindable; 3] = [integral, list.found(), list.keypoints()];
+        let bound: [&dyn Bindable; 3] = [integral, list.count(), list.keypoints()];
         self.0.dispatch_indirect(&Params { width, height }, &bound, groups)
     }
 }

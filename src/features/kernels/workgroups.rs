@@ -41,6 +41,6 @@ impl Workgroups {
 
     /// Writes the number of workgroups to `groups`: one per keypoint of the `list`.
     pub fn prepare(&self, list: &KeypointList, groups: &wgpu::Buffer) -> Dispatch {
-        self.0.dispatch(&(), &[list.found(), list.keypoints(), groups], [1, 1, 1])
+        self.0.dispatch(&(), &[list.count(), list.keypoints(), groups], [1, 1, 1])
     }
 }

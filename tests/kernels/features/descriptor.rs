@@ -3,7 +3,7 @@ use std::f32::consts::PI;
 use hsad::{
     features::{DESCRIPTOR_LENGTH, Keypoint},
     image::Luma,
-    internals::cpu::features::{haar::Place, integral::IntegralImage, orientation::orientation},
+    internals::cpu::features::{haar::QuantizedPoint, integral::IntegralImage, orientation::orientation},
     verify::{Values, trials::DescriptorTrial},
 };
 
@@ -108,7 +108,7 @@ fn equals_the_twin() {
         let integral = IntegralImage::new(&picture);
         let mut keypoints = keypoints_of(&picture, 0.000_1);
         for keypoint in &mut keypoints {
-            keypoint.orientation = orientation(&integral, Place::new(keypoint.x, keypoint.y, keypoint.scale));
+            keypoint.orientation = orientation(&integral, QuantizedPoint::new(keypoint.x, keypoint.y, keypoint.scale));
         }
         if !keypoints.is_empty() {
             assert_equals_the_twin(&name, &picture, &keypoints);

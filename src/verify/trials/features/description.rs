@@ -7,7 +7,7 @@ use crate::{
     cpu::features::{
         descriptor::descriptor,
         detector,
-        haar::Place,
+        haar::QuantizedPoint,
         integral::IntegralImage,
         orientation::{is_decided, orientation},
     },
@@ -32,7 +32,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
 fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu::Buffer)> {
     let count = keypoints.len() as u32;
     let list = KeypointList::new(bench.gpu, count)?;
-    bench.write(list.found(), &[count]);
+    bench.write(list.count(), &[count]);
     bench.write(list.keypoints(), keypoints);
     let groups = Workgroups::groups(bench.gpu);
     let dispatch = Workgroups::new(bench.gpu).prepare(&list, &groups);
@@ -44,7 +44,7 @@ fn list(bench: &Bench<'_>, keypoints: &[Keypoint]) -> Result<(KeypointList, wgpu
 fn places_in(Size { width, height }: Size, dice: &mut Dice) -> Vec<Keypoint> {
     let count = 1 + dice.below(400);
     let mut sixty_fourths = |least: f32, length: f32| least + dice.below((64.0 * length) as u32) as f32 / 64.0;
-    let place = |_| Keypoint {
+    let keypoint = |_| Keypoint {
         x: sixty_fourths(-4.0, width as f32 + 8.0),
         y: sixty_fourths(-4.0, height as f32 + 8.0),
         scale: sixty_fourths(1.25, 40.0),
@@ -53,7 +53,7 @@ fn places_in(Size { width, height }: Size, dice: &mut Dice) -> Vec<Keypoint> {
         octave: 0,
         index: 0,
     };
-    (0..count).map(place).collect()
+    (0..count).map(keypoint).collect()
 }
 
 /// A column so far outside any picture that no neighbourhood reaches the picture.
@@ -65,8 +65,8 @@ fn keypoint_input(picture: &Luma, keypoints: &[Keypoint]) -> Vec<Array> {
     vec![Array::exact("picture", picture.data().to_vec()), Array::exact("x, y, scale, orientation", places)]
 }
 
-fn place(keypoint: &Keypoint) -> Place {
-    Place::new(keypoint.x, keypoint.y, keypoint.scale)
+fn quantized(keypoint: &Keypoint) -> QuantizedPoint {
+    QuantizedPoint::new(keypoint.x, keypoint.y, keypoint.scale)
 }
 
 /// Keypoints of a picture that get their orientations.
@@ -111,7 +111,7 @@ impl OrientationTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let (picture, mut keypoints) = (dice.picture(size), places_in(size, dice));
         let integral = IntegralImage::new(&picture);
-        for keypoint in keypoints.iter_mut().filter(|keypoint| !is_decided(&integral, place(keypoint))) {
+        for keypoint in keypoints.iter_mut().filter(|keypoint| !is_decided(&integral, quantized(keypoint))) {
             keypoint.x = NOTHING_THERE;
         }
         Self { picture, keypoints }
@@ -134,7 +134,7 @@ impl Trial for OrientationTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         let integral = IntegralImage::new(&self.picture);
         let oriented =
-            |keypoint: &Keypoint| Keypoint { orientation: orientation(&integral, place(keypoint)), ..*keypoint };
+            |keypoint: &Keypoint| Keypoint { orientation: orientation(&integral, quantized(keypoint)), ..*keypoint };
         Ok(Self::arrays(&self.keypoints.iter().map(oriented).collect::<Vec<_>>()))
     }
 }
@@ -184,7 +184,7 @@ impl Trial for DescriptorTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         let integral = IntegralImage::new(&self.picture);
         let described = |keypoint: &Keypoint| {
-            descriptor(&integral, place(keypoint), (!self.upright).then_some(keypoint.orientation))
+            descriptor(&integral, quantized(keypoint), (!self.upright).then_some(keypoint.orientation))
         };
         Ok(self.arrays(self.keypoints.iter().flat_map(described).collect()))
     }

@@ -114,13 +114,13 @@ impl NonmaxTrial {
     pub fn keypoints(&self, bench: &Bench<'_>) -> Result<(u32, Vec<Keypoint>)> {
         let list = KeypointList::new(bench.gpu, self.config.max_features)?;
         bench.poison(list.keypoints());
-        bench.write(list.found(), &[0_u32]);
+        bench.write(list.count(), &[0_u32]);
         let kernel = Nonmax::new(bench.gpu);
         for (octave, responses) in (0..).zip(&self.responses) {
             let dispatch = kernel.prepare(self.size, octave, &self.config, &bench.upload(responses)?, &list);
             bench.run(|encoder| dispatch.record(encoder));
         }
-        let found = bench.download::<u32>(list.found())?[0];
+        let found = bench.download::<u32>(list.count())?[0];
         let mut keypoints: Vec<Keypoint> = bench.download(list.keypoints())?;
         keypoints.truncate(found.min(self.config.max_features) as usize);
         keypoints.sort_by_key(Keypoint::key);
@@ -235,7 +235,7 @@ impl Trial for WorkgroupsTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let list = KeypointList::new(bench.gpu, self.capacity)?;
-        bench.write(list.found(), &[self.found]);
+        bench.write(list.count(), &[self.found]);
         let groups = Workgroups::groups(bench.gpu);
         bench.poison(&groups);
         let dispatch = Workgroups::new(bench.gpu).prepare(&list, &groups);
