@@ -139,18 +139,19 @@ fn drive(device: wgpu::Device, mapping: &Arc<Mutex<Mapping>>) {
     }
 }
 
-/// Polls the device until the mapping is finished. A wait is for everything submitted, so it is sliced to 500 us: work
-/// submitted after the mapped buffer's must not delay the mapping.
+/// Polls the device until the mapping is finished, at intervals that grow from 10 to 250 us. Waits are no substitute: a
+/// wait is for everything submitted, and work submitted after the mapped buffer's must not delay the mapping; a wait that
+/// times out while another thread finishes the queue panics in wgpu-core 30 and loses callbacks.
 #[cfg(not(target_arch = "wasm32"))]
 fn wait(device: &wgpu::Device, mapping: &Mutex<Mapping>) {
-    const SLICE: std::time::Duration = std::time::Duration::from_micros(500);
+    const LONGEST: std::time::Duration = std::time::Duration::from_micros(250);
+    let mut interval = std::time::Duration::from_micros(10);
     while Mapping::is_pending(mapping) {
-        match device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SLICE) }) {
-            Err(wgpu::PollError::Timeout) => {}
-            // Another thread that polls the device can deliver the result a little later.
-            Ok(_) => std::thread::yield_now(),
-            Err(error) => Mapping::finish(mapping, Err(error.to_string())),
+        if let Err(error) = device.poll(wgpu::PollType::Poll) {
+            Mapping::finish(mapping, Err(error.to_string()));
         }
+        std::thread::sleep(interval);
+        interval = LONGEST.min(interval * 3 / 2);
     }
 }
 
