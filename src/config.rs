@@ -2,8 +2,8 @@
 
 use crate::{
     dense::{
-        Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
-        Interpolation, Paths, Penalties, Refinement, Search, SemiGlobal, View,
+        Aggregation, Brightness, CostAggregation, DenseConfig, DenseParameters, Interpolation, Paths, Refinement,
+        Search, SemiGlobal, View,
     },
     disparity::DisparityRange,
     error::Result,
@@ -120,21 +120,6 @@ pub enum Preset {
 
 names!(Preset, "the preset", { Fast => "fast", Balanced => "balanced", Quality => "quality", Paper => "paper" });
 
-/// Costs of the semi-global presets, tuned on real pairs: see docs/benchmarks.md.
-const COSTS: CostAggregation = CostAggregation {
-    cost: Cost {
-        census: 20,
-        difference: Difference { weight: 4, limit: 24 },
-        gradient: Difference { weight: 12, limit: 16 },
-    },
-    window: 1,
-    semi_global: Some(SEMI_GLOBAL),
-    cross_check: CrossCheck::Claimed,
-};
-
-const SEMI_GLOBAL: SemiGlobal =
-    SemiGlobal { penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 }, paths: Paths::Three };
-
 impl Preset {
     /// Parameters of the pipeline.
     pub fn config(self) -> Config {
@@ -168,7 +153,7 @@ impl Preset {
     /// Parameters of dense matching.
     pub fn dense_parameters(self) -> DenseParameters {
         let balanced = DenseParameters {
-            aggregation: Aggregation::Costs(COSTS),
+            aggregation: Aggregation::Costs(CostAggregation::TUNED),
             interpolation: Interpolation::Equiangular,
             uniqueness: 1,
             consistency: Some(256),
@@ -184,8 +169,8 @@ impl Preset {
             Self::Balanced => balanced,
             Self::Quality => DenseParameters {
                 aggregation: Aggregation::Costs(CostAggregation {
-                    semi_global: Some(SemiGlobal { paths: Paths::Four, ..SEMI_GLOBAL }),
-                    ..COSTS
+                    semi_global: Some(SemiGlobal { paths: Paths::Four, ..SemiGlobal::TUNED }),
+                    ..CostAggregation::TUNED
                 }),
                 refinement: Some(Refinement {
                     support: 10,

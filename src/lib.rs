@@ -69,7 +69,7 @@
 //!
 //! ```
 //! use hsad::{
-//!     DisparityRange, Feature, Luma, Matcher, pipeline,
+//!     DisparityRange, Feature, Luma, Matcher,
 //!     seeding::{Seeding, SeedingConfig},
 //! };
 //!
@@ -77,7 +77,7 @@
 //! fn learn(matcher: &Matcher, views: (&Luma, &Luma), points: (&[Feature], &[Feature])) -> hsad::Result<DisparityRange> {
 //!     let seeding = Seeding::find(views, points, &SeedingConfig::default())?;
 //!     if let Some(relation) = &seeding.brightness {
-//!         matcher.set_brightness(pipeline::equalising(relation))?;
+//!         matcher.set_brightness(relation.equalising())?;
 //!     }
 //!     Ok(seeding.range?)
 //! }

@@ -16,7 +16,7 @@ use crate::{
     kamencay::KamencayConfig,
     names::names,
     pair::Pair,
-    seeding::{self, Seeding, ThinSupport, Verdict, enlarged_feature},
+    seeding::{FoundRange, RangeEnd, Seeding, ThinSupport, Verdict, enlarged_feature},
 };
 
 /// Largest number of pixels of a picture in which interest points are detected; larger pictures are downscaled first.
@@ -38,13 +38,13 @@ pub enum Step {
 names!(Step, "the step", { Luma => "luma", Features => "features", Seeding => "seeding", Dense => "dense" });
 
 /// Origin of the disparity range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RangeSource {
     /// Set by [`Config::range`].
     Asked,
-    /// Derived from the seeds.
-    Seeds,
-    /// Too few seeds: a quarter of the width of the picture, from [`Config::least`] or 0 upwards.
+    /// Found from the seeds and the coarse map: origin of the smallest and of the largest disparity.
+    Found([RangeEnd; 2]),
+    /// Unknown: a quarter of the width of the picture, from [`Config::least`] or 0 upwards.
     Fallback(ThinSupport),
 }
 
@@ -131,14 +131,14 @@ pub async fn run_async(
     }
     let (range, range_source) = match (config.range, seeding.range) {
         (Some(range), _) => (range, RangeSource::Asked),
-        (None, Ok(range)) => (not_below(range, config.least)?, RangeSource::Seeds),
+        (None, Ok(found)) => (not_below(&found, config.least)?, RangeSource::Found(found.ends)),
         (None, Err(thin)) => {
             let range = DisparityRange::new(config.least.unwrap_or(0), left.width().div_ceil(4))?;
             (range, RangeSource::Fallback(thin))
         }
     };
     let brightness = match seeding.brightness {
-        Some(found) if config.equalise => equalising(&found),
+        Some(found) if config.equalise => found.equalising(),
         _ => Brightness::SAME,
     };
     let (range, dense) = match &config.method {
@@ -159,16 +159,6 @@ pub async fn run_async(
     Ok(Outcome { features, seeding, range, range_source, brightness, dense, times })
 }
 
-/// The change that gives the right view the brightness of the left one; [`Brightness::SAME`] for a relation outside gains
-/// of 0.1 to 10 and offsets of 255 grey levels.
-pub fn equalising(found: &seeding::BrightnessRelation) -> Brightness {
-    if !(0.1..=10.0).contains(&found.gain) || found.offset.abs() > 255.0 {
-        return Brightness::SAME;
-    }
-    let fixed_point = |value: f32| (256.0 * value).round() as i32;
-    Brightness { gain: fixed_point(1.0 / found.gain), offset: fixed_point(-found.offset / found.gain) }
-}
-
 /// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine
 /// range, rectification and brightness, and the time to match points grows with the square of their number.
 pub fn reduction(size: impl Into<Size>) -> u32 {
@@ -176,15 +166,19 @@ pub fn reduction(size: impl Into<Size>) -> u32 {
     (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
 }
 
-/// The part of a range from the seeds that lies above `least`.
-fn not_below(range: DisparityRange, least: Option<i32>) -> Result<DisparityRange> {
+/// The part of a found range that lies above `least`.
+fn not_below(found: &FoundRange, least: Option<i32>) -> Result<DisparityRange> {
+    let range = found.range;
     let Some(least) = least.filter(|&least| least > range.min) else { return Ok(range) };
-    DisparityRange::inclusive(least, range.last()).map_err(|_| Error::NoRange {
+    // A margin alone above the limit is no range.
+    if (least as f32) < found.seen[1].max(1.0) {
+        return DisparityRange::inclusive(least, range.last());
+    }
+    Err(Error::NoRange {
         reason: format!(
-            "the matches show {} to {} px and nothing below {least} is to be searched; if left and right are mixed \
-             up, exchange them",
-            range.min,
-            range.last()
+            "the views show {:.0} to {:.0} px and nothing below {least} is to be searched; if left and right are mixed up, \
+             exchange them",
+            found.seen[0], found.seen[1],
         ),
     })
 }
@@ -215,12 +209,14 @@ mod tests {
 
     #[test]
     fn a_found_range_is_cut_at_the_limit() {
-        let found = DisparityRange::inclusive(-9, 40).unwrap();
-        assert_eq!(not_below(found, None).unwrap(), found);
-        assert_eq!(not_below(found, Some(-20)).unwrap(), found);
-        assert_eq!(not_below(found, Some(0)).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
-        assert_eq!(not_below(found, Some(40)).unwrap(), DisparityRange::new(40, 1).unwrap());
-        let error = not_below(found, Some(41)).unwrap_err().to_string();
-        assert!(error.contains("-9 to 40 px") && error.contains("exchange"), "{error}");
+        let range = DisparityRange::inclusive(-9, 40).unwrap();
+        let found = FoundRange { range, seen: [-5.0, 36.0], ends: [RangeEnd::Seeds, RangeEnd::CoarseMap] };
+        assert_eq!(not_below(&found, None).unwrap(), range);
+        assert_eq!(not_below(&found, Some(-20)).unwrap(), range);
+        assert_eq!(not_below(&found, Some(0)).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
+        let error = not_below(&found, Some(36)).unwrap_err().to_string();
+        assert!(error.contains("-5 to 36 px") && error.contains("exchange"), "{error}");
+        let exchanged = FoundRange { range: DisparityRange::inclusive(-40, 3).unwrap(), seen: [-37.0, -4.0], ..found };
+        assert!(not_below(&exchanged, Some(0)).is_err(), "the margin reaches above 0, the disparities do not");
     }
 }

@@ -11,7 +11,7 @@ use hsad::{
     image::{Luma, Plane},
     internals::cpu::features::detector::detect,
     io::{load, pfm},
-    seeding::{Seeding, SeedingConfig, Verdict},
+    seeding::{RangeEnd, Seeding, SeedingConfig, Verdict},
 };
 
 /// Smooth noise, a pure function of its arguments.
@@ -57,7 +57,7 @@ fn find((left, right): &(Luma, Luma)) -> Seeding {
 fn rendered_pair_is_described_completely() {
     let views = pair(8.0, 30.0, 0.0, |value| 0.8 * value + 12.0);
     let found = find(&views);
-    let range = found.range.unwrap();
+    let range = found.range.unwrap().range;
     assert!(range.contains(8) && range.contains(30) && range.min >= -2 && range.last() <= 48, "{range:?}");
     assert!(found.rectification.is_rectified(), "{}", found.rectification);
     let brightness = found.brightness.unwrap();
@@ -72,8 +72,31 @@ fn rendered_pair_is_described_completely() {
 
 #[test]
 fn negative_disparities_are_found() {
-    let range = find(&pair(-25.0, -5.0, 0.0, |value| value)).range.unwrap();
+    let range = find(&pair(-25.0, -5.0, 0.0, |value| value)).range.unwrap().range;
     assert!(range.contains(-25) && range.contains(-5) && range.last() < 15, "{range:?}");
+}
+
+/// A wall out of focus bears no features: the coarse map sees it.
+#[test]
+fn a_blurred_wall_lies_in_the_range() {
+    let (left, right) = pair(8.0, 30.0, 0.0, |value| value);
+    let wall = |view: &Luma, from: u32| {
+        Luma::from_fn(view.size(), |x, y| {
+            if (from..from + 100).contains(&x) && (70..170).contains(&y) {
+                return view.get(x, y);
+            }
+            // A blur that leaves 2 to 3 grey levels of the texture's finest scale.
+            let sum: u32 = (-8..=8).map(|i| u32::from(view.get_clamped(i64::from(x), i64::from(y) + i))).sum();
+            ((sum / 17 + 3 * 120) / 4) as u8
+        })
+    };
+    let views = (wall(&left, 110), wall(&right, 80));
+    let found = find(&views);
+    let on_wall = |seed: &&hsad::matching::Seed| seed.disparity < 15.0;
+    assert!(found.seeds.iter().filter(on_wall).count() * 20 < found.seeds.len(), "the wall bears features");
+    let range = found.range.unwrap();
+    assert!(range.range.contains(8) && range.range.contains(30), "{range:?}");
+    assert_eq!(range.ends[0], RangeEnd::CoarseMap);
 }
 
 #[test]
@@ -122,9 +145,9 @@ fn real_scenes_lie_in_the_range_found_for_them() {
     for scene in ["Art", "Cones", "Teddy", "Books", "Motorcycle_Q", "Adirondack_Q", "Adirondack_Q_exposure"] {
         let views = (luma(&folder.join(scene).join("left.png")), luma(&folder.join(scene).join("right.png")));
         let found = find(&views);
-        let (range, known) = (found.range.unwrap(), truth(&folder.join(scene).join("disp_left.pfm")));
+        let (range, known) = (found.range.unwrap().range, truth(&folder.join(scene).join("disp_left.pfm")));
         let share = known.iter().filter(|&&d| range.contains(d.round() as i32)).count() as f64 / known.len() as f64;
-        assert!(share >= 0.995, "{scene}: {share} in {range:?}");
+        assert!(share >= 0.997, "{scene}: {share} in {range:?}");
         let (low, high) = known.iter().fold((f32::MAX, f32::MIN), |(low, high), &d| (low.min(d), high.max(d)));
         let width = DisparityRange::inclusive(low.floor() as i32, high.ceil() as i32).unwrap().count;
         assert!(range.count as f32 <= 1.6 * width as f32, "{scene}: {range:?} for {low} to {high}");

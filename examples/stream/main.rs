@@ -17,7 +17,6 @@ use hsad::{
     gpu::Gpu,
     image::Size,
     io::{Picture, load},
-    pipeline::equalising,
     seeding::Seeding,
     wgpu,
 };
@@ -90,10 +89,10 @@ impl Stream {
     fn learn(&mut self, seeding: &Seeding) -> hsad::Result<()> {
         let mut config = self.engine.config.clone();
         if let Some(found) = &seeding.brightness {
-            config.brightness = equalising(found);
+            config.brightness = found.equalising();
             self.engine.matcher.set_brightness(config.brightness)?;
         }
-        let Ok(found) = seeding.range else { return Ok(()) };
+        let Ok(found) = seeding.range.map(|found| found.range) else { return Ok(()) };
         let has = config.range;
         let too_small = found.min < has.min || found.last() > has.last();
         if too_small || 4 * found.count < has.count {

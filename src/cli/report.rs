@@ -190,12 +190,17 @@ pub fn searched(range: DisparityRange, source: &RangeSource) -> Value {
     let mut value = ends(range);
     value["source"] = match source {
         RangeSource::Asked => "asked",
-        RangeSource::Seeds => "seeds",
+        RangeSource::Found(_) => "found",
         RangeSource::Fallback(_) => "fallback",
     }
     .into();
-    if let RangeSource::Fallback(thin) = source {
-        value["reason"] = thin.to_string().into();
+    match source {
+        RangeSource::Asked => {}
+        RangeSource::Found([min, max]) => {
+            value["min_from"] = min.name().into();
+            value["max_from"] = max.name().into();
+        }
+        RangeSource::Fallback(thin) => value["reason"] = thin.to_string().into(),
     }
     value
 }

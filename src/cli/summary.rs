@@ -14,8 +14,8 @@ impl CompletedJob {
         let seeding = &outcome.seeding;
         let source = match outcome.range_source {
             RangeSource::Asked => "as asked".into(),
-            RangeSource::Seeds => format!("found from {} matches", seeding.seeds.len()),
-            RangeSource::Fallback(_) => "too few matches to find it".into(),
+            RangeSource::Found(_) => format!("found from a coarse map and {} matches", seeding.seeds.len()),
+            RangeSource::Fallback(_) => "could not be found".into(),
         };
         let rectified = match seeding.rectification.verdict {
             Verdict::Rectified => format!("yes: {}", seeding.rectification),

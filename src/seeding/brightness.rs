@@ -1,6 +1,6 @@
 //! Gain and offset between the grey values of the two views.
 
-use crate::{image::Luma, matching::Seed};
+use crate::{dense::Brightness, image::Luma, matching::Seed};
 
 /// Half the side of the 7x7 window over which grey values are averaged, in pixels.
 const HALF: i64 = 3;
@@ -45,6 +45,16 @@ impl BrightnessRelation {
         let offset = median(means.iter().map(|(l, r)| r - gain * l).collect())?;
         let spread = median(means.iter().map(|(l, r)| (r - gain * l - offset).abs()).collect())?;
         Some(Self { gain, offset, residual: super::DEVIATIONS * spread })
+    }
+
+    /// The change that gives the right view the brightness of the left one; [`Brightness::SAME`] for a relation outside
+    /// gains of 0.1 to 10 and offsets of 255 grey levels.
+    pub fn equalising(&self) -> Brightness {
+        if !(0.1..=10.0).contains(&self.gain) || self.offset.abs() > 255.0 {
+            return Brightness::SAME;
+        }
+        let fixed_point = |value: f32| (256.0 * value).round() as i32;
+        Brightness { gain: fixed_point(1.0 / self.gain), offset: fixed_point(-self.offset / self.gain) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Conversion of results from reduced views to pixels of the full-size views.
 
-use super::{Rectification, Seeding};
+use super::{FoundRange, Rectification, Seeding};
 use crate::{disparity::DisparityRange, features::Feature, matching::Seed};
 
 /// Coordinate in the full-size picture of a coordinate in the picture reduced by `factor`: the centre of a block.
@@ -39,7 +39,11 @@ impl Seeding {
             ..*seed
         };
         Self {
-            range: self.range.map(|range| enlarged_range(range, factor)),
+            range: self.range.map(|found| FoundRange {
+                range: enlarged_range(found.range, factor),
+                seen: found.seen.map(|disparity| scale * disparity),
+                ..found
+            }),
             rectification: Rectification {
                 offset: scale * rectification.offset,
                 residual: scale * rectification.residual,

@@ -1,9 +1,10 @@
-//! Seeding: facts about a pair from the matches of its features, namely disparity range, rectification, brightness
-//! relation and trust.
+//! Seeding: facts about a pair from the matches of its features and a coarse map, namely disparity range, rectification,
+//! brightness relation and trust.
 //!
 //! Seeds do not set disparities of single pixels: dense matching searches the whole range, also where seeds are rare.
 
 mod brightness;
+mod coarse;
 mod enlarged;
 mod range;
 mod rectification;
@@ -11,11 +12,12 @@ mod support;
 
 pub use brightness::BrightnessRelation;
 pub use enlarged::enlarged_feature;
-pub use range::ThinSupport;
+pub use range::{FoundRange, RangeEnd, ThinSupport};
 pub use rectification::{Rectification, Verdict};
 pub(crate) use support::{GRADIENT, SLACK};
 
 use crate::{
+    dense::Brightness,
     disparity::DisparityRange,
     error::{Error, Result},
     features::Feature,
@@ -44,8 +46,8 @@ impl Default for SeedingConfig {
 /// Facts about a pair, known before dense matching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seeding {
-    /// The disparity range to search, or why it is unknown.
-    pub range: std::result::Result<DisparityRange, ThinSupport>,
+    /// The disparity range to search, from the seeds and a coarse map of the views, or why it is unknown.
+    pub range: std::result::Result<FoundRange, ThinSupport>,
     /// Whether rows correspond.
     pub rectification: Rectification,
     /// Relation of the grey values of the views; `None` if there are too few seeds.
@@ -83,10 +85,12 @@ impl Seeding {
         };
         let count = seeds.len();
         let seeds = support::supported(&seeds);
-        let range = range::disparity_range(&seeds, count);
+        let brightness = BrightnessRelation::new(views.0, views.1, &seeds);
+        let equalised = brightness.as_ref().map_or(Brightness::SAME, BrightnessRelation::equalising);
+        let range = range::disparity_range(views, &seeds, count, equalised)?;
         Ok(Self {
-            brightness: BrightnessRelation::new(views.0, views.1, &seeds),
-            trust: range.map_or(0.0, |range| trust(&raw, range, config.max_dy)),
+            brightness,
+            trust: range.map_or(0.0, |found| trust(&raw, found.range, config.max_dy)),
             range,
             rectification,
             seeds,

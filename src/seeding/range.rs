@@ -1,41 +1,87 @@
-//! The disparity range to search, from the seeds.
+//! The disparity range to search, from the seeds and the coarse map.
 
 use std::fmt;
 
+use super::coarse::CoarseMap;
 use crate::{
+    dense::Brightness,
     disparity::DisparityRange,
     error::{Error, Result},
+    image::Luma,
     matching::Seed,
+    names::names,
 };
 
-/// Smallest number of seeds for a range. With 14 seeds, in a quarter of a scene, the range missed 38 % of the pixels.
+/// Smallest number of supported seeds whose extent counts. With 14 seeds, in a quarter of a scene, the extent missed 38 %
+/// of the pixels.
 const NEEDED: usize = 20;
-/// Margin beyond the farthest of many seeds, as a share of the seeds' extent.
-const FAR_MARGIN: f32 = 0.15;
-/// Margin beyond the nearest of many seeds, as a share of the seeds' extent; larger than at the far end, because
-/// near objects are large, smooth and often cut by the border, and so bear few features or none. The nine scenes need
-/// up to 0.34 here and 0.08 at the far end.
-const NEAR_MARGIN: f32 = 0.4;
-/// Number of seeds at which the margins double: fewer seeds miss more of the scene, as halves and quarters cut from the
-/// nine scenes show.
-const FEW: f32 = 40.0;
+/// Smallest number of supported seeds that place a range where the coarse map does not.
+const FEW: usize = 5;
+/// Share of the seeds that is cut off at either end: a repeated pattern has groups of wrong seeds, which support each
+/// other.
+const TAIL: f32 = 0.02;
 /// Smallest margin at either end, in pixels.
 const LEAST_MARGIN: f32 = 3.0;
+/// Margins beyond the far and the near end of the seeds, as shares of their extent, where the coarse map says nothing.
+/// Near objects are large, smooth and often cut by the border, and so bear few features or none.
+const SEED_MARGINS: [f32; 2] = [0.15, 0.4];
+/// Smallest margin where few seeds stand alone, as a share of the width of the picture.
+const ALONE: f32 = 0.1;
+/// Disparities that are searched first, as shares of the width of the picture.
+const SPAN: [f32; 2] = [-0.05, 0.4];
+/// Smallest share of the coarse map that lies on surfaces, 0 to 1. Sound pairs have 0.5 to 1, unrelated views 0.01 to
+/// 0.15; where a bare wall fills most of the picture 0.27 was seen.
+const COVERAGE: f32 = 0.2;
+/// Largest share of the coarse map's surfaces at an end of the searched disparities, 0 to 1.
+const AT_ENDS: f32 = 0.01;
+/// Smallest share of the coarse map's surfaces that are evidence of disparities below 0, 0 to 1.
+const NEGATIVE: f32 = 0.02;
 
-/// Too few seeds support each other to determine the disparity range.
+/// Origin of an end of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RangeEnd {
+    /// The disparities of the seeds.
+    Seeds,
+    /// The disparities of the coarse map.
+    CoarseMap,
+    /// 0: neither seeds nor coarse map show a disparity below.
+    Zero,
+}
+
+names!(RangeEnd, "the origin of the range", { Seeds => "seeds", CoarseMap => "coarse map", Zero => "nothing below zero" });
+
+/// The disparity range to search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundRange {
+    /// The range, with margins, in pixels.
+    pub range: DisparityRange,
+    /// Smallest and largest disparity that was seen, in pixels.
+    pub seen: [f32; 2],
+    /// Origin of the smallest and of the largest disparity.
+    pub ends: [RangeEnd; 2],
+}
+
+/// Neither the seeds nor the coarse map determine the disparity range.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSupport {
     /// Number of seeds, matched points with a distinct cost minimum.
     pub seeds: usize,
     /// Number of the seeds that their neighbours support.
     pub supported: usize,
+    /// Share of the coarse map that lies on surfaces, 0 to 1.
+    pub coverage: f32,
 }
 
 impl fmt::Display for ThinSupport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seeds, supported } = self;
-        write!(f, "{seeds} points were found in both views and {supported} of them confirmed by their neighbours, ")?;
-        write!(f, "but {NEEDED} are needed")
+        let Self { seeds, supported, coverage } = self;
+        write!(
+            f,
+            "{seeds} points were found in both views and {supported} of them confirmed by their neighbours, but {NEEDED} are \
+             needed; and the views correspond in {:.0} % of a small copy, but {:.0} % are needed",
+            100.0 * coverage,
+            100.0 * COVERAGE
+        )
     }
 }
 
@@ -47,24 +93,83 @@ impl From<ThinSupport> for Error {
     }
 }
 
-/// The range that the `supported` seeds span, with margins; `seeds` is the number of all seeds.
-pub(super) fn disparity_range(supported: &[Seed], seeds: usize) -> std::result::Result<DisparityRange, ThinSupport> {
-    let thin = ThinSupport { seeds, supported: supported.len() };
-    if supported.len() < NEEDED {
-        return Err(thin);
+/// The range that the `supported` seeds and a coarse map of the views span, with margins; `seeds` is the number of all
+/// seeds.
+///
+/// The coarse map decides where it covers enough: it sees surfaces without features, and a repeated pattern does not
+/// stretch it. The seeds widen it.
+///
+/// # Errors
+/// [`Error::SizesDiffer`].
+pub(super) fn disparity_range(
+    views: (&Luma, &Luma),
+    supported: &[Seed],
+    seeds: usize,
+    brightness: Brightness,
+) -> Result<std::result::Result<FoundRange, ThinSupport>> {
+    let seeds_extent = extent(supported);
+    let coarse = coarse_map(views, seeds_extent.filter(|_| supported.len() >= NEEDED), brightness)?;
+    let thin = ThinSupport { seeds, supported: supported.len(), coverage: coarse.coverage() };
+    let width = views.0.width() as f32;
+    Ok(match (coarse.extent(), seeds_extent) {
+        (Some(surfaces), extent) if coarse.coverage() >= COVERAGE => {
+            let seeds_extent = extent.filter(|_| supported.len() >= NEEDED).unwrap_or(surfaces);
+            joined(surfaces, seeds_extent, coarse.error(), coarse.negative()).map_err(|_| thin)
+        }
+        (_, Some([far, near])) if supported.len() >= FEW => {
+            let least = if supported.len() < NEEDED { ALONE * width } else { LEAST_MARGIN };
+            let [before, beyond] = SEED_MARGINS.map(|share| (share * (near - far)).max(least));
+            range([far - before, near + beyond])
+                .map(|range| FoundRange { range, seen: [far, near], ends: [RangeEnd::Seeds; 2] })
+                .map_err(|_| thin)
+        }
+        _ => Err(thin),
+    })
+}
+
+/// The coarse map over the usual disparities and those of the seeds; over all that the width allows if surfaces lie at an
+/// end of the usual ones, or if hardly any surface was found.
+fn coarse_map(views: (&Luma, &Luma), seeds: Option<[f32; 2]>, brightness: Brightness) -> Result<CoarseMap> {
+    let width = views.0.width() as f32;
+    let [low, high] = SPAN.map(|share| share * width);
+    let [far, near] = seeds.map_or([low, high], |[far, near]| [far + low, near - low]);
+    let most = width - 1.0;
+    let coarse = |[far, near]: [f32; 2]| CoarseMap::new(views, range([far.max(-most), near.min(most)])?, brightness);
+    let usual = coarse([low.min(far), high.max(near)])?;
+    if usual.coverage() >= COVERAGE && usual.at_ends() <= AT_ENDS {
+        return Ok(usual);
     }
-    let (far, near) = extent(supported.iter().map(|seed| seed.disparity));
-    widened(far, near, 1.0 + FEW / supported.len() as f32).map_err(|_| thin)
+    coarse([-most, most])
 }
 
-/// Smallest and largest disparity.
-pub(super) fn extent(disparities: impl Iterator<Item = f32>) -> (f32, f32) {
-    disparities.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)))
+/// Smallest and largest disparity of the seeds, without the tails.
+fn extent(seeds: &[Seed]) -> Option<[f32; 2]> {
+    let mut disparities: Vec<f32> = seeds.iter().map(|seed| seed.disparity).collect();
+    disparities.sort_by(f32::total_cmp);
+    let last = disparities.len().checked_sub(1)?;
+    let tail = (TAIL * last as f32) as usize;
+    Some([disparities[tail], disparities[last - tail]])
 }
 
-fn widened(far: f32, near: f32, factor: f32) -> Result<DisparityRange> {
-    let margin = |share: f32| (factor * share * (near - far)).max(LEAST_MARGIN);
-    DisparityRange::inclusive((far - margin(FAR_MARGIN)).floor() as i32, (near + margin(NEAR_MARGIN)).ceil() as i32)
+/// The range of surfaces and seeds, with margins of `error` px; `negative` is the share of surfaces below 0.
+fn joined(surfaces: [f32; 2], seeds: [f32; 2], error: f32, negative: f32) -> Result<FoundRange> {
+    let margin = error.max(LEAST_MARGIN);
+    let mut seen = [surfaces[0].min(seeds[0]), surfaces[1].max(seeds[1])];
+    let origin = |of_surface: bool| if of_surface { RangeEnd::CoarseMap } else { RangeEnd::Seeds };
+    let mut ends = [origin(surfaces[0] <= seeds[0]), origin(surfaces[1] >= seeds[1])];
+    let mut far = seen[0] - margin;
+    // Disparities below 0 are rare: cameras that look at one point, or views exchanged. Without evidence none is searched.
+    if far < 0.0 && seeds[0] > -0.5 && negative < NEGATIVE && seen[1] >= 0.0 {
+        far = 0.0;
+        seen[0] = seen[0].max(0.0);
+        ends[0] = RangeEnd::Zero;
+    }
+    Ok(FoundRange { range: range([far, seen[1] + margin])?, seen, ends })
+}
+
+/// The whole disparities that hold `[far, near]`.
+fn range([far, near]: [f32; 2]) -> Result<DisparityRange> {
+    DisparityRange::inclusive(far.floor() as i32, near.ceil() as i32)
 }
 
 #[cfg(test)]
@@ -77,22 +182,43 @@ mod tests {
     }
 
     #[test]
-    fn margins_by_hand() {
-        // 200 seeds from 10 to 50: 1.2 * 0.15 * 40 = 7.2 px below, 1.2 * 0.4 * 40 = 19.2 px above.
-        let many = seeds((0..200).map(|i| if i % 2 == 0 { 10.0 } else { 50.0 }));
-        assert_eq!(disparity_range(&many, 250).unwrap(), DisparityRange::inclusive(2, 70).unwrap());
-        // 20 seeds: three times the margins, 18 px and 48 px.
-        assert_eq!(disparity_range(&many[..20], 25).unwrap(), DisparityRange::inclusive(-8, 98).unwrap());
-        // A plane at -7.5 px: 3 px on both sides, rounded outwards to whole pixels.
-        let plane = seeds([-7.5; 20]);
-        assert_eq!(disparity_range(&plane, 20).unwrap(), DisparityRange::inclusive(-11, -4).unwrap());
+    fn a_few_seeds_of_a_repeated_pattern_do_not_stretch_the_range() {
+        let mut disparities: Vec<f32> = (0..198).map(|i| 10.0 + (i % 40) as f32).collect();
+        disparities.extend([-164.0, 100.0]);
+        let [far, near] = extent(&seeds(disparities)).unwrap();
+        assert_eq!([far, near], [10.0, 49.0]);
+        assert_eq!(extent(&[]), None);
+    }
+
+    #[test]
+    fn surfaces_and_seeds_together_by_hand() {
+        // Surfaces from 12 to 60 px, seeds from 20 to 62.5; a margin of 6 px on both sides.
+        let found = joined([12.0, 60.0], [20.0, 62.5], 6.0, 0.0).unwrap();
+        assert_eq!((found.range.min, found.range.last()), (6, 69));
+        assert_eq!((found.seen, found.ends), ([12.0, 62.5], [RangeEnd::CoarseMap, RangeEnd::Seeds]));
+        // A margin of at least 3 px.
+        let exact = joined([12.0, 60.0], [12.0, 60.0], 1.5, 0.0).unwrap();
+        assert_eq!((exact.range.min, exact.range.last()), (9, 63));
+    }
+
+    #[test]
+    fn disparities_below_zero_need_evidence() {
+        let range = |surfaces, seeds, negative| {
+            let found = joined(surfaces, seeds, 6.0, negative).unwrap();
+            (found.range.min, found.ends[0])
+        };
+        assert_eq!(range([2.0, 60.0], [1.0, 60.0], 0.0), (0, RangeEnd::Zero));
+        assert_eq!(range([-12.0, 60.0], [11.0, 60.0], 0.009), (0, RangeEnd::Zero));
+        assert_eq!(range([-12.0, 60.0], [11.0, 60.0], 0.1), (-18, RangeEnd::CoarseMap));
+        assert_eq!(range([2.0, 60.0], [-4.0, 60.0], 0.0), (-10, RangeEnd::Seeds));
     }
 
     #[test]
     fn thin_support_is_an_error_with_figures() {
-        let thin = disparity_range(&seeds([5.0; 19]), 40).unwrap_err();
-        assert_eq!(thin, ThinSupport { seeds: 40, supported: 19 });
+        let thin = ThinSupport { seeds: 40, supported: 19, coverage: 0.04 };
         let message = Error::from(thin).to_string();
-        assert!(message.contains("40 points") && message.contains("19 of them"), "{message}");
+        for part in ["40 points", "19 of them", "4 % of a small copy"] {
+            assert!(message.contains(part), "'{part}' in: {message}");
+        }
     }
 }

@@ -20,7 +20,7 @@ use crate::interruption::Run;
 fn writes_maps_that_agree_and_a_report() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let out = temporary.path().join("a/b");
-    let summary = contains("found from").and(contains("coverage")).and(contains("disparity.pfm"));
+    let summary = contains("found from a coarse map").and(contains("coverage")).and(contains("disparity.pfm"));
     match_on_cpu(&left, &right, &out).assert().success().stdout(summary).stderr("");
     let files = ["confidence.png", "disparity-color.png", "disparity.pfm", "disparity.png", "report.json"];
     assert_eq!(names(&out), files);
@@ -45,7 +45,7 @@ fn writes_maps_that_agree_and_a_report() {
     let aggregation = &report["parameters"]["aggregation"];
     assert_eq!([&aggregation["paths"], &aggregation["cost_window"], &aggregation["p1"]], [3, 1, 16]);
     assert_eq!(report["parameters"]["matching"]["ratio"], json!(0.85));
-    assert_eq!(report["range"]["source"], "seeds");
+    assert_eq!(report["range"]["source"], "found");
     // The disparities of the scene are 9.1 to 57.5 px (data/README.md).
     let range = |end: &str| report["range"][end].as_i64().unwrap();
     assert!((-20..=9).contains(&range("min")) && (57..120).contains(&range("max")), "{}", report["range"]);
@@ -113,7 +113,7 @@ fn the_hybrid_method_finds_disparities_too() {
         let mut command = hsad();
         command.arg("match").args([&left, &right]).arg("-o").arg(&out);
         command.args(["--method", "kamencay", "--device", device]);
-        command.assert().success().stdout(contains("found from").and(contains("coverage"))).stderr("");
+        command.assert().success().stdout(contains("found from a coarse map").and(contains("coverage"))).stderr("");
         (fs::read(out.join("disparity.pfm")).unwrap(), fs::read(out.join("confidence.png")).unwrap())
     };
     assert!(run("cpu") == run("0"), "the device and the twins differ");
@@ -122,7 +122,7 @@ fn the_hybrid_method_finds_disparities_too() {
     let parameters = &found["parameters"];
     assert_eq!([&parameters["method"], &parameters["reference"]], ["kamencay", "left"]);
     assert_eq!((&parameters["belief_propagation"]["levels"], &parameters["cost"]["window"]), (&json!(5), &json!(3)));
-    assert_eq!((&parameters["aggregation"], &found["range"]["source"]), (&json!(null), &json!("seeds")));
+    assert_eq!((&parameters["aggregation"], &found["range"]["source"]), (&json!(null), &json!("found")));
     let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
     let truth = pfm::read(&scene("planes", "disp_left.pfm")).unwrap();
     let score = hsad::eval::score(&map, &truth, None, &[1.0]).unwrap();
@@ -203,7 +203,7 @@ fn the_paper_searches_to_one_side_from_the_right_view() {
     assert_eq!([&parameters["reference"], &parameters["window"]], [&json!("right"), &json!(7)]);
     assert_eq!([&parameters["min_disparity"], &parameters["strongest"]], [0, 10]);
     assert_eq!((&parameters["max_lr_difference_px"], &parameters["uniqueness_percent"]), (&json!(null), &json!(0)));
-    assert_eq!((&parameters["features"]["upright"], &found["range"]["source"]), (&json!(false), &json!("seeds")));
+    assert_eq!((&parameters["features"]["upright"], &found["range"]["source"]), (&json!(false), &json!("found")));
     assert!(found["range"]["min"].as_i64().unwrap() >= 0);
     for (name, width) in [("keypoints.png", 688), ("matches.png", 688)] {
         assert_eq!(load::load(&out.join(name)).unwrap().size(), (width, 255));

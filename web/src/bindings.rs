@@ -167,7 +167,7 @@ impl Matched {
     /// Whether the range was found from the matches; otherwise it was assumed.
     #[wasm_bindgen(getter)]
     pub fn found(&self) -> bool {
-        self.outcome.range_source == RangeSource::Seeds
+        matches!(self.outcome.range_source, RangeSource::Found(_))
     }
 
     /// Number of interest points matched between the views.

@@ -1,5 +1,7 @@
 //! Dense matching in one call.
 
+use rayon::prelude::*;
+
 use super::{
     block_match, box_mean, cell_ranges, census, claim, consistency, cost, fill, half_consistency, halve, path,
     path_winners, residual, select, support, weighted_median, winners,
@@ -112,5 +114,5 @@ fn all_paths(
     let Some(SemiGlobal { penalties, paths }) = &aggregation.semi_global else {
         return vec![costs];
     };
-    paths.directions().iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
+    paths.directions().par_iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
 }

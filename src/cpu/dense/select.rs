@@ -1,5 +1,7 @@
 //! Selection of disparities by the summed costs of all paths, from the definition.
 
+use rayon::prelude::*;
+
 use super::block_match::decide;
 use crate::{
     dense::{Dense, DenseConfig},
@@ -26,6 +28,7 @@ pub fn path_winners(
 pub fn select(paths: &[Vec<u8>], Size { width, height }: Size, config: &DenseConfig) -> Dense {
     let count = config.range.count.next_multiple_of(4) as usize;
     let selected: Vec<(i32, u8)> = (0..width as usize * height as usize)
+        .into_par_iter()
         .map(|pixel| {
             let sum = |d| Some(paths.iter().map(|path| u32::from(path[pixel * count + d])).sum());
             let sums: Vec<Option<u32>> = (0..config.range.count as usize).map(sum).collect();

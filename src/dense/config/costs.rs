@@ -1,6 +1,6 @@
 //! Matching by census, luma and gradient costs.
 
-use super::{Cost, Direction, Paths, Penalties};
+use super::{Cost, Difference, Direction, Paths, Penalties};
 use crate::error::{Result, check, check_range};
 
 /// The largest side of a cost-averaging window, in pixels.
@@ -38,7 +38,25 @@ pub enum CrossCheck {
     Claimed,
 }
 
+impl SemiGlobal {
+    /// Three paths, with penalties tuned on real pairs: see docs/benchmarks.md.
+    pub(crate) const TUNED: Self =
+        Self { penalties: Penalties { p1: 16, p2: 80, least_p2: 16, p2_scale: 16 }, paths: Paths::Three };
+}
+
 impl CostAggregation {
+    /// Costs of the semi-global presets, tuned on real pairs: see docs/benchmarks.md.
+    pub(crate) const TUNED: Self = Self {
+        cost: Cost {
+            census: 20,
+            difference: Difference { weight: 4, limit: 24 },
+            gradient: Difference { weight: 12, limit: 16 },
+        },
+        window: 1,
+        semi_global: Some(SemiGlobal::TUNED),
+        cross_check: CrossCheck::Claimed,
+    };
+
     /// Checks that costs and penalties fit in cost volumes of 8 bits.
     ///
     /// # Errors
