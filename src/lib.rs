@@ -137,6 +137,7 @@ pub mod internals;
 pub mod io;
 pub mod kamencay;
 pub mod luma;
+mod mask;
 pub mod matching;
 mod names;
 mod pair;

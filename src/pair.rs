@@ -72,6 +72,21 @@ impl<'b> Pair<'b> {
         Ok(Self { backend: self.backend, left, right, device })
     }
 
+    /// The pair with other views of its size in place of those that are given.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) async fn with_views(mut self, views: [Option<Luma>; 2]) -> Result<Self> {
+        for ((view, own), side) in views.into_iter().zip([&mut self.left, &mut self.right]).zip(0..) {
+            let Some(view) = view else { continue };
+            if let Some(OnDevice { gpu, luma }) = &mut self.device {
+                luma[side] = upload(gpu, &view).await?;
+            }
+            *own = view;
+        }
+        Ok(self)
+    }
+
     /// Width and height of both views, in pixels.
     pub fn size(&self) -> Size {
         self.left.size()

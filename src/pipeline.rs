@@ -7,13 +7,14 @@ use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     config::{Config, Method},
-    dense::{Brightness, Dense, DenseConfig},
+    dense::{Brightness, Dense, DenseConfig, View},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
-    image::Size,
+    image::{Plane, Size},
     io::Picture,
     kamencay::KamencayConfig,
+    mask::{self, extended, mask_of},
     names::names,
     pair::Pair,
     seeding::{FoundRange, RangeEnd, Seeding, ThinSupport, Verdict, enlarged_feature},
@@ -62,6 +63,9 @@ pub struct Outcome {
     pub range_source: RangeSource,
     /// Change of the right view's brightness before dense matching.
     pub brightness: Brightness,
+    /// Which pixels of the left and of the right view show the scene: 255, or 0 for a pixel in a constant border or with an
+    /// alpha of 0; `None` if all do.
+    pub masks: [Option<Plane<u8>>; 2],
     /// Disparities and confidences of the reference view.
     pub dense: Dense,
     /// Duration of each step, with the compilation of its kernels and the wait for its results.
@@ -107,18 +111,31 @@ pub async fn run_async(
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
     let pair = Pair::new(backend, left, right).await?;
+    let views = pair.views();
+    let masks = [mask_of(left, views.0), mask_of(right, views.1)];
+    let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
+    let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| extended(view, mask)));
+    let pair = pair.with_views(extended).await?;
     enter(Some(Step::Features));
     let factor = reduction(pair.size());
     let reduced = if factor == 1 { None } else { Some(pair.reduced(factor).await?) };
     let sparse = reduced.as_ref().unwrap_or(&pair);
-    let mut features = sparse.features(&config.features).await?;
+    let reduced_masks = masks.each_ref().map(|mask| mask.as_ref().map(|mask| mask::reduced(mask, factor)));
+    let seen_features = async |config: &FeatureConfig| -> Result<[Vec<Feature>; 2]> {
+        let mut features = sparse.features(config).await?;
+        for (points, mask) in features.iter_mut().zip(&reduced_masks) {
+            points.retain(|point| mask.as_ref().is_none_or(|mask| mask::is_seen(mask, point)));
+        }
+        Ok(features)
+    };
+    let mut features = seen_features(&config.features).await?;
     enter(Some(Step::Seeding));
     let find =
         |features: &[Vec<Feature>; 2]| Seeding::find(sparse.views(), (&features[0], &features[1]), &config.seeding);
     let mut seeding = find(&features)?;
     if seeding.rectification.verdict == Verdict::Unknown && config.features.upright {
         // Upright descriptors of views that are rotated against each other do not match.
-        let turned = sparse.features(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
+        let turned = seen_features(&FeatureConfig { upright: false, ..config.features.clone() }).await?;
         let found = find(&turned)?;
         if found.rectification.verdict != Verdict::Unknown {
             (features, seeding) = (turned, found);
@@ -155,8 +172,10 @@ pub async fn run_async(
             (range, backend.kamencay(left, right, &KamencayConfig { range, ..task }).await?)
         }
     };
+    let [own, other] = if config.reference == View::Left { [0, 1] } else { [1, 0] };
+    let dense = mask::masked(dense, config.reference, masks[own].as_ref(), masks[other].as_ref());
     enter(None);
-    Ok(Outcome { features, seeding, range, range_source, brightness, dense, times })
+    Ok(Outcome { features, seeding, range, range_source, brightness, masks, dense, times })
 }
 
 /// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine

@@ -41,15 +41,15 @@ const PARAMETERS: DenseParameters = DenseParameters {
     }),
 };
 
-/// The disparities of the surfaces of a coarse map.
+/// The disparities of the surfaces that a downscaled pair shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoarseMap {
     /// Factor by which the pair was downscaled.
-    factor: f32,
-    /// Disparities of all pixels on surfaces of at least [`SURFACE`] pixels, sorted, in pixels of the downscaled pair.
+    factor: u32,
+    /// Disparities of the downscaled left view, in 1/256 px of it; [`NONE`] off the surfaces.
+    map: DisparityMap,
+    /// The disparities on surfaces, sorted, in pixels of the downscaled pair.
     disparities: Vec<f32>,
-    /// Number of pixels of the downscaled pair.
-    pixels: usize,
     /// Searched disparities, in pixels of the downscaled pair.
     searched: DisparityRange,
 }
@@ -79,27 +79,35 @@ impl CoarseMap {
     }
 
     fn of_surfaces(sure: &DisparityMap, factor: u32, searched: DisparityRange) -> Self {
-        let surfaces = surfaces(sure).into_iter().filter(|surface| surface.len() >= SURFACE);
-        let mut disparities: Vec<f32> = surfaces.flatten().map(|disparity| disparity as f32 / SCALE as f32).collect();
+        let mut map = sure.map(|_| NONE);
+        for (x, y) in surfaces(sure).into_iter().filter(|surface| surface.len() >= SURFACE).flatten() {
+            map.set(x, y, sure.get(x, y));
+        }
+        let on_surfaces = map.data().iter().filter(|&&disparity| disparity != NONE);
+        let mut disparities: Vec<f32> = on_surfaces.map(|&disparity| disparity as f32 / SCALE as f32).collect();
         disparities.sort_by(f32::total_cmp);
-        Self { factor: factor as f32, disparities, pixels: sure.data().len(), searched }
+        Self { factor, map, disparities, searched }
     }
 
+    #[allow(missing_docs)]
+    pub fn lab(&self) -> (&DisparityMap, u32) {
+        (&self.map, self.factor)
+    }
     /// Share of the downscaled left view that lies on a surface, 0 to 1.
     pub fn coverage(&self) -> f32 {
-        self.disparities.len() as f32 / self.pixels as f32
+        self.disparities.len() as f32 / self.map.data().len() as f32
     }
 
     /// Smallest and largest disparity of the surfaces, without the tails, in pixels of the pair; `None` without surfaces.
     pub fn extent(&self) -> Option<[f32; 2]> {
         let last = self.disparities.len().checked_sub(1)?;
         let tail = (TAIL * last as f32) as usize;
-        Some([tail, last - tail].map(|place| self.factor * self.disparities[place]))
+        Some([tail, last - tail].map(|place| self.factor as f32 * self.disparities[place]))
     }
 
     /// Error of a disparity of the map, in pixels of the pair.
     pub fn error(&self) -> f32 {
-        1.5 * self.factor
+        1.5 * self.factor as f32
     }
 
     /// Share of the surfaces with a disparity below 0, 0 to 1.
@@ -119,8 +127,8 @@ impl CoarseMap {
     }
 }
 
-/// The disparities of each surface, a connected part of the map whose neighbouring disparities differ by at most a pixel.
-fn surfaces(map: &DisparityMap) -> Vec<Vec<i32>> {
+/// The pixels of each surface, a connected part of the map whose neighbouring disparities differ by at most a pixel.
+fn surfaces(map: &DisparityMap) -> Vec<Vec<(u32, u32)>> {
     let Size { width, height } = map.size();
     let mut free = map.map(|&disparity| disparity != NONE);
     let mut found = Vec::new();
@@ -132,7 +140,7 @@ fn surfaces(map: &DisparityMap) -> Vec<Vec<i32>> {
         let (mut surface, mut open) = (Vec::new(), vec![(x, y)]);
         while let Some((x, y)) = open.pop() {
             let here = map.get(x, y);
-            surface.push(here);
+            surface.push((x, y));
             for (x, y) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
                 if x < width && y < height && free.get(x, y) && (map.get(x, y) - here).abs() <= SCALE {
                     free.set(x, y, false);
@@ -155,7 +163,7 @@ mod tests {
         let mut found = surfaces(&map);
         found.iter_mut().for_each(|surface| surface.sort_unstable());
         // 256 and 513 differ by more than a pixel, 256 and 0 below it by a pixel.
-        assert_eq!(found, [vec![0, 0, 256], vec![512, 513, 600]]);
+        assert_eq!(found, [vec![(0, 0), (1, 0), (1, 1)], vec![(2, 0), (3, 0), (3, 1)]]);
     }
 
     #[test]

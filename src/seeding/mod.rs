@@ -11,6 +11,7 @@ mod rectification;
 mod support;
 
 pub use brightness::BrightnessRelation;
+pub use coarse::CoarseMap;
 pub use enlarged::enlarged_feature;
 pub use range::{FoundRange, RangeEnd, ThinSupport};
 pub use rectification::{Rectification, Verdict};
@@ -48,6 +49,8 @@ impl Default for SeedingConfig {
 pub struct Seeding {
     /// The disparity range to search, from the seeds and a coarse map of the views, or why it is unknown.
     pub range: std::result::Result<FoundRange, ThinSupport>,
+    /// The disparities of surfaces in the pair downscaled to about a hundred columns.
+    pub coarse: CoarseMap,
     /// Whether rows correspond.
     pub rectification: Rectification,
     /// Relation of the grey values of the views; `None` if there are too few seeds.
@@ -87,11 +90,13 @@ impl Seeding {
         let seeds = support::supported(&seeds);
         let brightness = BrightnessRelation::new(views.0, views.1, &seeds);
         let equalised = brightness.as_ref().map_or(Brightness::SAME, BrightnessRelation::equalising);
-        let range = range::disparity_range(views, &seeds, count, equalised)?;
+        let coarse = range::coarse_map(views, &seeds, equalised)?;
+        let range = range::disparity_range(size.width, &seeds, count, &coarse);
         Ok(Self {
             brightness,
             trust: range.map_or(0.0, |found| trust(&raw, found.range, config.max_dy)),
             range,
+            coarse,
             rectification,
             seeds,
         })

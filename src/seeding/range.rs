@@ -93,44 +93,43 @@ impl From<ThinSupport> for Error {
     }
 }
 
-/// The range that the `supported` seeds and a coarse map of the views span, with margins; `seeds` is the number of all
-/// seeds.
+/// The range that the `supported` seeds and a coarse map span, with margins; `seeds` is the number of all seeds, `width`
+/// that of the view in pixels.
 ///
 /// The coarse map decides where it covers enough: it sees surfaces without features, and a repeated pattern does not
 /// stretch it. The seeds widen it.
-///
-/// # Errors
-/// [`Error::SizesDiffer`].
 pub(super) fn disparity_range(
-    views: (&Luma, &Luma),
+    width: u32,
     supported: &[Seed],
     seeds: usize,
-    brightness: Brightness,
-) -> Result<std::result::Result<FoundRange, ThinSupport>> {
+    coarse: &CoarseMap,
+) -> std::result::Result<FoundRange, ThinSupport> {
     let seeds_extent = extent(supported);
-    let coarse = coarse_map(views, seeds_extent.filter(|_| supported.len() >= NEEDED), brightness)?;
     let thin = ThinSupport { seeds, supported: supported.len(), coverage: coarse.coverage() };
-    let width = views.0.width() as f32;
-    Ok(match (coarse.extent(), seeds_extent) {
+    match (coarse.extent(), seeds_extent) {
         (Some(surfaces), extent) if coarse.coverage() >= COVERAGE => {
             let seeds_extent = extent.filter(|_| supported.len() >= NEEDED).unwrap_or(surfaces);
             joined(surfaces, seeds_extent, coarse.error(), coarse.negative()).map_err(|_| thin)
         }
         (_, Some([far, near])) if supported.len() >= FEW => {
-            let least = if supported.len() < NEEDED { ALONE * width } else { LEAST_MARGIN };
+            let least = if supported.len() < NEEDED { ALONE * width as f32 } else { LEAST_MARGIN };
             let [before, beyond] = SEED_MARGINS.map(|share| (share * (near - far)).max(least));
             range([far - before, near + beyond])
                 .map(|range| FoundRange { range, seen: [far, near], ends: [RangeEnd::Seeds; 2] })
                 .map_err(|_| thin)
         }
         _ => Err(thin),
-    })
+    }
 }
 
 /// The coarse map over the usual disparities and those of the seeds; over all that the width allows if surfaces lie at an
 /// end of the usual ones, or if hardly any surface was found.
-fn coarse_map(views: (&Luma, &Luma), seeds: Option<[f32; 2]>, brightness: Brightness) -> Result<CoarseMap> {
+///
+/// # Errors
+/// [`Error::SizesDiffer`].
+pub(super) fn coarse_map(views: (&Luma, &Luma), supported: &[Seed], brightness: Brightness) -> Result<CoarseMap> {
     let width = views.0.width() as f32;
+    let seeds = extent(supported).filter(|_| supported.len() >= NEEDED);
     let [low, high] = SPAN.map(|share| share * width);
     let [far, near] = seeds.map_or([low, high], |[far, near]| [far + low, near - low]);
     let most = width - 1.0;

@@ -1,0 +1,143 @@
+//! Constant borders: what a rectification left empty, letterboxes, and the round masks of endoscopes.
+
+use super::{Mask, SEEN};
+use crate::image::{Luma, Size};
+
+/// Largest difference of a border's pixels from its grey value: JPEG rings at the edge of a border.
+const TOLERANCE: u8 = 4;
+/// Smallest share of a border's pixels that have exactly its grey value, in per cent. Borders stored as JPEG have 96; sensors
+/// add noise to whatever they see.
+const EXACT: usize = 90;
+/// Smallest area of a border, in pixels, and the share of the picture's pixels that it is at least, as a divisor.
+const AREA: (usize, usize) = (64, 500);
+/// Smallest share of a side of the picture along which a border without a corner lies, as a divisor: a black object in
+/// the picture rarely touches as much.
+const CONTACT: u32 = 3;
+/// Width of the seam between border and scene that interpolation mixes of both, in pixels.
+const SEAM: i64 = 2;
+
+/// Removes the constant borders of a view, and the seam beside them, from its `mask`.
+///
+/// A border is a connected area of one grey value at the edge of the picture that holds a corner, or lies along a third of a
+/// side. A mask that would leave nothing is returned as it was.
+pub(crate) fn without_borders(luma: &Luma, mask: Mask) -> Mask {
+    let size = luma.size();
+    let mut reached = luma.map(|_| false);
+    let mut bordered = mask.clone();
+    for (x, y) in edge(size) {
+        if reached.get(x, y) {
+            continue;
+        }
+        let area = constant_area(luma, (x, y), &mut reached);
+        if is_border(luma, &area) {
+            for &(x, y) in &area {
+                remove(&mut bordered, (x, y));
+            }
+        }
+    }
+    if bordered.data().contains(&SEEN) { bordered } else { mask }
+}
+
+/// The pixels of the picture's edge.
+fn edge(Size { width, height }: Size) -> impl Iterator<Item = (u32, u32)> {
+    let rows = (0..width).flat_map(move |x| [(x, 0), (x, height - 1)]);
+    rows.chain((0..height).flat_map(move |y| [(0, y), (width - 1, y)]))
+}
+
+/// The connected pixels around `start` that differ from it by at most [`TOLERANCE`].
+fn constant_area(luma: &Luma, start: (u32, u32), reached: &mut crate::image::Plane<bool>) -> Vec<(u32, u32)> {
+    let Size { width, height } = luma.size();
+    let grey = luma.get(start.0, start.1);
+    reached.set(start.0, start.1, true);
+    let mut area = vec![start];
+    let mut next = 0;
+    while let Some(&(x, y)) = area.get(next) {
+        next += 1;
+        for (x, y) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+            if x < width && y < height && !reached.get(x, y) && luma.get(x, y).abs_diff(grey) <= TOLERANCE {
+                reached.set(x, y, true);
+                area.push((x, y));
+            }
+        }
+    }
+    area
+}
+
+fn is_border(luma: &Luma, area: &[(u32, u32)]) -> bool {
+    let Size { width, height } = luma.size();
+    if area.len() < AREA.0.max(luma.data().len() / AREA.1) {
+        return false;
+    }
+    let mut counts = [0usize; 256];
+    area.iter().for_each(|&(x, y)| counts[usize::from(luma.get(x, y))] += 1);
+    let exact = counts.into_iter().max().unwrap_or(0);
+    let along = |side: u32, on: &dyn Fn(u32, u32) -> bool| {
+        area.iter().filter(|&&(x, y)| on(x, y)).count() >= (side / CONTACT) as usize
+    };
+    let corner = area.iter().any(|&(x, y)| (x == 0 || x == width - 1) && (y == 0 || y == height - 1));
+    100 * exact >= EXACT * area.len()
+        && (corner
+            || along(width, &|_, y| y == 0)
+            || along(width, &|_, y| y == height - 1)
+            || along(height, &|x, _| x == 0)
+            || along(height, &|x, _| x == width - 1))
+}
+
+/// Removes a pixel and the seam around it from a mask.
+fn remove(mask: &mut Mask, (x, y): (u32, u32)) {
+    let Size { width, height } = mask.size();
+    let around = |at: u32, side: u32| {
+        (i64::from(at) - SEAM).max(0) as u32..=(i64::from(at) + SEAM).min(i64::from(side) - 1) as u32
+    };
+    for y in around(y, height) {
+        around(x, width).for_each(|x| mask.set(x, y, 0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A textured picture of 120x90 pixels, with `grey` where `inside` says so.
+    fn picture(grey: u8, inside: impl Fn(i64, i64) -> bool) -> Luma {
+        Luma::from_fn((120, 90), |x, y| {
+            let texture = 60 + ((x * 7919 + y * 104_729) % 61) as u8;
+            if inside(x.into(), y.into()) { grey } else { texture }
+        })
+    }
+
+    fn unseen(view: &Luma) -> usize {
+        let mask = without_borders(view, view.map(|_| SEEN));
+        mask.data().iter().filter(|&&value| value == 0).count()
+    }
+
+    #[test]
+    fn a_bar_is_removed_with_its_seam() {
+        for grey in [0, 128, 255] {
+            let view = picture(grey, |x, _| x < 10);
+            let mask = without_borders(&view, view.map(|_| SEEN));
+            assert_eq!(mask, Mask::from_fn((120, 90), |x, _| if x < 12 { 0 } else { SEEN }), "{grey}");
+        }
+    }
+
+    #[test]
+    fn round_masks_and_triangles_are_removed() {
+        let outside = |x: i64, y: i64| (x - 60).pow(2) + (y - 45).pow(2) > 40 * 40;
+        let ring = unseen(&picture(0, outside)) as f64;
+        let area = 120.0 * 90.0 - std::f64::consts::PI * 38.0 * 38.0;
+        assert!((ring / area - 1.0).abs() < 0.03, "{ring} of {area}");
+        assert!(unseen(&picture(0, |x, y| x + 2 * y < 60)) > 900);
+    }
+
+    #[test]
+    fn what_the_picture_shows_is_kept() {
+        assert_eq!(unseen(&picture(0, |_, _| false)), 0, "a texture");
+        assert_eq!(unseen(&picture(0, |x, y| (30..80).contains(&x) && (20..70).contains(&y))), 0, "a black object");
+        assert_eq!(unseen(&picture(0, |x, y| (30..60).contains(&x) && y > 60)), 0, "a black object at the edge");
+        assert_eq!(unseen(&picture(0, |x, y| x < 5 && y < 5)), 0, "a dark corner");
+        assert_eq!(unseen(&Luma::filled((120, 90), 0)), 0, "a lens cap");
+        let noisy = picture(0, |x, _| x < 20).map(|&grey| if grey == 0 { 0 } else { grey });
+        let noise = Luma::from_fn((120, 90), |x, y| noisy.get(x, y).saturating_add(((x * 31 + y * 17) % 4) as u8));
+        assert_eq!(unseen(&noise), 0, "a dark wall with the noise of a sensor");
+    }
+}

@@ -1,0 +1,102 @@
+//! Masks: which pixels of a view show the scene.
+//!
+//! Nothing is seen where the alpha of a [`Picture`] is 0, and in constant borders, which rectified pictures and endoscopes
+//! have. Such pixels bear no interest points, correspond to nothing and get no disparity.
+
+mod borders;
+mod unseen;
+
+pub(crate) use borders::without_borders;
+pub(crate) use unseen::{drowned, extended};
+
+use crate::{
+    dense::{Dense, View},
+    disparity::{NONE, SCALE},
+    features::Feature,
+    image::{Luma, Plane, Size},
+    io::Picture,
+};
+
+/// One value per pixel of a view: [`SEEN`], or 0 for a pixel that does not show the scene.
+pub type Mask = Plane<u8>;
+
+/// The value of a pixel that shows the scene.
+pub const SEEN: u8 = 255;
+
+/// Disparities and confidences without those of pixels that `own` hides, and without confidence where `other` hides the
+/// partner: such a disparity was not measured, as behind the edge of a picture.
+pub(crate) fn masked(mut dense: Dense, view: View, own: Option<&Mask>, other: Option<&Mask>) -> Dense {
+    let Size { width, height } = dense.disparity.size();
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let disparity = dense.disparity.get(x, y);
+        if own.is_some_and(|mask| mask.get(x, y) == 0) {
+            dense.disparity.set(x, y, NONE);
+            dense.confidence.set(x, y, 0);
+        } else if disparity != NONE {
+            let nearest = (disparity + SCALE / 2).div_euclid(SCALE);
+            let partner = i64::from(x) + i64::from(view.direction()) * i64::from(nearest);
+            if other.is_some_and(|mask| mask.get_clamped(partner, y.into()) == 0) {
+                dense.confidence.set(x, y, 0);
+            }
+        }
+    }
+    dense
+}
+
+/// The mask of a view from its alpha and its constant borders; `None` if every pixel shows the scene.
+pub(crate) fn mask_of(picture: &Picture, luma: &Luma) -> Option<Mask> {
+    let alpha = picture.map(|&[.., alpha]| if alpha == 0 { 0 } else { SEEN });
+    let mask = without_borders(luma, alpha);
+    mask.data().contains(&0).then_some(mask)
+}
+
+/// Whether an interest point and its surroundings, twice its scale around it, are seen.
+pub(crate) fn is_seen(mask: &Mask, point: &Feature) -> bool {
+    let reach = 2.0 * point.scale;
+    let seen = |x: f32, y: f32| mask.get_clamped(x.round() as i64, y.round() as i64) != 0;
+    let Feature { x, y, .. } = *point;
+    [(0.0, 0.0), (reach, 0.0), (-reach, 0.0), (0.0, reach), (0.0, -reach)].into_iter().all(|(i, j)| seen(x + i, y + j))
+}
+
+/// Downscales a mask by an integer `factor`: a pixel is seen if its whole block is.
+pub(crate) fn reduced(mask: &Mask, factor: u32) -> Mask {
+    let Size { width, height } = mask.size();
+    let mut small = Mask::filled((width.div_ceil(factor), height.div_ceil(factor)), SEEN);
+    for y in 0..height {
+        for (x, _) in (0..width).zip(mask.row(y)).filter(|&(_, &value)| value == 0) {
+            small.set(x / factor, y / factor, 0);
+        }
+    }
+    small
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hidden_pixel_has_no_disparity_and_a_hidden_partner_no_confidence() {
+        let dense = Dense {
+            disparity: Plane::new((4, 1), vec![2 * SCALE, NONE, SCALE, SCALE + 127]).unwrap(),
+            confidence: Plane::new((4, 1), vec![9, 0, 8, 7]).unwrap(),
+        };
+        let hides = |place: u32| Mask::from_fn((4, 1), |x, _| if x == place { 0 } else { SEEN });
+        let left = masked(dense.clone(), View::Left, Some(&hides(0)), Some(&hides(2)));
+        assert_eq!(left.disparity.data(), [NONE, NONE, SCALE, SCALE + 127]);
+        assert_eq!(left.confidence.data(), [0, 0, 8, 0]);
+        let right = masked(dense.clone(), View::Right, None, Some(&hides(2)));
+        assert_eq!((right.disparity, right.confidence.data()), (dense.disparity.clone(), &[0, 0, 8, 7][..]));
+    }
+
+    #[test]
+    fn alpha_is_a_mask() {
+        let texture = |x: u32, y: u32| (17 * x + 31 * y) as u8;
+        let opaque = Picture::from_fn((9, 7), |x, y| [texture(x, y), 0, 0, 1]);
+        assert_eq!(mask_of(&opaque, &opaque.luma()), None);
+        let cut = Picture::from_fn((9, 7), |x, y| [texture(x, y), 0, 0, if x == 4 { 0 } else { 255 }]);
+        let mask = mask_of(&cut, &cut.luma()).unwrap();
+        assert_eq!(mask, Plane::from_fn((9, 7), |x, _| if x == 4 { 0 } else { SEEN }));
+        // One unseen pixel makes a block of 2x2 unseen.
+        assert_eq!(reduced(&mask, 2), Plane::from_fn((5, 4), |x, _| if x == 2 { 0 } else { SEEN }));
+    }
+}
