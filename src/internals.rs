@@ -17,6 +17,11 @@ pub mod luma {
     pub use crate::luma::kernels::*;
 }
 
+/// The kernels that resample a view.
+pub mod rectify {
+    pub use crate::rectify::kernels::*;
+}
+
 /// The kernels of interest points.
 pub mod features {
     pub use crate::features::kernels::*;
@@ -46,6 +51,7 @@ pub mod kamencay {
 pub fn stages() -> Vec<Stage> {
     [
         crate::luma::kernels::stages(),
+        crate::rectify::kernels::stages(),
         crate::features::kernels::stages(),
         crate::dense::kernels::stages(),
         crate::kamencay::kernels::stages(),

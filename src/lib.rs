@@ -142,6 +142,7 @@ pub mod matching;
 mod names;
 mod pair;
 pub mod pipeline;
+pub mod rectify;
 pub mod seeding;
 mod size;
 #[cfg(all(feature = "verify", not(target_arch = "wasm32")))]

@@ -7,3 +7,4 @@ pub mod dense;
 pub mod features;
 pub mod kamencay;
 pub mod luma;
+pub mod rectify;

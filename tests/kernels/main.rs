@@ -10,4 +10,5 @@ mod features;
 mod kamencay;
 mod luma;
 mod random;
+mod rectify;
 mod verify;

@@ -226,7 +226,7 @@ fn every_shader_is_valid_and_binds_what_rust_binds() {
 fn stages_are_named_the_same_everywhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut shaders = Vec::new();
-    for room in ["luma", "features", "dense", "kamencay"] {
+    for room in ["luma", "rectify", "features", "dense", "kamencay"] {
         for entry in std::fs::read_dir(root.join("shaders").join(room)).expect("a room of shaders") {
             let path = entry.expect("an entry").path();
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();

@@ -5,6 +5,7 @@ mod features;
 mod kamencay;
 mod luma;
 mod pipelines;
+mod rectify;
 
 pub use dense::{
     BlockMatchTrial, BoxMeanTrial, CellRangesTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial,
@@ -17,12 +18,17 @@ pub use features::{
 pub use kamencay::{BeliefCostTrial, BeliefReduceTrial, BeliefSelectTrial, BeliefTrial, KamencayTrial, MeanShiftTrial};
 pub use luma::{LumaTextureTrial, LumaTrial};
 pub use pipelines::DenseTrial;
+pub use rectify::WarpTrial;
 
 use super::trial::Subject;
 
 /// All subjects, kernels first.
 pub fn subjects() -> impl Iterator<Item = &'static Subject> {
-    let rooms: [&[&[Subject]]; 4] =
-        [&[luma::SUBJECTS], &features::SUBJECTS, &dense::SUBJECTS, &[kamencay::SUBJECTS, pipelines::SUBJECTS]];
+    let rooms: [&[&[Subject]]; 4] = [
+        &[luma::SUBJECTS, rectify::SUBJECTS],
+        &features::SUBJECTS,
+        &dense::SUBJECTS,
+        &[kamencay::SUBJECTS, pipelines::SUBJECTS],
+    ];
     rooms.into_iter().flatten().copied().flatten()
 }

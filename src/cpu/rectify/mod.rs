@@ -1,0 +1,5 @@
+//! The CPU twin of resampling.
+
+mod warp;
+
+pub use warp::warp;

@@ -1,0 +1,13 @@
+//! Resampling of a view, so that corresponding points come to lie in the same row.
+//!
+//! A [`WarpMap`] says for each pixel of a new picture which position of the source it shows; the kernel `warp` and its twin
+//! interpolate there. All arithmetic after the map's construction is in integers: the same bytes on every device.
+
+mod catmull_rom;
+pub(crate) mod kernels;
+mod map;
+
+pub use catmull_rom::SUBPIXEL_BITS;
+pub(crate) use catmull_rom::weights;
+pub use map::WarpMap;
+pub(crate) use map::{NONE, SPACING_BITS};

@@ -1,0 +1,3 @@
+//! The kernel of resampling.
+
+mod warp;
