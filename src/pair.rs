@@ -4,12 +4,13 @@ use crate::{
     backend::Backend,
     cpu,
     dense::{Dense, DenseConfig, Matcher},
-    error::{Error, Result},
+    error::{Error, Result, check},
     features::{Detector, Feature, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
     image::{Luma, Size, reduced},
     io::Picture,
     luma::{check_size, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
+    rectify::{WarpMap, warp},
 };
 
 /// A pair of views of one size on a [`Backend`].
@@ -85,6 +86,29 @@ impl<'b> Pair<'b> {
             *own = view;
         }
         Ok(self)
+    }
+
+    /// The pair with its right view resampled by `map`; the left view stays. The same bytes on every backend.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless both sizes of the map are that of the pair; [`Error::TooLarge`], [`Error::OutOfMemory`],
+    /// [`Error::DeviceLost`].
+    pub async fn with_right_warped(&self, map: &WarpMap) -> Result<Self> {
+        let size = self.size();
+        check(
+            [map.size(), map.source_size()] == [size; 2],
+            "the map",
+            format_args!("for {} pixels from a source of {}", map.size(), map.source_size()),
+            format!("the views have {size}: both sizes of the map must be {size}"),
+        )?;
+        let (right, device) = match &self.device {
+            None => (cpu::rectify::warp(&self.right, map), None),
+            Some(OnDevice { gpu, luma: [left, right] }) => {
+                let (right_buffer, right) = warp(gpu, right, map).await?;
+                (right, Some(OnDevice { gpu, luma: [left.clone(), right_buffer] }))
+            }
+        };
+        Ok(Self { backend: self.backend, left: self.left.clone(), right, device })
     }
 
     /// Width and height of both views, in pixels.

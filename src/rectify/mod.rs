@@ -6,8 +6,10 @@
 mod catmull_rom;
 pub(crate) mod kernels;
 mod map;
+mod warp;
 
 pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
 pub use map::WarpMap;
 pub(crate) use map::{NONE, SPACING_BITS};
+pub(crate) use warp::warp;
