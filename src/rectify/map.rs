@@ -26,9 +26,9 @@ const ONE: i32 = 1 << SUBPIXEL_BITS;
 
 /// For each pixel of a picture the position in a source that the pixel shows.
 ///
-/// Positions are stored at nodes, one per 16 pixels along x and y, rounded to 1/2048 px, and interpolated bilinearly between
-/// nodes in integers. An affine map is held to within 1.5/2048 px. A map whose second derivatives are at most `f`, in 1/px,
-/// deviates by another `64 f` px at most.
+/// Positions are stored at nodes, one per 16 pixels along x and y, rounded to 1/2048 px, and interpolated bilinearly
+/// between nodes in integers. An affine map is held to within 1.5/2048 px. A map whose second derivatives are at most `f`,
+/// in 1/px, deviates by another `64 f` px at most.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WarpMap {
     size: Size,
@@ -41,9 +41,9 @@ impl WarpMap {
     /// The map from a picture of `size` to a source of `source_size`, both in pixels: pixel `p` shows `source_of(p)`, the
     /// centre of a pixel being a whole number.
     ///
-    /// `source_of` is called for the nodes alone, some of them up to 16 px beyond the right and the lower edge. A node has no
-    /// position if a coordinate is not finite or outside -2^18 <= p < 3 * 2^18 - 1 px, which is far outside any source.
-    /// Pixels between such a node and its neighbours have no position either.
+    /// `source_of` is called for the nodes alone, some of them up to 16 px beyond the right and the lower edge. A node has
+    /// no position if a coordinate is not finite or outside -2^18 <= p < 3 * 2^18 - 1 px, which is far outside any source.
+    /// Pixels between such a node and its neighbours have no position either, and are 0 in the warped picture.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] unless all sides are 1 to [`crate::luma::MAX_SIDE`].
