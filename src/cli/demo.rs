@@ -60,6 +60,7 @@ impl Demo {
             names,
             left: scene.left.clone(),
             right: scene.right.clone(),
+            stretch: None,
             config: Preset::Balanced.config(),
             strongest: None,
             calibration: Some(scene.calibration),

@@ -29,7 +29,7 @@ use super::{
   hsad features photo.jpg -o out            features.csv and keypoints.png
   hsad features photo.jpg --oriented --descriptors --threshold 0.001")]
 pub struct Features {
-    /// Picture file: PNG, JPEG, PNM, BMP, TIFF or WebP
+    /// Picture file: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP
     image: PathBuf,
     /// Write features.csv and keypoints.png to this folder instead of printing the table
     #[arg(short, long, value_name = "DIR")]

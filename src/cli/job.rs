@@ -7,7 +7,7 @@ use hsad::{
     Backend, Error,
     config::Config,
     disparity::DisparityRange,
-    io::{Calibration, Picture},
+    io::{Calibration, Picture, load::Stretch},
     pipeline::{self, Outcome, RangeSource},
 };
 
@@ -19,6 +19,8 @@ pub struct Job {
     pub names: [String; 2],
     pub left: Picture,
     pub right: Picture,
+    /// How the views' samples became 8 bits; `None`: without a stretch.
+    pub stretch: Option<Stretch>,
     pub config: Config,
     /// Interest points and matches that a figure shows, the strongest ones; `None`: all.
     pub strongest: Option<usize>,

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hsad::io::load;
+use hsad::io::load::{LoadedPair, load_pair};
 
 use super::{
     job::Job,
-    options::{DepthOptions, FeatureOptions, MatchOptions, RunOptions},
+    options::{DepthOptions, FeatureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
     products, summary,
     terminal::{self, Progress},
@@ -28,10 +28,12 @@ use super::{
   hsad match im0.png im1.png -o out --calib calib.txt --device cpu
   hsad match left.png right.png -o out --preset paper --figures
   hsad match left.png right.png -o out --method kamencay
+  hsad match left.png right.png -o out --mask round.png round.png
+  hsad match left.tif right.tif -o out --nodata -9999
 
 Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified (--force goes on all the same)"))]
 pub struct Match {
-    /// Left view: PNG, JPEG, PNM, BMP, TIFF or WebP
+    /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
     left: PathBuf,
     /// Right view, of the same size
     right: PathBuf,
@@ -49,6 +51,8 @@ pub struct Match {
     features: FeatureOptions,
     #[command(flatten)]
     depth: DepthOptions,
+    #[command(flatten)]
+    unseen: UnseenOptions,
 }
 
 impl Match {
@@ -56,11 +60,17 @@ impl Match {
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
         let mut output = Output::open(&self.output)?;
-        let (left, right) = (load::load(&self.left)?, load::load(&self.right)?);
+        let LoadedPair { left, right, stretch, warnings } = load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        // Told before the match, since they may be the reason why it fails.
+        let told = warnings.len();
+        if !self.run.quiet {
+            warnings.iter().for_each(terminal::warning);
+        }
 
         let calibration = self.depth.calibration(left.size())?;
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
-        let mut completed = Job { names, left, right, config, strongest, calibration }.run(&self.run)?;
+        let mut completed = Job { names, left, right, stretch, config, strongest, calibration }.run(&self.run)?;
+        completed.warnings.splice(0..0, warnings);
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
@@ -73,7 +83,7 @@ impl Match {
         drop(progress);
 
         if !self.run.quiet {
-            completed.warnings.iter().for_each(terminal::warning);
+            completed.warnings[told..].iter().for_each(terminal::warning);
             terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
         Ok(())

@@ -19,7 +19,7 @@ use hsad::{
     features::FeatureConfig,
     gpu::DeviceChoice,
     image::Size,
-    io::Calibration,
+    io::{Calibration, load::Unseen},
     kamencay::KamencayParameters,
     matching::MatchConfig,
     verify::self_test,
@@ -355,6 +355,28 @@ impl DepthOptions {
             _ => return Ok(None),
         };
         Ok(Some(calibration))
+    }
+}
+
+/// Pixels that were not seen, besides transparent ones (alpha 0) and floats that are NaN or infinite.
+#[derive(Args)]
+#[command(next_help_heading = "Unseen pixels")]
+pub struct UnseenOptions {
+    /// Masks of the left and the right view: pictures of the views' size, 0 for pixels that were not seen and get no
+    /// disparity. One mask is for the left view only; name the same file twice for a mask that both views share, such as
+    /// the round field of view of an endoscope
+    #[arg(long, num_args = 1..=2, value_names = ["LEFT", "RIGHT"])]
+    mask: Vec<PathBuf>,
+    /// Value for missing data: a pixel that has it in all channels was not seen. In the unit of the files, before any
+    /// stretch to 8 bits; NaN and infinity are always missing
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    nodata: Option<f32>,
+}
+
+impl UnseenOptions {
+    /// The masks and the value for missing data of a pair.
+    pub fn unseen(&self) -> Unseen {
+        Unseen { masks: [0, 1].map(|view| self.mask.get(view).cloned()), nodata: self.nodata }
     }
 }
 

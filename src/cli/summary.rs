@@ -8,7 +8,7 @@ use super::{
 };
 
 impl CompletedJob {
-    /// Device, range, matches, rectification, trust, coverage and time, one line each.
+    /// Device, stretch of the samples, range, matches, rectification, trust, coverage and time, one line each.
     pub fn summary(&self) -> String {
         let Self { job, backend, outcome, total, .. } = self;
         let seeding = &outcome.seeding;
@@ -35,6 +35,9 @@ impl CompletedJob {
                 api => format!("{} ({api})", backend.name()),
             },
         );
+        if let Some(stretch) = job.stretch {
+            line(&mut text, "stretch", format!("{} to {} in the files became 0 to 255", stretch.low, stretch.high));
+        }
         line(&mut text, "range", format!("{} ({source})", span(outcome.range)));
         line(&mut text, "points", format!("{left} left, {right} right, {} matched", seeding.seeds.len()));
         line(&mut text, "rectified", rectified);

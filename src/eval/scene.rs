@@ -15,7 +15,10 @@ use crate::{
     dense::View,
     error::{Error, Result},
     image::{Plane, Size},
-    io::{Picture, disparities, load},
+    io::{
+        Picture, disparities,
+        load::{self, LoadedPair, Unseen},
+    },
 };
 
 /// File extensions of `left` and `right`, in the order in which they are tried.
@@ -208,7 +211,7 @@ impl SceneFiles {
     /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] if the views differ in size.
     pub fn read(&self, reference: View) -> Result<Scene> {
         let files = self.truth(reference)?;
-        let (left, right) = (load::load(&self.left)?, load::load(&self.right)?);
+        let LoadedPair { left, right, .. } = load::load_pair(&self.left, &self.right, &Unseen::default())?;
         if left.size() != right.size() {
             return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{disparity_png, load, malformed, pfm};
+use super::{codec, disparity_png, malformed, pfm};
 use crate::{disparity, error::Result, image::Plane};
 
 /// Reads a disparity map from a 16-bit PNG ([`disparity_png`]) or a PFM ([`pfm`]): in pixels, not rounded, +inf for no
@@ -11,7 +11,7 @@ use crate::{disparity, error::Result, image::Plane};
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, [`crate::Error::Format`] if it is neither a PNG nor a PFM.
 pub fn read(path: &Path) -> Result<Plane<f32>> {
-    let bytes = load::read_bytes(path)?;
+    let bytes = codec::read_bytes(path)?;
     if bytes.starts_with(disparity_png::SIGNATURE) {
         Ok(disparity::in_pixels(&disparity_png::decode(&bytes, path)?))
     } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {

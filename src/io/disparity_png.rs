@@ -12,7 +12,7 @@ use std::{
 
 use ::image::DynamicImage;
 
-use super::{load, malformed, png};
+use super::{codec, malformed, png};
 use crate::{
     disparity::{DisparityMap, NONE},
     error::Result,
@@ -52,7 +52,7 @@ pub fn write(out: &mut impl Write, map: &DisparityMap) -> io::Result<Lost> {
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, otherwise as [`decode`].
 pub fn read(path: &Path) -> Result<DisparityMap> {
-    decode(&load::read_bytes(path)?, path)
+    decode(&codec::read_bytes(path)?, path)
 }
 
 /// Decodes the disparity map in a PNG's bytes, in 1/256 px; `path` is named in errors.
@@ -63,13 +63,13 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<DisparityMap> {
     if !bytes.starts_with(SIGNATURE) {
         return Err(malformed(path, "not a PNG: disparities are read from 16-bit grey PNG and from PFM"));
     }
-    match load::decode_image(bytes, path)? {
+    match codec::decode(bytes, path)?.image {
         DynamicImage::ImageLuma16(image) => {
             let (width, height) = image.dimensions();
             Ok(Plane::new((width, height), image.into_raw())?.map(|&value| from_value(value)))
         }
         other => {
-            let found = load::describe(other.color());
+            let found = codec::describe(other.color());
             let reason = format!("a PNG of {found}: disparities are 16-bit grey, 256 times the pixels, 0 for none");
             Err(malformed(path, reason))
         }

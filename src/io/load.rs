@@ -1,150 +1,145 @@
-//! Loading of photographs from PNG, JPEG, PNM, BMP, TIFF and WebP files.
+//! Loading of photographs from PNG, JPEG, PNM, PFM, BMP, TIFF and WebP files.
 //!
-//! Grey and RGB of 8 and 16 bits, with or without alpha, become RGBA of 8 bits:
-//! - 16-bit values keep their upper 8 bits (`>> 8`), which restores 8-bit values stored as 16 bits (`257 * v`);
-//! - alpha is dropped, not composited: the camera's picture is matched, and a background would add edges of its own;
+//! Grey and RGB, with or without alpha, become RGBA of 8 bits:
+//! - 8-bit samples stay as they are;
+//! - 16-bit samples keep their upper 8 bits (`>> 8`) if they hold 8-bit values (`257 v`, `256 v`) or use half of the 16
+//!   bits or more; otherwise what is in use is stretched over 8 bits ([`Stretch`]);
+//! - floats, and integers that are signed or have more than 16 bits (TIFF), are always stretched;
+//! - alpha becomes 255 where a pixel was seen and 0 where not: alpha 0 in the file, a sample that is NaN or infinite, or
+//!   what [`Unseen`] says. Other alpha is dropped, not composited: the camera's picture is matched, and a background would
+//!   add edges of its own;
 //! - pictures are rotated by their EXIF orientation, as in viewers;
 //! - colour profiles and gamma are ignored: both views have the same.
 //!
-//! CMYK and floating-point pictures are refused, since their conversion to 8 bits would be a guess. Only the first
+//! Both views of a pair have one stretch ([`load_pair`]). A pair of 8 and 16 bits is accepted, and only the latter view
+//! stretched; floats and integers of up to 16 bits do not go together, since nothing tells how their units compare.
+//!
+//! CMYK is refused, since its conversion to 8 bits would be a guess, and so are PFM of three channels. Only the first
 //! frame or page of a file is read.
 
-use std::{io::Cursor, path::Path};
+use std::path::Path;
 
-use ::image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use ::image::metadata::Orientation;
 
-use super::{MAX_PIXELS, Picture, check_pixels, jpeg, malformed, read_whole};
-use crate::error::{Error, Result};
+use super::{
+    Picture, codec, malformed,
+    samples::{Kind, Samples},
+};
+use crate::error::Result;
 
-/// Bytes per pixel of the largest accepted layout, RGBA of 16 bits.
-const MAX_BYTES_PER_PIXEL: u64 = 8;
+pub use super::{stretch::Stretch, unseen::Unseen};
 
-/// Memory that a codec may need besides the pixels and the file, in bytes.
-const CODEC_BYTES: u64 = 1 << 22;
+/// The views of a pair as 8-bit pictures, and what became of them on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedPair {
+    /// The left view.
+    pub left: Picture,
+    /// The right view.
+    pub right: Picture,
+    /// The stretch of the views that have more than 8 bits; `None`: the upper 8 bits were taken.
+    pub stretch: Option<Stretch>,
+    /// Doubts about the files, one line each: different EXIF orientations.
+    pub warnings: Vec<String>,
+}
 
 /// Loads a picture file as RGBA of 8 bits.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read, otherwise as [`decode`].
+/// [`crate::Error::Io`] if the file cannot be read, otherwise as [`decode`].
 pub fn load(path: &Path) -> Result<Picture> {
-    decode(&read_bytes(path)?, path)
+    decode(&codec::read_bytes(path)?, path)
 }
 
 /// Decodes the picture in a file's bytes to RGBA of 8 bits; `path` is named in errors.
 ///
 /// # Errors
-/// [`Error::Format`] if the bytes are no picture of a supported format, are damaged or cut off, or hold more than
-/// [`MAX_PIXELS`].
+/// [`crate::Error::Format`] if the bytes are no picture of a supported format, are damaged or cut off, hold more than
+/// [`super::MAX_PIXELS`], or no pixel that was seen.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
-    use DynamicImage as Image;
-    let image = decode_image(bytes, path)?;
-    let (width, height) = (image.width(), image.height());
-    let high = |sample: u16| (sample >> 8) as u8;
-    let pixels = match image {
-        Image::ImageLuma8(image) => opaque(image.as_raw(), |&[grey]: &[u8; 1]| [grey; 3]),
-        Image::ImageLumaA8(image) => opaque(image.as_raw(), |&[grey, _]: &[u8; 2]| [grey; 3]),
-        Image::ImageRgb8(image) => opaque(image.as_raw(), |&rgb: &[u8; 3]| rgb),
-        Image::ImageRgba8(image) => opaque(image.as_raw(), |&[r, g, b, _]: &[u8; 4]| [r, g, b]),
-        Image::ImageLuma16(image) => opaque(image.as_raw(), |&[grey]: &[u16; 1]| [high(grey); 3]),
-        Image::ImageLumaA16(image) => opaque(image.as_raw(), |&[grey, _]: &[u16; 2]| [high(grey); 3]),
-        Image::ImageRgb16(image) => opaque(image.as_raw(), |&rgb: &[u16; 3]| rgb.map(high)),
-        Image::ImageRgba16(image) => opaque(image.as_raw(), |&[r, g, b, _]: &[u16; 4]| [r, g, b].map(high)),
-        other => return Err(unsupported(describe(other.color()), path)),
+    let samples = samples(bytes, path)?;
+    Ok(picture(&samples, Stretch::of(&[&samples])))
+}
+
+/// Loads the views of one pair, both with the same stretch, and without the pixels that `unseen` names.
+///
+/// The sizes of the views may differ, unless their EXIF orientations make them differ.
+///
+/// # Errors
+/// As [`load`]; also [`crate::Error::Format`] for a mask of another size than its view, a mask or a value for missing data that
+/// leaves no pixel, views of floats and of integers, and views that only different EXIF orientations give different sizes.
+pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPair> {
+    let [left_mask, right_mask] = unseen.masks.each_ref().map(Option::as_deref);
+    let load = |path: &Path, mask| -> Result<Samples> {
+        let mut view = samples(&codec::read_bytes(path)?, path)?;
+        unseen.hide(&mut view, mask, path)?;
+        Ok(view)
     };
-    Picture::new((width, height), pixels)
+    let views = [&load(left, left_mask)?, &load(right, right_mask)?];
+    check_kinds(views, [left, right])?;
+    let warnings = turns(views, right)?.into_iter().collect();
+    let stretch = Stretch::of(&views);
+    let [left, right] = views.map(|view| picture(view, stretch));
+    Ok(LoadedPair { left, right, stretch, warnings })
 }
 
-/// Converts pixels of `N` samples to opaque RGBA.
-fn opaque<T, const N: usize>(samples: &[T], rgb: impl Fn(&[T; N]) -> [u8; 3]) -> Vec<[u8; 4]> {
-    let opaque = |pixel| {
-        let [red, green, blue] = rgb(pixel);
-        [red, green, blue, 255]
+fn samples(bytes: &[u8], path: &Path) -> Result<Samples> {
+    let samples = Samples::new(codec::decode(bytes, path)?);
+    if samples.is_seen() {
+        return Ok(samples);
+    }
+    let reason = match samples.kind() {
+        Kind::Float => "no pixel is a finite number with an alpha above 0: there is nothing to see",
+        _ => "its alpha is 0 everywhere, which stands for 'not seen': remove the alpha channel",
     };
-    samples.as_chunks().0.iter().map(opaque).collect()
+    Err(malformed(path, reason))
 }
 
-/// Reads the bytes of a picture file, up to the length of the largest uncompressed picture.
-pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    read_whole(path, MAX_PIXELS * MAX_BYTES_PER_PIXEL)
-}
-
-/// Decodes a picture in its stored sample format, rotated upright.
-pub(super) fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
-    let damaged = |error| explain(error, path);
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| malformed(path, format!("not a picture: {error}")))?;
-    match reader.format() {
-        None => {
-            return Err(malformed(
-                path,
-                "not a picture of a supported format: PNG, JPEG, PNM, BMP, TIFF and WebP are read",
-            ));
-        }
-        Some(ImageFormat::Jpeg) => {
-            if let Some(objection) = jpeg::objection(bytes) {
-                return Err(malformed(path, objection));
-            }
-        }
-        Some(_) => {}
-    }
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_PIXELS * MAX_BYTES_PER_PIXEL);
-    reader.limits(limits);
-
-    let mut decoder = reader.into_decoder().map_err(damaged)?;
-    let (width, height) = decoder.dimensions();
-    check_pixels((width, height), path)?;
-    // Whatever else the header claims, no more memory is needed than for the pixels and the file itself.
-    let pixels = u64::from(width) * u64::from(height);
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_BYTES_PER_PIXEL * pixels + bytes.len() as u64 + CODEC_BYTES);
-    decoder.set_limits(limits).map_err(damaged)?;
-    let stored = decoder.original_color_type();
-    if matches!(stored, ExtendedColorType::Cmyk8 | ExtendedColorType::Cmyk16) {
-        return Err(unsupported("CMYK", path));
-    }
-    if matches!(stored, ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F) {
-        return Err(unsupported(describe(decoder.color_type()), path));
-    }
-    // Damaged metadata is no reason to refuse a picture.
-    let orientation = decoder.orientation().ok();
-    let mut image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    if let Some(orientation) = orientation {
-        image.apply_orientation(orientation);
-    }
-    Ok(image)
-}
-
-/// Name of a colour type.
-pub(super) fn describe(color: ColorType) -> &'static str {
-    match color {
-        ColorType::L8 => "8-bit grey",
-        ColorType::La8 => "8-bit grey with alpha",
-        ColorType::Rgb8 => "8-bit RGB",
-        ColorType::Rgba8 => "8-bit RGBA",
-        ColorType::L16 => "16-bit grey",
-        ColorType::La16 => "16-bit grey with alpha",
-        ColorType::Rgb16 => "16-bit RGB",
-        ColorType::Rgba16 => "16-bit RGBA",
-        _ => "floating-point values",
+fn picture(samples: &Samples, stretch: Option<Stretch>) -> Picture {
+    match (samples.kind(), stretch) {
+        (Kind::Eight, _) => samples.picture(|sample| sample as u8),
+        (_, Some(stretch)) => samples.picture(|sample| stretch.grey(sample)),
+        (_, None) => samples.picture(|sample| (sample as u16 >> 8) as u8),
     }
 }
 
-fn unsupported(what: &str, path: &Path) -> Error {
-    malformed(path, format!("a picture of {what}: convert it to grey or RGB of 8 or 16 bits, for example a PNG"))
+fn check_kinds(views: [&Samples; 2], paths: [&Path; 2]) -> Result<()> {
+    let kinds = views.map(|view| view.kind() == Kind::Float);
+    if kinds[0] == kinds[1] {
+        return Ok(());
+    }
+    let (float, integer) = if kinds[0] { (paths[0], paths[1]) } else { (paths[1], paths[0]) };
+    let reason = "has floating-point samples (or integers beyond 16 bits)";
+    let way_out = "nothing tells how the two compare, convert both views with the same scale";
+    Err(malformed(float, format!("the picture {reason} and the other view, {}, has not: {way_out}", integer.display())))
 }
 
-fn explain(error: ImageError, path: &Path) -> Error {
-    malformed(
-        path,
-        match error {
-            ImageError::IoError(_) => "the picture is cut off: copy or export it again".into(),
-            ImageError::Limits(_) => {
-                format!("the picture needs more memory than {MAX_PIXELS} pixels do: scale it down")
-            }
-            ImageError::Unsupported(what) => format!("{what}: convert the picture to PNG"),
-            damage => format!("the picture is damaged ({damage}): copy or export it again"),
-        },
-    )
+/// A warning if the files turn the views differently.
+fn turns(views: [&Samples; 2], right: &Path) -> Result<Option<String>> {
+    let [left_turn, right_turn] = views.map(|view| view.orientation);
+    if left_turn == right_turn {
+        return Ok(None);
+    }
+    let found = format!(
+        "by their EXIF orientations the left view is {} and the right view {}",
+        describe(left_turn),
+        describe(right_turn)
+    );
+    let way_out = "the cameras of a pair are held alike, remove the orientation from both files";
+    if views[0].size() != views[1].size() {
+        let [left, other] = views.map(Samples::size);
+        return Err(malformed(right, format!("{found}, so that they are {left} and {other} pixels: {way_out}")));
+    }
+    Ok(Some(format!("{found}: {way_out} unless the pair was rectified as it is shown")))
+}
+
+fn describe(orientation: Orientation) -> &'static str {
+    match orientation {
+        Orientation::NoTransforms => "not turned",
+        Orientation::Rotate90 => "turned by 90 degrees",
+        Orientation::Rotate180 => "turned by 180 degrees",
+        Orientation::Rotate270 => "turned by 270 degrees",
+        Orientation::FlipHorizontal => "mirrored",
+        Orientation::FlipVertical => "mirrored upside down",
+        Orientation::Rotate90FlipH | Orientation::Rotate270FlipH => "mirrored and turned by 90 degrees",
+    }
 }

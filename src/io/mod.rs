@@ -11,6 +11,8 @@
 #[doc(hidden)]
 pub mod atomic;
 pub mod calibration;
+#[cfg(feature = "pictures")]
+mod codec;
 pub mod color;
 pub mod csv;
 #[cfg(feature = "files")]
@@ -30,6 +32,14 @@ pub mod picture;
 pub mod ply;
 #[cfg(feature = "files")]
 pub mod png;
+#[cfg(feature = "pictures")]
+mod samples;
+#[cfg(feature = "pictures")]
+mod stretch;
+#[cfg(feature = "pictures")]
+mod tiff;
+#[cfg(feature = "pictures")]
+mod unseen;
 
 pub use calibration::Calibration;
 pub use picture::Picture;

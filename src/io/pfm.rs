@@ -52,7 +52,7 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Plane<f32>> {
     let mut header = Header { bytes, path };
     match &*header.word("magic word")? {
         "Pf" => {}
-        "PF" => return Err(malformed(path, "a PFM of three channels (PF): disparities and depths have one (Pf)")),
+        "PF" => return Err(malformed(path, "a PFM of three channels (PF): only PFM of one (Pf) are read")),
         _ => return Err(malformed(path, "not a PFM: it does not begin with 'Pf'")),
     }
     let width = header.size("width")?;

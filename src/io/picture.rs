@@ -5,7 +5,10 @@ use crate::{
     image::{Luma, Plane, Size, luma_of},
 };
 
-/// A colour picture: red, green, blue and alpha, 8 bits each. Alpha is ignored.
+/// A colour picture: red, green, blue and alpha, 8 bits each.
+///
+/// Alpha 0 stands for 'nothing was seen here': the pixel gets no disparity, whatever its colour. Any other alpha stands
+/// for a seen pixel, and its value is ignored.
 pub type Picture = Plane<[u8; 4]>;
 
 impl Picture {
@@ -37,7 +40,7 @@ impl Picture {
         [red, green, blue]
     }
 
-    /// The grey picture that is matched.
+    /// The grey picture that is matched; alpha is ignored.
     pub fn luma(&self) -> Luma {
         self.map(|&[red, green, blue, _]| luma_of([red, green, blue]))
     }
