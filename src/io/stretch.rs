@@ -7,8 +7,8 @@
 //! Two rules find what is in use:
 //! - 0.5 % of the samples at either end are left out: hot and dead pixels. Wrong pixels of a thermal and a satellite pair
 //!   are within 0.5 per cent points for any share from 0 to 5 %.
-//! - The value at an end is left out if it lies farther from the others than these span: a value for missing data, such
-//!   as -9999, at any share of pixels. The others would have less than half of the 256 grey values.
+//! - The value at an end is left out if the others, without it, span less than half, and have more different values than
+//!   grey values with it: a value for missing data, such as -9999, at any share of pixels.
 
 use super::samples::{Kind, Samples};
 
@@ -91,25 +91,29 @@ fn some_samples(view: &Samples) -> Vec<f32> {
 
 /// The span of `sorted` samples without outliers and without a far value at either end; `None` of no samples.
 fn in_use(mut sorted: &[f32]) -> Option<Stretch> {
-    let quantiles = |sorted: &[f32]| {
-        let left_out = sorted.len() / OUTLIERS;
-        Some(Stretch { low: *sorted.get(left_out)?, high: *sorted.get(sorted.len() - 1 - left_out)? })
-    };
-    let is_far = |value: f32, from: f32, others: Stretch| {
-        others.span() > 0.0 && (f64::from(value) - f64::from(from)).abs() > others.span()
-    };
     loop {
-        let all = quantiles(sorted)?;
-        let above = &sorted[sorted.partition_point(|&sample| sample <= all.low)..];
-        let below = &sorted[..sorted.partition_point(|&sample| sample < all.high)];
-        if quantiles(above).is_some_and(|others| is_far(all.low, others.low, others)) {
-            sorted = above;
-        } else if quantiles(below).is_some_and(|others| is_far(all.high, others.high, others)) {
-            sorted = below;
-        } else {
-            return Some(all);
+        let all = without_outliers(sorted)?;
+        let start = sorted.partition_point(|&sample| sample <= all.low);
+        let end = sorted.partition_point(|&sample| sample < all.high);
+        let others = [&sorted[start..], &sorted[..end], sorted.get(start..end).unwrap_or_default()];
+        match others.into_iter().find(|others| is_starved(others, all)) {
+            Some(others) => sorted = others,
+            None => return Some(all),
         }
     }
+}
+
+fn without_outliers(sorted: &[f32]) -> Option<Stretch> {
+    let left_out = sorted.len() / OUTLIERS;
+    Some(Stretch { low: *sorted.get(left_out)?, high: *sorted.get(sorted.len() - 1 - left_out)? })
+}
+
+/// Whether a stretch of `all` would leave `others`, a part of all samples, less than half of the grey values, and fewer
+/// than there are different samples.
+fn is_starved(others: &[f32], all: Stretch) -> bool {
+    let Some(span) = without_outliers(others).map(Stretch::span) else { return false };
+    let distinct = 1 + others.windows(2).filter(|pair| pair[0] < pair[1]).count();
+    span > 0.0 && 2.0 * span < all.span() && 256.0 * span < distinct as f64 * all.span()
 }
 
 #[cfg(test)]
@@ -152,15 +156,19 @@ mod tests {
         assert_eq!(ends(low), Some((30_002.0, 30_395.0)));
         let both = scene().chain([0.0; 200]).chain([65_535.0; 200]).collect();
         assert_eq!(ends(both), Some((30_002.0, 30_395.0)));
+        let around = scene().chain([29_000.0; 200]).chain([31_400.0; 200]).collect();
+        assert_eq!(ends(around), Some((30_002.0, 30_395.0)));
         let largest = scene().chain([f32::MIN; 200]).collect();
         assert_eq!(ends(largest), Some((30_002.0, 30_395.0)));
     }
 
     #[test]
-    fn a_near_value_and_two_values_stay() {
-        // 0 lies 300 from the others, which span 395 - 2.
+    fn values_that_cost_no_grey_values_stay() {
+        // The others span 393 of 693 with 0.
         let near = (300..=695).map(|value| value as f32).chain([0.0; 200]).collect();
         assert_eq!(ends(near), Some((0.0, 693.0)));
         assert_eq!(ends([[0.0; 50], [1000.0; 50]].concat()), Some((0.0, 1000.0)));
+        // 20 and 30 keep two different grey values beside 1000: 256 * 10 / 980 is 2.6.
+        assert_eq!(ends([[20.0; 50], [30.0; 50], [1000.0; 50]].concat()), Some((20.0, 1000.0)));
     }
 }

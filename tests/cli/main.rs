@@ -5,11 +5,14 @@
 mod bad_input;
 mod common;
 mod completions;
+mod deep_pictures;
 mod demo;
 mod devices;
 mod eval_dense;
 mod eval_features;
 mod eval_paper;
+#[path = "../exif/mod.rs"]
+mod exif;
 mod features;
 #[cfg(unix)]
 mod interruption;
