@@ -368,7 +368,7 @@ pub struct UnseenOptions {
     #[arg(long, num_args = 1..=2, value_names = ["LEFT", "RIGHT"])]
     mask: Vec<PathBuf>,
     /// Value for missing data: a pixel that has it in all channels was not seen. In the unit of the files, before any
-    /// stretch to 8 bits; NaN and infinity are always missing
+    /// stretch to 8 bits; NaN and infinity are always missing. JPEG does not keep such values: use a mask there
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
     nodata: Option<f32>,
 }

@@ -2,12 +2,12 @@
 //!
 //! Grey and RGB, with or without alpha, become RGBA of 8 bits:
 //! - 8-bit samples stay as they are;
-//! - 16-bit samples keep their upper 8 bits (`>> 8`) if they hold 8-bit values (`257 v`, `256 v`) or use half of the 16
-//!   bits or more; otherwise what is in use is stretched over 8 bits ([`Stretch`]);
+//! - 16-bit samples keep their upper 8 bits (`>> 8`) if they hold 8-bit values (`257 v`, `256 v`) or use half of the
+//!   16 bits or more; otherwise what is in use is stretched over 8 bits ([`Stretch`]);
 //! - floats, and integers that are signed or have more than 16 bits (TIFF), are always stretched;
-//! - alpha becomes 255 where a pixel was seen and 0 where not: alpha 0 in the file, a sample that is NaN or infinite, or
-//!   what [`Unseen`] says. Other alpha is dropped, not composited: the camera's picture is matched, and a background would
-//!   add edges of its own;
+//! - alpha becomes 255 where a pixel was seen and 0 where not: alpha 0 in the file, a sample that is NaN or infinite,
+//!   or what [`Unseen`] says. Other alpha is dropped, not composited: the camera's picture is matched, and a background
+//!   would add edges of its own;
 //! - pictures are rotated by their EXIF orientation, as in viewers;
 //! - colour profiles and gamma are ignored: both views have the same.
 //!
@@ -62,11 +62,12 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
 
 /// Loads the views of one pair, both with the same stretch, and without the pixels that `unseen` names.
 ///
-/// The sizes of the views may differ, unless their EXIF orientations make them differ.
+/// The sizes of the views may differ if their EXIF orientations do not.
 ///
 /// # Errors
-/// As [`load`]; also [`crate::Error::Format`] for a mask of another size than its view, a mask or a value for missing data that
-/// leaves no pixel, views of floats and of integers, and views that only different EXIF orientations give different sizes.
+/// As [`load`]; also [`crate::Error::Format`] for a mask of another size than its view, a mask or a value for missing
+/// data that leaves no pixel, one view of floats and one of integers, and views of different sizes and
+/// EXIF orientations.
 pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPair> {
     let [left_mask, right_mask] = unseen.masks.each_ref().map(Option::as_deref);
     let load = |path: &Path, mask| -> Result<Samples> {

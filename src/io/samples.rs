@@ -114,7 +114,8 @@ fn for_each(image: &DynamicImage, f: impl FnMut([f32; 3], f32)) {
         Image::ImageRgba16(image) => visit(image.as_raw(), |&[r, g, b, alpha]: &[u16; 4]| ([r, g, b], alpha), f),
         Image::ImageRgb32F(image) => visit(image.as_raw(), |&color: &[f32; 3]| (color, 1.0), f),
         Image::ImageRgba32F(image) => visit(image.as_raw(), |&[r, g, b, alpha]: &[f32; 4]| ([r, g, b], alpha), f),
-        other => unreachable!("{:?} has no codec here", other.color()),
+        // No codec has other layouts today.
+        other => for_each(&Image::ImageRgba32F(other.to_rgba32f()), f),
     }
 }
 

@@ -5,10 +5,11 @@
 //! that equal samples stay equal.
 //!
 //! Two rules find what is in use:
-//! - 0.5 % of the samples at either end are left out: hot and dead pixels. Wrong pixels of a thermal and a satellite pair
-//!   are within 0.5 per cent points for any share from 0 to 5 %.
-//! - The value at an end is left out if the others, without it, span less than half, and have more different values than
-//!   grey values with it: a value for missing data, such as -9999, at any share of pixels.
+//! - 0.5 % of the samples at either end are left out: hot and dead pixels. Shares from 0 to 5 % give 13.0 to 13.5 % of
+//!   pixels wrong by over 2 px on a thermal pair (1,660 steps, a part of Cones; `balanced`, 75 disparities), the upper
+//!   8 bits 24.2 %.
+//! - The value at an end is left out if the others, without it, span less than half, and have more different values
+//!   than grey values with it: a value for missing data, such as -9999, at any share of pixels.
 
 use super::samples::{Kind, Samples};
 
@@ -18,8 +19,10 @@ const OUTLIERS: usize = 200;
 /// Pixels per view that are looked at; a larger view is sampled.
 const ENOUGH: usize = 1 << 18;
 
-/// Span below which 16-bit samples are stretched. The upper 8 bits of a larger span have at least 128 grey values; with
-/// 128 of 256, pixels wrong by over 2 px rise by 0.5 per cent points (Cones, Motorcycle), with 64 by 1 to 2.
+/// Span below which 16-bit samples are stretched. The upper 8 bits of a larger span have at least 128 grey values.
+///
+/// Pixels wrong by over 2 px with 256, 128 and 64 grey values (`balanced`, 75 disparities): Cones 6.4, 6.9 and 7.5 %,
+/// Motorcycle 8.1, 8.6 and 10.3 %.
 const WIDE: f64 = 32_768.0;
 
 /// A linear map of samples to 8 bits, rounded: `low` becomes 0, `high` 255, and what lies outside is clamped.
@@ -42,8 +45,8 @@ impl Stretch {
 
     /// The common stretch of the views of one pair; `None` if the upper 8 bits of 16-bit samples serve as well.
     ///
-    /// Floats are always stretched. 16-bit samples are not if they use half of the 16 bits or more, or hold 8-bit values,
-    /// `257 v` or `256 v`. Views of 8 bits are left out.
+    /// Floats are always stretched. 16-bit samples are not if they use half of the 16 bits or more, or hold 8-bit
+    /// values, `257 v` or `256 v`. Views of 8 bits are left out.
     pub(super) fn of(views: &[&Samples]) -> Option<Self> {
         let deep: Vec<&Samples> = views.iter().copied().filter(|view| view.kind() != Kind::Eight).collect();
         let is_float = deep.iter().any(|view| view.kind() == Kind::Float);

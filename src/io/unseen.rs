@@ -8,7 +8,7 @@ use crate::error::Result;
 /// Pixels of a pair that were not seen, besides those of alpha 0 and those of samples that are not finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unseen {
-    /// Mask of the left and of the right view: a picture of the view's size, as it lies after its EXIF orientation; 0 in
+    /// Mask of the left and of the right view: a picture of the size that the view has after its EXIF orientation; 0 in
     /// all channels, or alpha 0, stands for 'not seen'.
     pub masks: [Option<PathBuf>; 2],
     /// A pixel whose samples, without alpha, all equal this value was not seen. The unit is the file's, before any
@@ -20,7 +20,8 @@ impl Unseen {
     /// Makes pixels of a view, the one in `path`, unseen.
     ///
     /// # Errors
-    /// [`crate::Error::Format`] if no pixel is left, or the mask has another size; [`crate::Error::Io`] if it cannot be read.
+    /// [`crate::Error::Format`] if no pixel is left, or the mask has another size or is no picture;
+    /// [`crate::Error::Io`] if the mask cannot be read.
     pub(super) fn hide(&self, view: &mut Samples, mask: Option<&Path>, path: &Path) -> Result<()> {
         if let Some(value) = self.nodata {
             view.hide_value(value);

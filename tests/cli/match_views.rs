@@ -324,7 +324,7 @@ fn other_kinds_of_pictures_are_read() {
     let luma = load::load(&scene("weak", "left.png")).unwrap().luma();
     let Size { width, height } = luma.size();
     let deep = image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([u16::from(luma.get(x, y)) * 257]));
-    let alpha = image::ImageBuffer::from_fn(width, height, |x, y| image::LumaA([luma.get(x, y), x as u8]));
+    let alpha = image::ImageBuffer::from_fn(width, height, |x, y| image::LumaA([luma.get(x, y), x as u8 | 1]));
     let [deep_path, alpha_path] = ["deep.png", "alpha.png"].map(|name| temporary.path().join(name));
     image::DynamicImage::ImageLuma16(deep).save(&deep_path).unwrap();
     image::DynamicImage::ImageLumaA8(alpha).save(&alpha_path).unwrap();
