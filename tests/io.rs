@@ -328,6 +328,11 @@ proptest! {
     }
 
     #[test]
+    fn floats_of_mutated_bytes(bytes in mutated(encoded(&photograph().to_rgb32f().into(), ImageFormat::Tiff))) {
+        check_picture(&bytes)?;
+    }
+
+    #[test]
     fn pictures_of_mutated_bytes(files in FORMATS.map(|format| mutated(encoded(&photograph(), format)))) {
         for bytes in files {
             check_picture(&bytes)?;
