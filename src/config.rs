@@ -41,6 +41,8 @@ pub struct Config {
     pub reference: View,
     /// Whether the right view gets the brightness of the left one, by the relation that the matches show; true by default.
     pub equalise: bool,
+    /// Whether the right view is resampled where the matches show that its rows are slightly off; true by default.
+    pub align: bool,
     /// Whether a pair that is measurably not rectified is matched all the same; false by default.
     pub force: bool,
 }
@@ -131,6 +133,7 @@ impl Preset {
             method: Method::Hsad(self.dense_parameters()),
             reference: View::Left,
             equalise: true,
+            align: true,
             force: false,
         };
         match self {
@@ -140,6 +143,7 @@ impl Preset {
                 least: Some(0),
                 reference: View::Right,
                 equalise: false,
+                align: false,
                 ..balanced
             },
         }

@@ -53,6 +53,11 @@ impl<'b> Pair<'b> {
         }
     }
 
+    /// What the pair is matched on.
+    pub(crate) fn backend(&self) -> &'b Backend {
+        self.backend
+    }
+
     /// Left and right luma.
     pub fn views(&self) -> (&Luma, &Luma) {
         (&self.left, &self.right)

@@ -17,6 +17,11 @@ impl Size {
         Self { width, height }
     }
 
+    /// The size of a picture downscaled by an integer `factor`, see [`crate::image::reduced`].
+    pub(crate) const fn reduced(self, factor: u32) -> Self {
+        Self { width: self.width.div_ceil(factor), height: self.height.div_ceil(factor) }
+    }
+
     /// Number of pixels.
     pub const fn pixels(self) -> u64 {
         self.width as u64 * self.height as u64

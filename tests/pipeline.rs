@@ -74,7 +74,7 @@ fn a_large_pair_is_seen_at_its_own_size() {
     let known = truth.data().iter().filter(|d| d.is_finite()).map(|&d| (d * factor as f32).round() as i32);
     let (inside, outside): (Vec<i32>, Vec<i32>) = known.partition(|&d| outcome.range.contains(d));
     assert!(outside.len() * 100 < inside.len(), "{} of the truth outside of {:?}", outside.len(), outcome.range);
-    assert!(outcome.seeding.rectification.is_rectified());
+    assert!(outcome.seeding.rectification.is_alignable());
     let Size { width, height } = views.0.size();
     let far = outcome.features[0].iter().filter(|f| f.x > width as f32 / 2.0 && f.x < width as f32).count();
     assert!(far > outcome.features[0].len() / 4, "points are not where the picture is");
@@ -98,4 +98,26 @@ fn the_paper_searches_from_the_right_view_to_the_right_only() {
         assert_eq!(outcome.dense.disparity.get(x, y) != NONE, has_partner, "({x}, {y})");
     }
     assert!(score.bad[0].of_known < 0.6, "{score:?}");
+}
+
+/// A right view that lies a row lower is matched as well as one that does not, and only with alignment.
+#[test]
+fn rows_that_are_off_are_aligned() {
+    let folder = scene("planes");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let truth = pfm::read(&folder.join("disp_left.pfm")).unwrap();
+    let lower = |rows: u32| Picture::from_fn(right.size(), |x, y| right.get(x, y.saturating_sub(rows)));
+    let wrong = |right: &Picture, align: bool| {
+        let config = hsad::Config { align, force: true, ..Preset::Fast.config() };
+        let outcome = pipeline::run(&Backend::Cpu, (&left, right), &config, |_| ()).unwrap();
+        hsad::eval::score(&outcome.dense.disparity, &truth, None, &[1.0]).unwrap().bad[0].of_known
+    };
+    let level = wrong(&right, true);
+    for rows in [1, 3] {
+        let right = lower(rows);
+        let (aligned, as_is) = (wrong(&right, true), wrong(&right, false));
+        // The lowest rows of the left view lie outside the right one.
+        let lost = f64::from(rows) / f64::from(right.height());
+        assert!(aligned < level + lost + 0.005 && as_is > level + 0.1, "{rows} rows: {level}, {aligned}, {as_is}");
+    }
 }

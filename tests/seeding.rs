@@ -62,7 +62,7 @@ fn rendered_pair_is_described_completely() {
     assert!(found.rectification.is_rectified(), "{}", found.rectification);
     let brightness = found.brightness.unwrap();
     assert!((brightness.gain - 0.8).abs() < 0.03 && (brightness.offset - 12.0).abs() < 4.0, "{brightness:?}");
-    assert!(found.trust > 0.6, "{}", found.trust);
+    assert!(found.agreement > 0.6, "{}", found.agreement);
     let right =
         |seed: &&hsad::matching::Seed| (seed.disparity - 8.0).abs() < 0.5 || (seed.disparity - 30.0).abs() < 0.5;
     assert!(found.seeds.iter().filter(right).count() * 10 >= found.seeds.len() * 9);
@@ -100,18 +100,39 @@ fn a_blurred_wall_lies_in_the_range() {
 }
 
 #[test]
-fn shifted_rows_are_told_and_not_trusted() {
-    let found = find(&pair(8.0, 30.0, 3.0, |value| value));
+fn rows_that_a_small_warp_mends_are_matched_by_their_model() {
+    for lower in [1.0, 3.0, -12.0] {
+        let found = find(&pair(8.0, 30.0, lower, |value| value));
+        assert_eq!(found.rectification.verdict, Verdict::Alignable, "{}", found.rectification);
+        let right_row = found.rectification.rows.right_row(50.0, 100.0);
+        assert!((right_row - 100.0 - f64::from(lower)).abs() < 0.1, "{right_row}");
+        assert!(found.agreement > 0.6, "{}", found.agreement);
+        let range = found.range.unwrap().range;
+        assert!(range.contains(8) && range.contains(30) && range.min >= -2 && range.last() <= 48, "{range:?}");
+    }
+}
+
+#[test]
+fn far_rows_are_told_and_not_trusted() {
+    let found = find(&pair(8.0, 30.0, 40.0, |value| value));
     assert_eq!(found.rectification.verdict, Verdict::NotRectified);
-    assert!((found.rectification.offset - 3.0).abs() < 0.3, "{}", found.rectification);
-    assert!(found.trust < 0.2, "{}", found.trust);
+    assert!((found.rectification.offset - 40.0).abs() < 0.3, "{}", found.rectification);
+    assert!(found.agreement < 0.2, "{}", found.agreement);
+}
+
+#[test]
+fn a_pair_turned_by_90_degrees_has_its_cameras_above_each_other() {
+    let (left, right) = pair(8.0, 30.0, 0.0, |value| value);
+    let transposed = |view: &Luma| Plane::from_fn((240, 320), |x, y| view.get(y, x));
+    let found = find(&(transposed(&left), transposed(&right)));
+    assert_eq!(found.rectification.verdict, Verdict::Vertical, "{}", found.rectification);
 }
 
 #[test]
 fn pictures_that_show_nothing_give_reasons_not_ranges() {
     let found = find(&(Luma::filled((100, 80), 128), Luma::filled((100, 80), 128)));
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
-    assert_eq!((found.brightness, found.trust), (None, 0.0));
+    assert_eq!((found.brightness, found.agreement), (None, 0.0));
     let error = Error::from(found.range.unwrap_err());
     assert!(matches!(error, Error::NoRange { .. }) && error.to_string().contains("0 points"), "{error}");
 }
@@ -121,7 +142,7 @@ fn unrelated_pictures_are_not_trusted() {
     let (left, _) = pair(8.0, 30.0, 0.0, |value| value);
     let other = Plane::from_fn((320, 240), |x, y| texture(y as f32 + 5000.0, x as f32 + 3000.0).round() as u8);
     let found = find(&(left, other));
-    assert!(found.trust < 0.1 && !found.rectification.is_rectified(), "{found:?}");
+    assert!(found.agreement < 0.1 && !found.rectification.is_rectified(), "{found:?}");
 }
 
 #[test]
@@ -134,7 +155,7 @@ fn sizes_are_checked() {
     assert_eq!(found.rectification.verdict, Verdict::Unknown);
 }
 
-/// On real scenes the range found covers nearly all of the ground truth, and the verdict is `Rectified`.
+/// On real scenes the range found covers nearly all of the ground truth, and rows correspond.
 #[test]
 fn real_scenes_lie_in_the_range_found_for_them() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo"));
@@ -151,7 +172,9 @@ fn real_scenes_lie_in_the_range_found_for_them() {
         let (low, high) = known.iter().fold((f32::MAX, f32::MIN), |(low, high), &d| (low.min(d), high.max(d)));
         let width = DisparityRange::inclusive(low.floor() as i32, high.ceil() as i32).unwrap().count;
         assert!(range.count as f32 <= 1.6 * width as f32, "{scene}: {range:?} for {low} to {high}");
-        assert!(found.rectification.is_rectified(), "{scene}: {}", found.rectification);
+        // The rows of some of these pairs are off by a third of a pixel.
+        let rows = &found.rectification;
+        assert!(rows.is_alignable() && rows.largest < 0.5 && rows.unexplained == 0.0, "{scene}: {rows}");
     }
 }
 

@@ -54,7 +54,8 @@ impl Job {
 /// Trust below which a result gets a warning, 0 to 1; sound rectified pairs reach twice this value.
 const LITTLE_TRUST: f32 = 0.25;
 
-/// Warnings about a result: identical views, a guessed or cut disparity range, little trust, matches outside the range,
+/// Warnings about a result: identical views, a guessed or cut disparity range, little trust, a distorted lens, matches
+/// outside the range,
 /// and a difference in brightness.
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -70,12 +71,11 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }
     // Without a range found from the matches the trust is 0 by definition, not by evidence.
-    if outcome.seeding.range.is_ok() && outcome.seeding.trust < LITTLE_TRUST {
-        warnings.push(format!(
-            "hardly any matching interest points support this result (trust {:.2} of 1)",
-            outcome.seeding.trust
-        ));
+    if outcome.seeding.range.is_ok() && outcome.trust < LITTLE_TRUST {
+        warnings
+            .push(format!("hardly any matching interest points support this result (trust {:.2} of 1)", outcome.trust));
     }
+    warnings.extend(distortion(outcome));
     warnings.extend(outside(outcome));
     warnings.extend(brightness(outcome));
     warnings
@@ -84,6 +84,18 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
 /// A disparity range as text, `MIN to MAX px`.
 pub fn span(range: DisparityRange) -> String {
     format!("{} to {} px", range.min, range.last())
+}
+
+/// A warning if rows differ as the rows of a distorted lens do.
+fn distortion(outcome: &Outcome) -> Option<String> {
+    let rows = &outcome.seeding.rectification;
+    rows.is_distorted().then(|| {
+        format!(
+            "rows are off by up to {:.1} px in parts of the picture, as by a distorted lens: remove the distortion from \
+             both pictures first",
+            rows.unexplained
+        )
+    })
 }
 
 /// A warning if most matches lie outside the searched range, or have negative disparities: the range is wrong, or the

@@ -166,6 +166,9 @@ pub struct MatchOptions {
     /// Do not equalise the brightness of the views, even where matched points show a difference
     #[arg(long)]
     no_equalise: bool,
+    /// Do not align rows: match the right view as it is, even where matched points show that its rows are slightly off [default of paper]
+    #[arg(long)]
+    no_align: bool,
     /// Sub-pixel interpolation of disparities [default: equiangular, paper parabola]
     #[arg(long, value_parser = interpolations())]
     interpolation: Option<Interpolation>,
@@ -204,6 +207,7 @@ impl MatchOptions {
         }
         config.reference = self.reference.unwrap_or(config.reference);
         config.equalise &= !self.no_equalise;
+        config.align &= !self.no_align;
         config.force = self.force;
         config.validate()?;
         Ok(config)

@@ -7,7 +7,7 @@ use hsad::{
     disparity::{DisparityRange, SCALE, coverage},
     io::{Calibration, load::Stretch},
     kamencay::KamencayParameters,
-    pipeline::RangeSource,
+    pipeline::{Outcome, RangeSource},
     seeding::{BrightnessRelation, Rectification, Verdict},
 };
 use serde_json::{Map, Value, json};
@@ -33,14 +33,14 @@ impl CompletedJob {
             "calibration": job.calibration.as_ref().map(calibration),
             "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
             "seeds": outcome.seeding.seeds.len(),
-            "range": searched(outcome.range, &outcome.range_source),
+            "range": searched(outcome),
             "rectification": rectification(&outcome.seeding.rectification),
             "brightness": outcome.seeding.brightness.as_ref().map(brightness),
             "equalised": {
                 "gain": f64::from(outcome.brightness.gain) / 256.0,
                 "offset": f64::from(outcome.brightness.offset) / 256.0,
             },
-            "trust": number(outcome.seeding.trust),
+            "trust": number(outcome.trust),
             "coverage": coverage(&outcome.dense.disparity),
             "measured": outcome.dense.measured(),
             "seconds": seconds,
@@ -61,7 +61,7 @@ fn number(value: f32) -> Value {
 
 /// All parameters of the configuration, and how many interest points and matches a figure shows.
 pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
-    let Config { features, seeding, range, least, method, reference, equalise, force } = config;
+    let Config { features, seeding, range, least, method, reference, equalise, align, force } = config;
     let matching = &seeding.matching;
     let mut parameters = json!({
         "method": match method { Method::Hsad(_) => "hsad", Method::Kamencay(_) => "kamencay" },
@@ -69,6 +69,7 @@ pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
         "range": range.map(ends),
         "min_disparity": least,
         "equalise": equalise,
+        "align": align,
         "force": force,
         "features": {
             "octaves": features.octaves,
@@ -186,16 +187,17 @@ fn ends(range: DisparityRange) -> Value {
     json!({ "min": range.min, "max": range.last(), "count": range.count })
 }
 
-/// The disparity range that was searched and its source; a fallback range comes with the reason.
-pub fn searched(range: DisparityRange, source: &RangeSource) -> Value {
-    let mut value = ends(range);
-    value["source"] = match source {
+/// The disparity range that was searched, its origin, and the shares of the map at its ends; a fallback range comes with
+/// the reason.
+pub fn searched(Outcome { range, range_source, at_ends: [at_min, at_max], .. }: &Outcome) -> Value {
+    let mut value = ends(*range);
+    value["source"] = match range_source {
         RangeSource::Asked => "asked",
         RangeSource::Found(_) => "found",
         RangeSource::Fallback(_) => "fallback",
     }
     .into();
-    match source {
+    match range_source {
         RangeSource::Asked => {}
         RangeSource::Found([min, max]) => {
             value["min_from"] = min.name().into();
@@ -203,26 +205,30 @@ pub fn searched(range: DisparityRange, source: &RangeSource) -> Value {
         }
         RangeSource::Fallback(thin) => value["reason"] = thin.to_string().into(),
     }
+    value["at_min"] = number(*at_min);
+    value["at_max"] = number(*at_max);
     value
 }
 
+/// The verdict; figures of a fit only where most matches agree with the fit.
 fn rectification(found: &Rectification) -> Value {
-    let Rectification { verdict, offset, rotation, scale, residual, largest, agreeing, seeds } = *found;
-    let verdict = match verdict {
-        Verdict::Rectified => "rectified",
-        Verdict::NotRectified => "not rectified",
-        Verdict::Unknown => return json!({ "verdict": "unknown", "agreeing": agreeing, "matches": seeds }),
-    };
-    json!({
-        "verdict": verdict,
-        "offset_px": number(offset),
-        "rotation_degrees": number(rotation),
-        "scale": number(scale),
-        "residual_px": number(residual),
-        "largest_px": number(largest),
-        "agreeing": agreeing,
-        "matches": seeds,
-    })
+    let mut value = json!({ "verdict": found.verdict.name(), "agreeing": found.agreeing, "matches": found.seeds });
+    let has_fit = !matches!(found.verdict, Verdict::Unknown | Verdict::Vertical);
+    if has_fit && (found.is_alignable() || found.most_agree()) {
+        for (name, figure) in [
+            ("offset_px", found.offset),
+            ("rotation_degrees", found.rotation),
+            ("scale", found.scale),
+            ("residual_px", found.residual),
+            ("remaining_px", found.remaining),
+            ("unexplained_px", found.unexplained),
+            ("largest_px", found.largest),
+        ] {
+            value[name] = number(figure);
+        }
+        value["rows"] = json!({ "model": found.rows.kind().name(), "parameters": found.rows.parameters() });
+    }
+    value
 }
 
 fn brightness(&BrightnessRelation { gain, offset, residual }: &BrightnessRelation) -> Value {

@@ -19,7 +19,8 @@ impl CompletedJob {
         };
         let rectified = match seeding.rectification.verdict {
             Verdict::Rectified => format!("yes: {}", seeding.rectification),
-            Verdict::NotRectified => format!("no: {}", seeding.rectification),
+            Verdict::Alignable => format!("nearly: {}", seeding.rectification),
+            Verdict::NotRectified | Verdict::UpsideDown | Verdict::Vertical => format!("no: {}", seeding.rectification),
             Verdict::Unknown => seeding.rectification.to_string(),
         };
         let steps: Vec<String> =
@@ -41,7 +42,7 @@ impl CompletedJob {
         line(&mut text, "range", format!("{} ({source})", span(outcome.range)));
         line(&mut text, "points", format!("{left} left, {right} right, {} matched", seeding.seeds.len()));
         line(&mut text, "rectified", rectified);
-        line(&mut text, "trust", format!("{:.2} of 1", seeding.trust));
+        line(&mut text, "trust", format!("{:.2} of 1", outcome.trust));
         let share = 100.0 * coverage(&outcome.dense.disparity);
         let measured = 100.0 * outcome.dense.measured();
         let filled =

@@ -8,9 +8,9 @@ use hsad::Error;
 /// The message of a library error, with the options that help.
 pub fn in_options(error: &Error) -> String {
     match error {
-        Error::NotRectified { diagnosis } => format!(
-            "the pair is not rectified: {diagnosis}; rectify it first, or search along rows all the same with --force"
-        ),
+        Error::NotRectified { diagnosis } => {
+            format!("the pair is not rectified: {diagnosis}, or search along rows all the same with --force")
+        }
         Error::NoRange { reason } => {
             format!("the disparity range could not be found: {reason}; name it with --min-disparity and --disparities")
         }

@@ -1,15 +1,22 @@
-//! Resampling of a view, so that corresponding points come to lie in the same row.
+//! Rows of the right view: which row of the left view they correspond to, and resampling, so that corresponding points come
+//! to lie in the same row.
 //!
-//! A [`WarpMap`] says for each pixel of a new picture which position of the source it shows; the kernel `warp` and its twin
-//! interpolate there. All arithmetic after the map's construction is in integers: the same bytes on every device.
+//! A [`RowModel`] is fitted to matches. A [`WarpMap`] says for each pixel of a new picture which position of the source it
+//! shows; the kernel `warp` and its twin interpolate there. All arithmetic after the map's construction is in integers: the
+//! same bytes on every device.
 
 mod catmull_rom;
+mod curve;
+pub(crate) mod fit;
 pub(crate) mod kernels;
+mod lens;
 mod map;
+mod rows;
 mod warp;
 
 pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
 pub use map::WarpMap;
 pub(crate) use map::{NONE, SPACING_BITS};
+pub use rows::{RowKind, RowModel};
 pub(crate) use warp::warp;

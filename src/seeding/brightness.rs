@@ -1,6 +1,6 @@
 //! Gain and offset between the grey values of the two views.
 
-use crate::{dense::Brightness, image::Luma, matching::Seed};
+use crate::{dense::Brightness, image::Luma, matching::Seed, rectify::RowModel};
 
 /// Half the side of the 7x7 window over which grey values are averaged, in pixels.
 const HALF: i64 = 3;
@@ -25,15 +25,16 @@ pub struct BrightnessRelation {
 }
 
 impl BrightnessRelation {
-    /// Fits the line to the mean grey values of corresponding windows; `None` for fewer than 12 usable seeds, or
-    /// without contrast between their windows.
+    /// Fits the line to the mean grey values of corresponding windows of a left view and a right view resampled by `rows`;
+    /// `None` for fewer than 12 usable seeds, or without contrast between their windows.
     ///
     /// The slope is the median of the slopes of all pairs (Theil 1950, Sen 1968), which up to 29 % of wrong seeds
     /// cannot move far. Windows with a black or a white pixel are left out, since the sensor may have clipped them.
-    pub(super) fn new(left: &Luma, right: &Luma, seeds: &[Seed]) -> Option<Self> {
+    pub(super) fn new(left: &Luma, right: &Luma, seeds: &[Seed], rows: &RowModel) -> Option<Self> {
+        let row_of = |seed: &Seed| rows.left_row(seed.right_x().into(), seed.right_y().into()) as f32;
         let means: Vec<(f32, f32)> = seeds
             .iter()
-            .filter_map(|seed| Some((mean(left, seed.x, seed.y)?, mean(right, seed.right_x(), seed.right_y())?)))
+            .filter_map(|seed| Some((mean(left, seed.x, seed.y)?, mean(right, seed.right_x(), row_of(seed))?)))
             .take(MOST)
             .collect();
         if means.len() < NEEDED {
@@ -92,7 +93,7 @@ mod tests {
                 Seed { x: 45.0 + (i % 10) as f32 * 5.0, y: 5.0 + i as f32, disparity, dy: 0.0, confidence: 1.0 }
             })
             .collect();
-        let found = BrightnessRelation::new(&left, &right, &seeds).unwrap();
+        let found = BrightnessRelation::new(&left, &right, &seeds, &RowModel::AS_IS).unwrap();
         assert!((found.gain - 0.5).abs() < 0.03 && (found.offset - 20.0).abs() < 3.0, "{found:?}");
     }
 
@@ -100,10 +101,10 @@ mod tests {
     fn nothing_is_claimed_without_contrast_or_seeds() {
         let grey = Luma::filled((50, 50), 90);
         let seeds = [Seed { x: 20.0, y: 20.0, disparity: 1.0, dy: 0.0, confidence: 1.0 }; 20];
-        assert_eq!(BrightnessRelation::new(&grey, &grey, &seeds), None);
-        assert_eq!(BrightnessRelation::new(&grey, &grey, &[]), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &seeds, &RowModel::AS_IS), None);
+        assert_eq!(BrightnessRelation::new(&grey, &grey, &[], &RowModel::AS_IS), None);
         let white = Luma::filled((50, 50), 255);
-        assert_eq!(BrightnessRelation::new(&white, &grey, &seeds), None);
+        assert_eq!(BrightnessRelation::new(&white, &grey, &seeds, &RowModel::AS_IS), None);
     }
 
     #[test]

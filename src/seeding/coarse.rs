@@ -13,6 +13,7 @@ use crate::{
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
     image::{Luma, Plane, Size, reduced},
+    mask::{self, Mask},
 };
 
 /// Largest width of the downscaled pair, in pixels.
@@ -55,12 +56,17 @@ pub struct CoarseMap {
 }
 
 impl CoarseMap {
-    /// Matches a pair of one size over the disparities `span`, in pixels of the pair, with a change of the right view's
+    /// Matches a pair of one size, as far as the left view is `seen`, over the disparities `span`, in pixels of the pair, with a change of the right view's
     /// brightness.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] if the span lies beyond the width of the pair.
-    pub fn new((left, right): (&Luma, &Luma), span: DisparityRange, brightness: Brightness) -> Result<Self> {
+    pub(crate) fn new(
+        (left, right): (&Luma, &Luma),
+        seen: Option<&Mask>,
+        span: DisparityRange,
+        brightness: Brightness,
+    ) -> Result<Self> {
         let factor = left.width().div_ceil(WIDTH);
         let whole = factor as i32;
         let range = DisparityRange::inclusive(span.min.div_euclid(whole), (span.last() + whole - 1).div_euclid(whole))?;
@@ -68,13 +74,11 @@ impl CoarseMap {
         let config = DenseConfig { range, reference: View::Left, brightness, parameters: PARAMETERS };
         let searched = config.searched(left.width())?;
         let Dense { disparity, confidence } = cpu::dense::compute(&left, &right, &config)?;
-        let sure =
-            Plane::from_fn(
-                disparity.size(),
-                |x, y| {
-                    if confidence.get(x, y) >= SURE { disparity.get(x, y) } else { NONE }
-                },
-            );
+        let seen = seen.map(|mask| mask::reduced(mask, factor));
+        let sure = Plane::from_fn(disparity.size(), |x, y| {
+            let counts = confidence.get(x, y) >= SURE && seen.as_ref().is_none_or(|mask| mask.get(x, y) != 0);
+            if counts { disparity.get(x, y) } else { NONE }
+        });
         Ok(Self::of_surfaces(&sure, factor, searched))
     }
 
@@ -187,7 +191,7 @@ mod tests {
         let left = Luma::from_fn((400, 120), |x, y| texture(x / 6, y / 6) as u8);
         let right = Luma::from_fn((400, 120), |x, y| texture((x + 24) / 6, y / 6) as u8);
         let span = DisparityRange::inclusive(-20, 160).unwrap();
-        let found = CoarseMap::new((&left, &right), span, Brightness::SAME).unwrap();
+        let found = CoarseMap::new((&left, &right), None, span, Brightness::SAME).unwrap();
         let [low, high] = found.extent().unwrap();
         assert!((low - 24.0).abs() < 4.0 && (high - 24.0).abs() < 4.0 && found.coverage() > 0.6, "{found:?}");
     }

@@ -23,14 +23,30 @@ pub(super) fn enlarged_range(range: DisparityRange, factor: u32) -> DisparityRan
     DisparityRange { min, count: (last - min) as u32 + 1 }
 }
 
-impl Seeding {
-    /// Converts the result to views enlarged by `factor`.
-    ///
-    /// All lengths grow by `factor`, and so does the tolerance of the verdict `Rectified`: 1.5 px of the reduced views.
+impl Rectification {
+    /// Converts the figures and the model of the rows to views enlarged by `factor`.
     #[must_use]
     pub fn enlarged(self, factor: u32) -> Self {
         let scale = factor as f32;
-        let rectification = self.rectification;
+        Self {
+            rows: self.rows.enlarged(factor),
+            offset: scale * self.offset,
+            residual: scale * self.residual,
+            remaining: scale * self.remaining,
+            unexplained: scale * self.unexplained,
+            largest: scale * self.largest,
+            ..self
+        }
+    }
+}
+
+impl Seeding {
+    /// Converts the result to views enlarged by `factor`.
+    ///
+    /// All lengths grow by `factor`, and so does the row difference that counts as none: 1/16 px of the reduced views.
+    #[must_use]
+    pub fn enlarged(self, factor: u32) -> Self {
+        let scale = factor as f32;
         let seed = |seed: &Seed| Seed {
             x: place(seed.x, scale),
             y: place(seed.y, scale),
@@ -44,12 +60,7 @@ impl Seeding {
                 seen: found.seen.map(|disparity| scale * disparity),
                 ..found
             }),
-            rectification: Rectification {
-                offset: scale * rectification.offset,
-                residual: scale * rectification.residual,
-                largest: scale * rectification.largest,
-                ..rectification
-            },
+            rectification: self.rectification.enlarged(factor),
             seeds: self.seeds.iter().map(seed).collect(),
             ..self
         }

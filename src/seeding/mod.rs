@@ -9,21 +9,27 @@ mod enlarged;
 mod range;
 mod rectification;
 mod support;
+mod verdict;
+mod vertical;
 
 pub use brightness::BrightnessRelation;
 pub use coarse::CoarseMap;
 pub use enlarged::enlarged_feature;
 pub use range::{FoundRange, RangeEnd, ThinSupport};
-pub use rectification::{Rectification, Verdict};
+pub use rectification::Rectification;
 pub(crate) use support::{GRADIENT, SLACK};
+pub use verdict::Verdict;
 
 use crate::{
+    cpu,
     dense::Brightness,
     disparity::DisparityRange,
     error::{Error, Result},
     features::Feature,
-    image::Luma,
-    matching::{MatchConfig, Rows, Seed, match_features, refine},
+    image::{Luma, Size},
+    mask::Mask,
+    matching::{Match, MatchConfig, Rows, Seed, match_features, refine},
+    rectify::RowModel,
 };
 
 /// Standard deviation of a normal distribution divided by its median absolute deviation.
@@ -55,59 +61,108 @@ pub struct Seeding {
     pub rectification: Rectification,
     /// Relation of the grey values of the views; `None` if there are too few seeds.
     pub brightness: Option<BrightnessRelation>,
-    /// Trust in a dense result, 0 to 1: the share of all matches, found in any row, that lie in corresponding rows and
-    /// in the range; multiplied by `n / (n + 30)` for `n` of these matches.
-    pub trust: f32,
+    /// How far the matches speak for a search along rows in the range, 0 to 1: the share of all matches, found in any row,
+    /// that lie in corresponding rows and in the range; multiplied by `n / (n + 30)` for `n` of these matches.
+    pub agreement: f32,
     /// The seeds that their neighbours support, the most confident first.
     pub seeds: Vec<Seed>,
 }
 
 impl Seeding {
-    /// Matches the features of two views and measures rectification, range, brightness relation and trust.
+    /// Matches the features of two views and measures rectification, range, brightness relation and agreement. If the
+    /// verdict is [`Verdict::Alignable`], all but the rectification is measured with the right view resampled by
+    /// [`Rectification::rows`], by the CPU twin.
     ///
     /// # Errors
     /// [`Error::SizesDiffer`] if the views differ in size, [`Error::Parameter`] if the configuration is not valid.
     /// An unknown range is no error here, since the caller may have one: see [`Self::range`].
-    pub fn find(views: (&Luma, &Luma), features: (&[Feature], &[Feature]), config: &SeedingConfig) -> Result<Self> {
-        if views.0.size() != views.1.size() {
-            return Err(Error::SizesDiffer { left: views.0.size(), right: views.1.size() });
+    pub fn find(
+        (left, right): (&Luma, &Luma),
+        features: (&[Feature], &[Feature]),
+        config: &SeedingConfig,
+    ) -> Result<Self> {
+        if left.size() != right.size() {
+            return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
         }
-        let (left, right) = features;
-        let size = views.0.size();
-
-        let anywhere = MatchConfig { max_dy: None, ..config.matching.clone() };
-        let matches = match_features(left, right, &anywhere)?;
-        let raw: Vec<Seed> = matches.iter().map(|found| Seed::from_match(left, right, found)).collect();
-        let rectification = Rectification::new(&raw, size);
-
-        let seeds = if rectification.is_rectified() {
-            let in_row = MatchConfig { max_dy: Some(config.max_dy), ..anywhere };
-            refine(views, features, &match_features(left, right, &in_row)?, Rows::Equal)
-        } else {
-            refine(views, features, &matches, Rows::Matched)
-        };
-        let count = seeds.len();
-        let seeds = support::supported(&seeds);
-        let brightness = BrightnessRelation::new(views.0, views.1, &seeds);
-        let equalised = brightness.as_ref().map_or(Brightness::SAME, BrightnessRelation::equalising);
-        let coarse = range::coarse_map(views, &seeds, equalised)?;
-        let range = range::disparity_range(size.width, &seeds, count, &coarse);
-        Ok(Self {
-            brightness,
-            trust: range.map_or(0.0, |found| trust(&raw, found.range, config.max_dy)),
-            range,
-            coarse,
-            rectification,
-            seeds,
-        })
+        let matches = RawMatches::new(features, left.size(), config)?;
+        let map = matches.rectification.rows.warp(left.size())?;
+        let aligned = map.map(|map| cpu::rectify::warp(right, &map));
+        matches.seeding((left, aligned.as_ref().unwrap_or(right)), None, features, config)
     }
 }
 
-/// Share of the matches that a search along rows in `range` can find, reduced for small numbers.
-fn trust(raw: &[Seed], range: DisparityRange, max_dy: f32) -> f32 {
+/// Matches of the features of two views in any row, and what they tell of the rows.
+#[derive(Clone, Debug)]
+pub(crate) struct RawMatches {
+    matches: Vec<Match>,
+    /// The matches at the positions of the features.
+    seeds: Vec<Seed>,
+    pub rectification: Rectification,
+}
+
+impl RawMatches {
+    /// Matches the `features` of two views of `size`.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the configuration is not valid.
+    pub fn new((left, right): (&[Feature], &[Feature]), size: Size, config: &SeedingConfig) -> Result<Self> {
+        let anywhere = MatchConfig { max_dy: None, ..config.matching.clone() };
+        let matches = match_features(left, right, &anywhere)?;
+        let seeds: Vec<Seed> = matches.iter().map(|found| Seed::from_match(left, right, found)).collect();
+        let rectification = Rectification::new(&seeds, size);
+        Ok(Self { matches, seeds, rectification })
+    }
+
+    /// Range, brightness relation and agreement, from the matches and `views`, whose right one is resampled by
+    /// [`Rectification::rows`]; `seen` masks the left view.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the configuration is not valid.
+    pub fn seeding(
+        self,
+        views: (&Luma, &Luma),
+        seen: Option<&Mask>,
+        (left, right): (&[Feature], &[Feature]),
+        config: &SeedingConfig,
+    ) -> Result<Seeding> {
+        let Self { matches, seeds: raw, rectification } = self;
+        let rows = rectification.rows;
+        let seeds = if rectification.is_alignable() {
+            let in_row = MatchConfig { max_dy: Some(config.max_dy), ..config.matching.clone() };
+            let lifted: Vec<Feature> = right.iter().map(|feature| on_left_row(feature, &rows)).collect();
+            let found = match_features(left, &lifted, &in_row)?;
+            let seeds = refine(views, (left, &lifted), &found, Rows::Equal);
+            seeds.into_iter().map(|seed| on_right_row(seed, &rows)).collect()
+        } else {
+            refine(views, (left, right), &matches, Rows::Matched)
+        };
+        let supported = support::supported(&seeds);
+        let brightness = BrightnessRelation::new(views.0, views.1, &supported, &rows);
+        let equalised = brightness.as_ref().map_or(Brightness::SAME, BrightnessRelation::equalising);
+        let coarse = range::coarse_map(views, seen, &supported, equalised)?;
+        let range = range::disparity_range(views.0.width(), &supported, seeds.len(), &coarse);
+        let agreement = range.map_or(0.0, |found| agreement(&raw, found.range, &rows, config.max_dy));
+        Ok(Seeding { range, coarse, rectification, brightness, agreement, seeds: supported })
+    }
+}
+
+/// A feature of the right view on the left row that `rows` gives it.
+fn on_left_row(feature: &Feature, rows: &RowModel) -> Feature {
+    Feature { y: rows.left_row(feature.x.into(), feature.y.into()) as f32, ..feature.clone() }
+}
+
+/// A seed of the resampled right view, with its row difference in the right view as given.
+fn on_right_row(seed: Seed, rows: &RowModel) -> Seed {
+    Seed { dy: (rows.right_row(seed.right_x().into(), seed.y.into()) - f64::from(seed.y)) as f32, ..seed }
+}
+
+/// Share of the matches that a search along `rows` in `range` can find, reduced for small numbers.
+fn agreement(raw: &[Seed], range: DisparityRange, rows: &RowModel, max_dy: f32) -> f32 {
     /// Number of matches at which the share is halved.
     const FEW: f32 = 30.0;
-    let found = |seed: &&Seed| seed.dy.abs() <= max_dy && range.contains(seed.disparity.round() as i32);
+    let row_error =
+        |seed: &Seed| (rows.left_row(seed.right_x().into(), seed.right_y().into()) - f64::from(seed.y)).abs();
+    let found = |seed: &&Seed| row_error(seed) <= max_dy.into() && range.contains(seed.disparity.round() as i32);
     let consistent = raw.iter().filter(found).count() as f32;
     if consistent == 0.0 { 0.0 } else { consistent / raw.len() as f32 * consistent / (consistent + FEW) }
 }

@@ -8,6 +8,7 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     image::Luma,
+    mask::Mask,
     matching::Seed,
     names::names,
 };
@@ -122,18 +123,24 @@ pub(super) fn disparity_range(
     }
 }
 
-/// The coarse map over the usual disparities and those of the seeds; over all that the width allows if surfaces lie at an
+/// The coarse map of what is `seen` in the left view, over the usual disparities and those of the seeds; over all that the width allows if surfaces lie at an
 /// end of the usual ones, or if hardly any surface was found.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`].
-pub(super) fn coarse_map(views: (&Luma, &Luma), supported: &[Seed], brightness: Brightness) -> Result<CoarseMap> {
+pub(super) fn coarse_map(
+    views: (&Luma, &Luma),
+    seen: Option<&Mask>,
+    supported: &[Seed],
+    brightness: Brightness,
+) -> Result<CoarseMap> {
     let width = views.0.width() as f32;
     let seeds = extent(supported).filter(|_| supported.len() >= NEEDED);
     let [low, high] = SPAN.map(|share| share * width);
     let [far, near] = seeds.map_or([low, high], |[far, near]| [far + low, near - low]);
     let most = width - 1.0;
-    let coarse = |[far, near]: [f32; 2]| CoarseMap::new(views, range([far.max(-most), near.min(most)])?, brightness);
+    let coarse =
+        |[far, near]: [f32; 2]| CoarseMap::new(views, seen, range([far.max(-most), near.min(most)])?, brightness);
     let usual = coarse([low.min(far), high.max(near)])?;
     if usual.coverage() >= COVERAGE && usual.at_ends() <= AT_ENDS {
         return Ok(usual);

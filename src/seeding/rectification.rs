@@ -1,47 +1,41 @@
-//! Diagnosis of rectification: whether corresponding points lie in the same row, and if not, by how much the views are
-//! shifted, rotated and scaled.
+//! Diagnosis of rectification: how the rows of the two views correspond.
 
-use std::fmt;
+use glam::DVec2;
 
-use glam::{DMat3, DVec3};
+use super::{Verdict, brightness::median, vertical::vertical};
+use crate::{
+    image::Size,
+    matching::Seed,
+    rectify::{
+        RowKind, RowModel,
+        fit::{Correspondence, RowFit},
+    },
+};
 
-use super::brightness::median;
-use crate::{image::Size, matching::Seed};
-
-/// Number of seeds on which candidate fits are tested, the most confident ones.
-const TRIED: usize = 1000;
-/// Number of candidate fits.
-const FITS: usize = 1000;
-/// Largest row error of an inlier, in pixels: features are located to about half a pixel.
-const AGREEMENT: f64 = 1.5;
 /// Smallest number of inliers, and their smallest share of all seeds. By chance about one seed in a hundred is an
 /// inlier.
-const NEEDED: (usize, f64) = (15, 0.2);
-/// Number of steps of the robust fit; the last ones no longer change it.
-const STEPS: usize = 10;
-/// Largest row difference anywhere in the picture that counts as rectified, in pixels.
-const TOLERANCE: f64 = 1.5;
+pub(super) const NEEDED: (usize, f64) = (15, 0.2);
+/// Smallest share of the inliers of a fit that agree with the rows as they are, for these to be preferred where most seeds
+/// contradict the fit.
+const AS_MANY: f64 = 0.9;
+/// Largest rotation that a warp of rows alone removes, in degrees: it shears disparities by 9 % of the height.
+const TURN: f32 = 5.0;
+/// Largest vertical scale that a warp of rows alone removes, and its inverse: windows of 11 columns differ by a column.
+const SCALE: f32 = 1.1;
+/// Largest row difference that a warp of rows alone removes, as a share of the height: so much of the picture may be lost.
+const ROWS: f64 = 0.1;
 
-/// Whether a pair is rectified.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Corresponding points lie in the same row.
-    Rectified,
-    /// Corresponding points lie in different rows: a search along rows would find nothing but noise.
-    NotRectified,
-    /// Too few seeds agree with each other.
-    Unknown,
-}
-
-/// The similarity between the rows of the two views.
+/// How the rows of the two views correspond.
 ///
-/// The figures describe the map from the left view's rows to the right view's, seen from midway between the two:
-/// exchanging the views negates offset and rotation and inverts the scale.
+/// Figures of a fit are given wherever at least 15 seeds and a fifth of them agree with it; they deserve trust where most
+/// seeds agree, see [`Self::most_agree`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectification {
     /// The verdict from the figures below.
     pub verdict: Verdict,
-    /// Right row minus left row at the centre of the picture, in pixels.
+    /// Left rows of the pixels of the right view. Rows as they are, unless the verdict is [`Verdict::Alignable`].
+    pub rows: RowModel,
+    /// Right row minus left row at the centre of the right view, in pixels.
     pub offset: f32,
     /// Rotation of the right view against the left, in degrees, clockwise on the screen.
     pub rotation: f32,
@@ -49,177 +43,145 @@ pub struct Rectification {
     pub scale: f32,
     /// Robust standard deviation of the inliers' rows from the fit, in pixels.
     pub residual: f32,
+    /// 95 % of the inliers' row errors are at most this, in pixels, once the fit is taken into account.
+    pub remaining: f32,
+    /// Largest row error anywhere in the picture that a distortion of the lens leaves after the fit, in pixels; 0 if the
+    /// seeds show no distortion.
+    pub unexplained: f32,
     /// Largest row difference of the fit anywhere in the picture, in pixels.
     pub largest: f32,
-    /// Number of inliers, seeds that agree with the fit.
+    /// Number of inliers, seeds that agree with the fit; for [`Verdict::Vertical`], with a fit of columns.
     pub agreeing: usize,
     /// Number of all seeds.
     pub seeds: usize,
 }
 
 impl Rectification {
-    /// Fits the similarity to seeds matched in any row, the most confident first; `size` is width and height of the
-    /// views, in pixels.
-    ///
-    /// Random sample consensus (Fischler and Bolles 1981) with a fixed random sequence, then reweighted least squares
-    /// (Tukey's biweight); the same seeds give the same figures.
+    /// Fits row models to seeds matched in any row, the most confident first; `size` is width and height of the views, in
+    /// pixels. The same seeds give the same figures.
     pub fn new(seeds: &[Seed], size: impl Into<Size>) -> Self {
         let size = size.into();
-        let points: Vec<Point> = seeds.iter().map(|seed| Point::new(seed, size)).collect();
-        let fit = consensus(&points[..points.len().min(TRIED)]).and_then(|fit| refined(fit, &points));
-        let agreeing = fit.map_or(0, |fit| fit.agreeing(&points).count());
-        let enough = agreeing >= NEEDED.0 && agreeing as f64 >= NEEDED.1 * seeds.len() as f64;
-        let Some(fit) = fit.filter(|_| enough) else {
-            return Self { agreeing, ..Self::unknown(seeds.len()) };
-        };
-        let largest = fit.largest(size);
-        let (rotation, scale) = fit.similarity();
-        let errors = fit.agreeing(&points).map(|point| fit.error(point).abs() as f32).collect();
-        Self {
-            verdict: if largest <= TOLERANCE { Verdict::Rectified } else { Verdict::NotRectified },
-            offset: fit.0.x as f32,
-            rotation: rotation as f32,
-            scale: scale as f32,
-            residual: median(errors).map_or(0.0, |spread| super::DEVIATIONS * spread),
-            largest: largest as f32,
-            agreeing,
-            seeds: seeds.len(),
+        let points: Vec<Correspondence> = seeds.iter().map(correspondence).collect();
+        let fit = RowFit::new(&points, size);
+        let agreeing = fit.as_ref().map_or(0, RowFit::agreeing);
+        let nothing = Self { agreeing, seeds: seeds.len(), ..Self::UNKNOWN };
+        if let Some(columns) = vertical(&points, size, agreeing) {
+            return Self { verdict: Verdict::Vertical, agreeing: columns, ..nothing };
+        }
+        match fit {
+            Some(fit) if is_enough(agreeing, points.len()) => Self::of(preferred(fit, &points), size),
+            _ => nothing,
         }
     }
 
-    fn unknown(seeds: usize) -> Self {
+    const UNKNOWN: Self = Self {
+        verdict: Verdict::Unknown,
+        rows: RowModel::AS_IS,
+        offset: 0.0,
+        rotation: 0.0,
+        scale: 1.0,
+        residual: 0.0,
+        remaining: 0.0,
+        unexplained: 0.0,
+        largest: 0.0,
+        agreeing: 0,
+        seeds: 0,
+    };
+
+    /// Figures and verdict of a fit that enough seeds agree with.
+    fn of(fit: RowFit, size: Size) -> Self {
+        let mut errors: Vec<f32> = fit.inliers().map(|error| error as f32).collect();
+        errors.sort_by(f32::total_cmp);
+        let agreeing = errors.len();
+        let seeds = fit.errors.len();
+        let rotation = fit.model.rotation() as f32;
+        let verdict = if fit.model.kind() == RowKind::AsIs {
+            Verdict::Rectified
+        } else if !is_majority(agreeing, seeds) {
+            Verdict::NotRectified
+        } else if is_small(&fit.model, size) {
+            Verdict::Alignable
+        } else if 180.0 - rotation.abs() <= TURN && is_of_one_scale(&fit.model) {
+            Verdict::UpsideDown
+        } else {
+            Verdict::NotRectified
+        };
+        let aligned = matches!(verdict, Verdict::Rectified | Verdict::Alignable);
         Self {
-            verdict: Verdict::Unknown,
-            offset: 0.0,
-            rotation: 0.0,
-            scale: 1.0,
-            residual: 0.0,
-            largest: 0.0,
-            agreeing: 0,
+            verdict,
+            rows: if aligned { fit.model } else { RowModel::AS_IS },
+            // The left row of the centre, in pixels below the centre, negated; 0 and not -0 for rows as they are.
+            offset: 0.0 - fit.model.parameters()[2] as f32,
+            rotation,
+            scale: fit.model.scale() as f32,
+            remaining: errors.get(agreeing * 95 / 100).copied().unwrap_or(0.0),
+            unexplained: if aligned { fit.unexplained as f32 } else { 0.0 },
+            largest: fit.model.largest(size) as f32,
+            residual: median(errors).map_or(0.0, |spread| super::DEVIATIONS * spread),
+            agreeing,
             seeds,
         }
     }
 
-    /// Whether corresponding points are known to lie in the same row.
+    /// Whether corresponding points are known to lie in the same row, without any warp.
     pub fn is_rectified(&self) -> bool {
         self.verdict == Verdict::Rectified
     }
-}
 
-impl fmt::Display for Rectification {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { offset, rotation, scale, largest, agreeing, seeds, .. } = *self;
-        let either = |positive, one, other| if positive { one } else { other };
-        match self.verdict {
-            Verdict::Rectified => {
-                write!(f, "rows correspond to within {largest:.1} px ({agreeing} of {seeds} points agree)")
-            }
-            Verdict::NotRectified => write!(
-                f,
-                "the right view lies {:.1} px {}, is turned {:.2} degrees {} and {:.1} % {}, so that rows differ by up \
-                 to {largest:.1} px ({agreeing} of {seeds} points agree)",
-                offset.abs(),
-                either(offset >= 0.0, "lower", "higher"),
-                rotation.abs(),
-                either(rotation >= 0.0, "clockwise", "anticlockwise"),
-                100.0 * (scale - 1.0).abs(),
-                either(scale >= 1.0, "larger", "smaller"),
-            ),
-            Verdict::Unknown => {
-                write!(f, "unknown: {agreeing} of {seeds} points agree on how rows correspond, too few to tell")
-            }
-        }
+    /// Whether a search along rows finds corresponding points: as the views are, or after a warp of the right view by
+    /// [`Self::rows`].
+    pub fn is_alignable(&self) -> bool {
+        matches!(self.verdict, Verdict::Rectified | Verdict::Alignable)
+    }
+
+    /// Whether the views as they are have corresponding points in rows that no small warp mends: the verdicts
+    /// [`Verdict::NotRectified`], [`Verdict::UpsideDown`] and [`Verdict::Vertical`].
+    pub fn rows_differ(&self) -> bool {
+        matches!(self.verdict, Verdict::NotRectified | Verdict::UpsideDown | Verdict::Vertical)
+    }
+
+    /// Whether the verdict stands on a fit: it is not unknown, and most seeds agree where rows differ.
+    pub fn is_certain(&self) -> bool {
+        self.is_alignable() || self.rows_differ() && self.most_agree()
+    }
+
+    /// Whether most seeds agree with the fit that the figures describe.
+    pub fn most_agree(&self) -> bool {
+        is_majority(self.agreeing, self.seeds)
     }
 }
 
-/// A seed as a sample of the fit.
-#[derive(Clone, Copy)]
-struct Point {
-    /// `(1, x, y)`, with the midpoint of the two views' positions relative to the picture centre, in pixels.
-    at: DVec3,
-    /// Row difference, in pixels.
-    dy: f64,
+fn correspondence(seed: &Seed) -> Correspondence {
+    let place = |x: f32, y: f32| DVec2::new(x.into(), y.into());
+    Correspondence { left: place(seed.x, seed.y), right: place(seed.right_x(), seed.right_y()) }
 }
 
-impl Point {
-    fn new(seed: &Seed, Size { width, height }: Size) -> Self {
-        let x = f64::from(seed.x - seed.disparity / 2.0) - f64::from(width - 1) / 2.0;
-        let y = f64::from(seed.y + seed.dy / 2.0) - f64::from(height - 1) / 2.0;
-        Self { at: DVec3::new(1.0, x, y), dy: f64::from(seed.dy) }
-    }
+fn is_enough(agreeing: usize, seeds: usize) -> bool {
+    agreeing >= NEEDED.0 && agreeing as f64 >= NEEDED.1 * seeds as f64
 }
 
-/// Coefficients `(offset, a, b)` of dy = offset + a x + b y.
-#[derive(Clone, Copy, Debug)]
-struct Fit(DVec3);
-
-impl Fit {
-    /// Weighted least-squares fit; `None` if the points lie on a line.
-    fn least_squares(points: impl Iterator<Item = (Point, f64)>) -> Option<Self> {
-        let (mut normal, mut moment) = (DMat3::ZERO, DVec3::ZERO);
-        for (point, weight) in points {
-            let weighted = point.at * weight;
-            normal += DMat3::from_cols(weighted * point.at.x, weighted * point.at.y, weighted * point.at.z);
-            moment += weighted * point.dy;
-        }
-        let spans = normal.determinant() > 1e-6 * normal.x_axis.x * normal.y_axis.y * normal.z_axis.z;
-        spans.then(|| Self(normal.inverse() * moment))
-    }
-
-    fn error(&self, point: &Point) -> f64 {
-        point.dy - self.0.dot(point.at)
-    }
-
-    fn agreeing<'a>(&'a self, points: &'a [Point]) -> impl Iterator<Item = &'a Point> {
-        points.iter().filter(|point| self.error(point).abs() <= AGREEMENT)
-    }
-
-    fn largest(&self, Size { width, height }: Size) -> f64 {
-        let (x, y) = (f64::from(width - 1) / 2.0, f64::from(height - 1) / 2.0);
-        self.0.x.abs() + self.0.y.abs() * x + self.0.z.abs() * y
-    }
-
-    /// Rotation in degrees, and scale. With points as complex numbers and right = w left, the difference of the two is
-    /// z = 2 (w - 1) / (w + 1) times their midpoint; the real part of z is b and its imaginary part is a.
-    fn similarity(&self) -> (f64, f64) {
-        let (a, b) = (self.0.y, self.0.z);
-        let rotation = a.atan2(2.0 + b) - (-a).atan2(2.0 - b);
-        (rotation.to_degrees(), (2.0 + b).hypot(a) / (2.0 - b).hypot(a))
-    }
+pub(super) fn is_majority(agreeing: usize, seeds: usize) -> bool {
+    agreeing >= NEEDED.0 && 2 * agreeing >= seeds
 }
 
-/// The fit through three points that has the most inliers.
-fn consensus(points: &[Point]) -> Option<Fit> {
-    if points.len() < 3 {
-        return None;
+/// The fit, or the rows as they are if most points contradict the fit and nearly as many agree with the rows as they are:
+/// few points do not justify a warp.
+fn preferred(fit: RowFit, points: &[Correspondence]) -> RowFit {
+    if is_majority(fit.agreeing(), points.len()) {
+        return fit;
     }
-    let mut state = 1u64;
-    let mut pick = || {
-        // Knuth's MMIX generator; only its upper bits are random enough.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        points[(state >> 33) as usize % points.len()]
-    };
-    let mut best: Option<(usize, Fit)> = None;
-    for _ in 0..FITS {
-        let three = [pick(), pick(), pick()];
-        let Some(fit) = Fit::least_squares(three.into_iter().map(|point| (point, 1.0))) else { continue };
-        let agreeing = fit.agreeing(points).count();
-        if best.is_none_or(|(most, _)| agreeing > most) {
-            best = Some((agreeing, fit));
-        }
-    }
-    best.map(|(_, fit)| fit)
+    let as_is = RowFit::of(RowModel::AS_IS, points);
+    if as_is.agreeing() as f64 >= AS_MANY * fit.agreeing() as f64 { as_is } else { fit }
 }
 
-/// Reweighted least squares, starting from a first fit.
-fn refined(mut fit: Fit, points: &[Point]) -> Option<Fit> {
-    for _ in 0..STEPS {
-        fit = Fit::least_squares(points.iter().map(|&point| {
-            let share = fit.error(&point) / (2.0 * AGREEMENT);
-            (point, (1.0 - share * share).max(0.0).powi(2))
-        }))?;
-    }
-    Some(fit)
+/// Whether a warp by rows alone mends the rows.
+pub(super) fn is_small(model: &RowModel, size: Size) -> bool {
+    let turned = model.rotation().abs() > TURN.into();
+    !turned && is_of_one_scale(model) && model.largest(size) <= ROWS * f64::from(size.height)
+}
+
+fn is_of_one_scale(model: &RowModel) -> bool {
+    (1.0 / SCALE..=SCALE).contains(&(model.scale() as f32))
 }
 
 #[cfg(test)]
@@ -246,34 +208,72 @@ mod tests {
     #[test]
     fn rows_that_correspond_are_rectified() {
         let found = Rectification::new(&seeds(0.0, 1.0, 0.0), SIZE);
-        assert!(found.is_rectified() && found.largest < 0.1, "{found:?}");
+        assert!(found.is_rectified() && found.largest == 0.0, "{found:?}");
         assert!(found.agreeing >= 80 && found.seeds == 120);
     }
 
     #[test]
-    fn offset_rotation_and_scale_are_told_with_their_figures() {
+    fn small_errors_are_alignable_with_their_figures() {
         for (degrees, scale, offset) in
-            [(0.0, 1.0, 2.0), (0.0, 1.0, -25.0), (1.0, 1.0, 0.0), (0.0, 1.02, 0.0), (-2.5, 0.97, 4.0), (30.0, 1.5, 0.0)]
+            [(0.0, 1.0, 0.5), (0.0, 1.0, 2.0), (0.0, 1.0, -25.0), (1.0, 1.0, 0.0), (0.0, 1.02, 0.0), (-2.5, 0.97, 4.0)]
         {
             let found = Rectification::new(&seeds(degrees, scale, offset), SIZE);
-            assert_eq!(found.verdict, Verdict::NotRectified);
-            assert!((found.rotation - degrees).abs() < 0.1 + 0.02 * degrees.abs(), "{degrees} degrees: {found:?}");
-            assert!((found.scale / scale - 1.0).abs() < 0.003, "x {scale}: {found:?}");
-            if degrees == 0.0 {
-                assert!((found.offset - offset).abs() < 0.1, "{offset} px: {found:?}");
-            }
+            assert_eq!(found.verdict, Verdict::Alignable, "{found:?}");
+            assert!((found.rotation - degrees).abs() < 0.01, "{degrees} degrees: {found:?}");
+            assert!((found.scale / scale - 1.0).abs() < 0.001, "x {scale}: {found:?}");
+            assert!((found.offset - offset).abs() < 0.05 + 0.04 * offset.abs(), "{offset} px: {found:?}");
+            assert!(found.remaining < 0.05 && found.unexplained == 0.0, "{found:?}");
+            // The right place of the left pixel (100, 50) at disparity 0.
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let (u, v, scale) = (-220.0, -190.0, f64::from(scale));
+            let right = (320.0 + scale * (cos * u - sin * v), 240.0 + scale * (sin * u + cos * v) + f64::from(offset));
+            assert!((found.rows.left_row(right.0, right.1) - 50.0).abs() < 0.05, "{found:?}");
         }
     }
 
     #[test]
+    fn large_errors_are_not_rectified_and_nothing_is_warped() {
+        for (degrees, scale, offset) in [(6.0, 1.0, 0.0), (0.0, 1.15, 0.0), (0.0, 1.0, 60.0), (30.0, 1.5, 0.0)] {
+            let found = Rectification::new(&seeds(degrees, scale, offset), SIZE);
+            assert_eq!(found.verdict, Verdict::NotRectified, "{found:?}");
+            assert!((found.rotation - degrees).abs() < 0.1 && (found.scale / scale - 1.0).abs() < 0.003, "{found:?}");
+            assert_eq!(found.rows, RowModel::AS_IS);
+        }
+    }
+
+    #[test]
+    fn a_right_view_upside_down_is_recognised() {
+        for (degrees, offset) in [(180.0, 0.0), (178.0, 5.0), (-177.0, -9.0)] {
+            let found = Rectification::new(&seeds(degrees, 1.0, offset), SIZE);
+            assert_eq!(found.verdict, Verdict::UpsideDown, "{found:?}");
+            assert!(found.to_string().contains("turn the right view by 180 degrees"), "{found}");
+        }
+        assert_eq!(Rectification::new(&seeds(170.0, 1.0, 0.0), SIZE).verdict, Verdict::NotRectified);
+    }
+
+    #[test]
+    fn cameras_above_each_other_are_recognised() {
+        let transposed = |seed: &Seed| {
+            let (disparity, dy) = (-seed.dy, -4.0 * seed.disparity);
+            Seed { x: seed.y, y: seed.x, disparity, dy, ..*seed }
+        };
+        let above: Vec<Seed> = seeds(0.0, 1.0, 2.0).iter().map(transposed).collect();
+        let found = Rectification::new(&above, (SIZE.height, SIZE.width));
+        assert_eq!(found.verdict, Verdict::Vertical, "{found:?}");
+        assert!(found.agreeing >= 80, "{found:?}");
+        let text = found.to_string();
+        assert!(text.contains("turn both views by 90 degrees") && !text.contains("px"), "{text}");
+    }
+
+    #[test]
     fn exchanging_the_views_inverts_the_figures() {
-        let forward = seeds(3.0, 1.1, 5.0);
+        let forward = seeds(3.0, 1.05, 5.0);
         let exchanged = |s: &Seed| Seed { x: s.right_x(), y: s.right_y(), disparity: -s.disparity, dy: -s.dy, ..*s };
         let backward: Vec<Seed> = forward.iter().map(exchanged).collect();
         let (there, back) = (Rectification::new(&forward, SIZE), Rectification::new(&backward, SIZE));
-        assert!((there.offset + back.offset).abs() < 1e-3, "{there:?} {back:?}");
-        assert!((there.rotation + back.rotation).abs() < 1e-3, "{there:?} {back:?}");
-        assert!((there.scale * back.scale - 1.0).abs() < 1e-4, "{there:?} {back:?}");
+        assert!((there.offset + back.offset).abs() < 0.7, "{there:?} {back:?}");
+        assert!((there.rotation + back.rotation).abs() < 0.1, "{there:?} {back:?}");
+        assert!((there.scale * back.scale - 1.0).abs() < 2e-3, "{there:?} {back:?}");
     }
 
     #[test]
@@ -293,11 +293,35 @@ mod tests {
     }
 
     #[test]
-    fn diagnosis_is_one_line_with_figures() {
+    fn figures_are_told_only_where_most_seeds_agree() {
         let text = Rectification::new(&seeds(-1.0, 0.98, 3.0), SIZE).to_string();
         for part in ["px lower", "1.0", "anticlockwise", "2.0 % smaller", "points agree"] {
             assert!(text.contains(part), "'{part}' in: {text}");
         }
         assert!(!text.contains('\n'));
+
+        let mut mixed = seeds(6.0, 1.0, 3.0);
+        for (i, seed) in (0..).zip(&mut mixed) {
+            if i % 3 == 1 {
+                seed.dy = (i * i * 7919 % 4801) as f32 / 10.0 - 240.0;
+            }
+        }
+        let found = Rectification::new(&mixed, SIZE);
+        assert_eq!(found.verdict, Verdict::NotRectified, "{found:?}");
+        assert!(!found.most_agree() && !found.is_certain(), "{found:?}");
+        let text = found.to_string();
+        assert!(!text.contains("px") && !text.contains("degrees"), "{text}");
+    }
+
+    #[test]
+    fn rows_as_they_are_win_where_few_seeds_agree_on_anything() {
+        let mut few = seeds(0.0, 1.0, 0.1);
+        for (i, seed) in (0..).zip(&mut few) {
+            if i % 3 == 1 {
+                seed.dy = (i * i * 7919 % 4801) as f32 / 10.0 - 240.0;
+            }
+        }
+        let found = Rectification::new(&few, SIZE);
+        assert!(found.is_rectified() && !found.most_agree(), "{found:?}");
     }
 }

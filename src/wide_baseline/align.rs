@@ -64,7 +64,7 @@ pub(super) async fn align(
             matches.iter().map(|found| Seed::from_match(&first.features, &aligned.view.features, found)).collect();
         let rows = Rectification::new(&seeds, first.luma.size());
         log::debug!("turned {round} times: {rows}");
-        aligned.rectified = rows.is_rectified();
+        aligned.rectified = is_level(&rows);
         if round == 0 && !aligned.rectified && are_level(&seeds, &rows) {
             aligned.rectified = true;
             break;
@@ -72,7 +72,7 @@ pub(super) async fn align(
         if round == ROUNDS || aligned.rectified && (round == 0 || rows.largest <= EXACT) {
             break;
         }
-        let missing = if rows.verdict != Verdict::Unknown {
+        let missing = if has_figures(&rows) {
             let similarity = Similarity {
                 turn: f64::from(rows.rotation).to_radians(),
                 scale: rows.scale.into(),
@@ -96,11 +96,21 @@ pub(super) async fn align(
     Ok(aligned)
 }
 
+/// Whether the rows' fit has figures: cameras above each other and too few matches have none.
+fn has_figures(rows: &Rectification) -> bool {
+    !matches!(rows.verdict, Verdict::Unknown | Verdict::Vertical)
+}
+
+/// Whether a search along rows finds corresponding points, by the fit.
+fn is_level(rows: &Rectification) -> bool {
+    has_figures(rows) && rows.largest <= MAX_DY
+}
+
 /// Whether rows correspond although the fit says otherwise. If all matches lie close together, the fit extrapolates a
 /// random rotation to the rest of the picture; then as many matches lie in equal rows as agree with the fit.
 fn are_level(seeds: &[Seed], rows: &Rectification) -> bool {
     let level = seeds.iter().filter(|seed| seed.dy.abs() <= MAX_DY).count();
-    rows.verdict != Verdict::Unknown && level as f64 >= LEVEL * rows.agreeing as f64
+    has_figures(rows) && level as f64 >= LEVEL * rows.agreeing as f64
 }
 
 /// The second view resampled by `map`, with the rows of the first view and all columns that it covers, limited to one
@@ -212,7 +222,7 @@ mod tests {
         for (middle, level) in [(30.0, true), (300.0, false)] {
             let seeds = seeds(middle, |x| 0.0175 * x);
             let rows = Rectification::new(&seeds, size);
-            assert_eq!((rows.is_rectified(), are_level(&seeds, &rows)), (false, level), "{rows}");
+            assert_eq!((is_level(&rows), are_level(&seeds, &rows)), (level, level), "{rows}");
         }
         let unrelated: Vec<Seed> =
             seeds(300.0, |_| 0.0).into_iter().map(|seed| Seed { dy: seed.x * seed.y % 97.0, ..seed }).collect();

@@ -187,7 +187,7 @@ fn says_what_is_wrong(browser: &mut Browser) {
     let bad = [
         ("choose('left', [new File(['not at all'], 'notes.txt')])", "cannot be used", "notes.txt: not a picture"),
         ("choose('left', [view('left'), view('right', 0, 0.9)])", "differ in size", "306x255"),
-        ("choose('left', [view('left'), view('right', 9)])", "not rectified", "9.0 px"),
+        ("choose('left', [view('left'), view('right', 40)])", "not rectified", "40.0 px"),
         ("choose('left', [view('left', 0, 0.01), view('right', 0, 0.01)])", "could not be matched", "window of 9x9"),
         ("choose('left', [view('left'), view('right'), view('left')])", "could not be matched", "3 files"),
     ];

@@ -160,14 +160,19 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
     let picture = hsad::io::load::load(&scene("planes", "left.png")).unwrap().luma();
     let [left, lower] = ["left.png", "lower.png"].map(|name| temporary.path().join(name));
     grey_png(&left, &picture);
-    grey_png(&lower, &Plane::from_fn((340, 255), |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 6)));
-    pair_fails(&left, &lower, &[], 3, "rectify it first, or search along rows all the same with --force");
+    grey_png(&lower, &Plane::from_fn((340, 255), |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 40)));
+    pair_fails(&left, &lower, &[], 3, "points agree), or search along rows all the same with --force");
 
     // A rotation by 90 degrees, which only features with orientations match.
     let [square, turned] = ["square.png", "turned.png"].map(|name| temporary.path().join(name));
     grey_png(&square, &Plane::from_fn((255, 255), |x, y| picture.get(x, y)));
     grey_png(&turned, &Plane::from_fn((255, 255), |x, y| picture.get(y, 254 - x)));
     pair_fails(&square, &turned, &[], 3, "is turned 90.0");
+    pair_fails(&square, &turned, &[], 3, "rectify both views first");
+
+    let upside_down = temporary.path().join("upside_down.png");
+    grey_png(&upside_down, &Plane::from_fn((340, 255), |x, y| picture.get(339 - x, 254 - y)));
+    pair_fails(&left, &upside_down, &[], 3, "turn the right view by 180 degrees");
 
     let out = temporary.path().join("out");
     let mut command = match_on_cpu(&left, &lower, &out);
@@ -175,5 +180,5 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
         .arg("--force")
         .assert()
         .success()
-        .stdout(predicates::str::contains("rectified  no: the right view lies 6.0 px lower"));
+        .stdout(predicates::str::contains("rectified  no: the right view lies 40.0 px lower"));
 }

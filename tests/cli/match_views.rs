@@ -8,13 +8,22 @@ use hsad::{
     io::{disparity_png, load, pfm},
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::common::{
     fails, folder, grey_png, hsad, hsad_without_driver, match_on_cpu, names, noise, report, scene, views,
 };
 #[cfg(unix)]
 use crate::interruption::Run;
+
+/// Smallest and largest disparity of a reported range, and its source.
+fn ends(range: &Value) -> (i64, i64, &str) {
+    (range["min"].as_i64().unwrap(), range["max"].as_i64().unwrap(), range["source"].as_str().unwrap())
+}
+
+fn asked(min: i64, max: i64) -> (i64, i64, &'static str) {
+    (min, max, "asked")
+}
 
 #[test]
 fn writes_maps_that_agree_and_a_report() {
@@ -92,10 +101,10 @@ fn options_override_the_preset() {
     command.args(["--strongest", "4"]);
     command.assert().success().stdout("").stderr("");
     let report = report(out);
-    assert_eq!(report["range"], json!({ "min": -3, "max": 36, "count": 40, "source": "asked" }));
+    assert_eq!(ends(&report["range"]), asked(-3, 36));
     let expected = json!({
         "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "search": "whole", "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
-        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "force": false,
+        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "align": false, "force": false,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },
         "strongest": 4
@@ -137,7 +146,7 @@ fn the_hybrid_method_searches_what_it_is_told_from_either_view() {
     command.args(["--method", "kamencay", "--reference", "right", "--min-disparity", "-3", "--disparities", "72"]);
     command.args(["--no-equalise", "-q"]).assert().success().stdout("").stderr("");
     let found = report(out);
-    assert_eq!(found["range"], json!({ "min": -3, "max": 68, "count": 72, "source": "asked" }));
+    assert_eq!(ends(&found["range"]), asked(-3, 68));
     assert_eq!((&found["parameters"]["equalise"], &found["parameters"]["reference"]), (&json!(false), &json!("right")));
     let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
     let truth = pfm::read(&scene("planes", "disp_right.pfm")).unwrap();
@@ -253,7 +262,7 @@ fn a_range_wider_than_the_picture_is_clipped() {
     let mut command = match_on_cpu(&left, &right, out);
     command.args(["--min-disparity", "-1000", "--disparities", "100000"]).assert().success();
     let range = report(out)["range"].clone();
-    assert_eq!(range, json!({ "min": -286, "max": 286, "count": 573, "source": "asked" }));
+    assert_eq!(ends(&range), asked(-286, 286));
 }
 
 #[test]

@@ -251,7 +251,7 @@ function facts(result) {
   const list = [
     ["Time", seconds(result.milliseconds), steps, "large"],
     ["Range", `${result.first} to ${result.last} px`, result.found ? `found from ${result.matches} matches` : "assumed: too few matches"],
-    ["Rows", rows.replace("rows correspond to within", "agree within"), agreeing.join(" ").replace(/[()]/g, "")],
+    ["Rows", rows.replace("rows correspond as they are, 95 %", "agree"), agreeing.join(" ").replace(/[()]/g, "")],
     ["Coverage", percent(result.coverage), filled],
     ["Trust", `${result.trust.toFixed(2)} of 1`],
     ["Size", `${result.width} × ${result.height}`],

@@ -185,7 +185,7 @@ impl Matched {
     /// Trust in the map, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn trust(&self) -> f32 {
-        self.outcome.seeding.trust
+        self.outcome.trust
     }
 
     /// Share of pixels with a disparity, 0 to 1.

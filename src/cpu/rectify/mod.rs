@@ -2,4 +2,4 @@
 
 mod warp;
 
-pub use warp::warp;
+pub use warp::{warp, warp_picture};

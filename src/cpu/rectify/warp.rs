@@ -4,6 +4,7 @@ use glam::IVec2;
 
 use crate::{
     image::Luma,
+    io::Picture,
     rectify::{SUBPIXEL_BITS, WarpMap, weights},
 };
 
@@ -13,6 +14,12 @@ use crate::{
 pub fn warp(source: &Luma, map: &WarpMap) -> Luma {
     debug_assert_eq!(source.size(), map.source_size());
     Luma::from_fn(map.size(), |x, y| map.source_at(x, y).map_or(0, |position| interpolated(source, position)))
+}
+
+/// Resamples the red, green, blue and alpha of `source` as [`warp`] does.
+pub fn warp_picture(source: &Picture, map: &WarpMap) -> Picture {
+    let [red, green, blue, alpha] = [0, 1, 2, 3].map(|channel| warp(&source.map(|pixel| pixel[channel]), map));
+    Picture::from_fn(map.size(), |x, y| [&red, &green, &blue, &alpha].map(|plane| plane.get(x, y)))
 }
 
 fn interpolated(source: &Luma, position: IVec2) -> u8 {

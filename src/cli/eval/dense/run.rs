@@ -137,7 +137,7 @@ impl<'a> Run<'a> {
             scene: name.into(),
             method: OURS.into(),
             scores: scene.score(&map)?,
-            range: report::searched(outcome.range, &outcome.range_source),
+            range: report::searched(&outcome),
             seconds: Some(seconds),
             warnings: job::warnings(views, self.config, &outcome),
         };

@@ -1,0 +1,250 @@
+//! The pipeline from two pictures to a disparity map.
+
+mod range;
+mod views;
+
+pub use range::RangeSource;
+
+use web_time::{Duration, Instant};
+
+use range::{at_ends, range_to_search, widened};
+use views::Views;
+
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
+use crate::{
+    backend::Backend,
+    config::{Config, Method},
+    cpu,
+    dense::{Brightness, Dense, DenseConfig},
+    disparity::DisparityRange,
+    error::{Error, Result},
+    features::{Feature, FeatureConfig},
+    image::{Plane, Size},
+    io::Picture,
+    kamencay::KamencayConfig,
+    names::names,
+    pair::Pair,
+    rectify::RowModel,
+    seeding::{RawMatches, Seeding, Verdict, enlarged_feature},
+};
+
+/// Largest row difference that is matched without alignment, in pixels.
+const LARGEST_AS_IS: f32 = 1.5;
+/// Largest number of searches, each over a wider range than the one before.
+const SEARCHES: u32 = 3;
+/// Largest number of pixels of a picture in which interest points are detected; larger pictures are downscaled first.
+const MAX_SPARSE_PIXELS: u64 = 1 << 21;
+
+/// A step of the pipeline, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Conversion of both pictures to luma on the backend.
+    Luma,
+    /// Detection and description of interest points.
+    Features,
+    /// Matching of interest points; disparity range, rectification and brightness from the matches.
+    Seeding,
+    /// Dense matching, or Kamencay's method.
+    Dense,
+}
+
+names!(Step, "the step", { Luma => "luma", Features => "features", Seeding => "seeding", Dense => "dense" });
+
+/// Results of the pipeline.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Interest points of the left and of the right view. Points with orientations, against
+    /// [`FeatureConfig::upright`], if upright points left rectification unknown and points with orientations did not.
+    pub features: [Vec<Feature>; 2],
+    /// Seeds, disparity range, rectification, brightness relation and trust, from the matches of the interest points.
+    pub seeding: Seeding,
+    /// Searched disparity range, without the disparities that the width of the picture rules out.
+    pub range: DisparityRange,
+    /// Origin of the range.
+    pub range_source: RangeSource,
+    /// Shares of the disparities within 1.5 px of the smallest and of the largest disparity of the range, 0 to 1.
+    pub at_ends: [f32; 2],
+    /// Change of the right view's brightness before dense matching.
+    pub brightness: Brightness,
+    /// Which pixels of the left and of the right view show the scene: 255, or 0 for a pixel in a constant border or with an
+    /// alpha of 0; `None` if all do.
+    pub masks: [Option<Plane<u8>>; 2],
+    /// Disparities and confidences of the reference view.
+    pub dense: Dense,
+    /// Trust in the map, 0 to 1.
+    pub trust: f32,
+    /// Duration of each step, with the compilation of its kernels and the wait for its results.
+    pub times: Vec<(Step, Duration)>,
+}
+
+/// Runs the pipeline on a pair, and calls `begin` at the beginning of each step.
+///
+/// # Errors
+/// [`Error::SizesDiffer`]; [`Error::Parameter`]; [`Error::TooSmall`] for pictures that hold no window;
+/// [`Error::NotRectified`] unless [`Config::force`]; [`Error::NoRange`] if the disparities found lie below
+/// [`Config::least`]; the errors of [`Pair`] and of [`Backend::kamencay`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn run(
+    backend: &Backend,
+    views: (&Picture, &Picture),
+    config: &Config,
+    begin: impl FnMut(Step),
+) -> Result<Outcome> {
+    block_on(run_async(backend, views, config, begin))
+}
+
+/// The asynchronous [`run`]. Work on the host blocks.
+///
+/// # Errors
+/// See [`run`].
+pub async fn run_async(
+    backend: &Backend,
+    (left, right): (&Picture, &Picture),
+    config: &Config,
+    mut begin: impl FnMut(Step),
+) -> Result<Outcome> {
+    let mut times = Vec::new();
+    let mut begun = None;
+    let mut enter = |step: Option<Step>| {
+        if let Some((step, start)) = begun.replace((step, Instant::now())) {
+            times.extend(step.map(|step| (step, Instant::elapsed(&start))));
+        }
+        step.into_iter().for_each(&mut begin);
+    };
+
+    config.validate()?;
+    check_window(left.size(), config)?;
+    enter(Some(Step::Luma));
+    let views = Views::new(backend, left, right).await?;
+    let size = views.size();
+
+    enter(Some(Step::Features));
+    let factor = reduction(size);
+    let mut features = views.features(factor, &config.features).await?;
+
+    enter(Some(Step::Seeding));
+    let match_anywhere =
+        |[left, right]: &[Vec<Feature>; 2]| RawMatches::new((left, right), size.reduced(factor), &config.seeding);
+    let mut matches = match_anywhere(&features)?;
+    if !matches.rectification.is_certain() && config.features.upright {
+        // Upright descriptors of views that are rotated against each other do not match, or rarely.
+        let turned = views.features(factor, &FeatureConfig { upright: false, ..config.features.clone() }).await?;
+        let found = match_anywhere(&turned)?;
+        let unknown = |matches: &RawMatches| matches.rectification.verdict == Verdict::Unknown;
+        if found.rectification.is_certain() || unknown(&matches) && !unknown(&found) {
+            (features, matches) = (turned, found);
+        }
+    }
+    if !config.align {
+        matches.rectification.rows = RowModel::AS_IS;
+    }
+    let rows = matches.rectification.enlarged(factor);
+    if !config.force && (rows.rows_differ() || !config.align && rows.largest > LARGEST_AS_IS) {
+        return Err(Error::NotRectified { diagnosis: rows.to_string() });
+    }
+    let map = rows.rows.warp(size)?;
+    let views = match &map {
+        Some(map) => views.aligned(map).await?,
+        None => views,
+    };
+    let seeding = {
+        let [left, right] = views.reduced(factor);
+        let [seen, _] = views.masks(factor);
+        matches.seeding((&left, &right), seen.as_ref(), (&features[0], &features[1]), &config.seeding)?
+    };
+    let seeding = seeding.enlarged(factor);
+    let features = features.map(|view| view.into_iter().map(|point| enlarged_feature(point, factor)).collect());
+    let brightness = match seeding.brightness {
+        Some(found) if config.equalise => found.equalising(),
+        _ => Brightness::SAME,
+    };
+    let (mut range, range_source) = range_to_search(config, &seeding, size.width)?;
+
+    enter(Some(Step::Dense));
+    let views = views.drowned().await?;
+    let right = match (&config.method, &map) {
+        (Method::Kamencay(_), Some(map)) => &cpu::rectify::warp_picture(right, map),
+        _ => right,
+    };
+    let mut searches = 0;
+    let (dense, at_ends) = loop {
+        let dense;
+        (range, dense) = search(&views.pair, (left, right), config, range, brightness).await?;
+        let dense = views.masked(dense, config.reference);
+        let ends = at_ends(&dense.disparity, range);
+        searches += 1;
+        match widened(range, range_source, ends, config.least) {
+            Some(wider) if searches < SEARCHES => range = wider,
+            _ => break (dense, ends),
+        }
+    };
+    enter(None);
+    Ok(Outcome {
+        features,
+        trust: seeding.agreement,
+        seeding,
+        range,
+        range_source,
+        at_ends,
+        brightness,
+        masks: views.masks,
+        dense,
+        times,
+    })
+}
+
+/// Searches `range` for the disparities of a prepared pair; Kamencay's method takes the pictures. Returns the part of the range
+/// that the width of the picture allows.
+async fn search(
+    pair: &Pair<'_>,
+    (left, right): (&Picture, &Picture),
+    config: &Config,
+    range: DisparityRange,
+    brightness: Brightness,
+) -> Result<(DisparityRange, Dense)> {
+    match &config.method {
+        Method::Hsad(parameters) => {
+            let task = config.dense(parameters, range, brightness);
+            let range = task.searched(left.width())?;
+            Ok((range, pair.dense(&DenseConfig { range, ..task }).await?))
+        }
+        Method::Kamencay(parameters) => {
+            let task = config.kamencay(parameters, range, brightness);
+            let range = task.searched(left.width())?;
+            Ok((range, pair.backend().kamencay(left, right, &KamencayConfig { range, ..task }).await?))
+        }
+    }
+}
+
+/// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine
+/// range, rectification and brightness, and the time to match points grows with the square of their number.
+pub fn reduction(size: impl Into<Size>) -> u32 {
+    let pixels = size.into().pixels();
+    (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
+}
+
+fn check_window(size: Size, config: &Config) -> Result<()> {
+    if size.width.min(size.height) >= config.smallest_side() {
+        return Ok(());
+    }
+    Err(Error::TooSmall {
+        size,
+        what: format!("a window of {0}x{0}", config.smallest_side()),
+        way_out: "use a larger picture or a smaller window".into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_pictures_are_reduced() {
+        assert_eq!(reduction((1, 1)), 1);
+        assert_eq!(reduction((2048, 1024)), 1);
+        assert_eq!(reduction((2048, 1025)), 2);
+        // 24 megapixels in blocks of 16 are 1.5.
+        assert_eq!(reduction((6000, 4000)), 4);
+    }
+}

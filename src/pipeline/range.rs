@@ -1,0 +1,123 @@
+//! The disparity range to search, and its ends in the map.
+
+use crate::{
+    config::Config,
+    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
+    error::{Error, Result},
+    seeding::{FoundRange, RangeEnd, Seeding, ThinSupport},
+};
+
+/// Largest distance of a disparity from an end of the range that counts as the end, in pixels.
+const AT_END: f32 = 1.5;
+/// Largest share of the map's disparities at an end of a range that holds the scene, 0 to 1. Ten sound scenes have at most
+/// 0.003; a range that cuts 5 % of the truth has at least 0.13.
+const MOST_AT_END: f32 = 0.02;
+
+/// Origin of the disparity range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RangeSource {
+    /// Set by [`Config::range`].
+    Asked,
+    /// Found from the seeds and the coarse map: origin of the smallest and of the largest disparity.
+    Found([RangeEnd; 2]),
+    /// Unknown: a quarter of the width of the picture, from [`Config::least`] or 0 upwards.
+    Fallback(ThinSupport),
+}
+
+/// The range to search in views of `width` px, and its origin.
+///
+/// # Errors
+/// [`Error::NoRange`] if what was found lies below [`Config::least`].
+pub(super) fn range_to_search(config: &Config, seeding: &Seeding, width: u32) -> Result<(DisparityRange, RangeSource)> {
+    Ok(match (config.range, seeding.range) {
+        (Some(range), _) => (range, RangeSource::Asked),
+        (None, Ok(found)) => (not_below(&found, config.least)?, RangeSource::Found(found.ends)),
+        (None, Err(thin)) => {
+            let range = DisparityRange::new(config.least.unwrap_or(0), width.div_ceil(4))?;
+            (range, RangeSource::Fallback(thin))
+        }
+    })
+}
+
+/// The shares of a map's disparities within 1.5 px of the smallest and of the largest disparity of `range`, 0 to 1.
+pub(super) fn at_ends(map: &DisparityMap, range: DisparityRange) -> [f32; 2] {
+    let near = (AT_END * SCALE as f32) as i32;
+    let known = || map.data().iter().filter(|&&disparity| disparity != NONE);
+    let share = |wanted: &dyn Fn(i32) -> bool| {
+        known().filter(|&&disparity| wanted(disparity)).count() as f32 / known().count().max(1) as f32
+    };
+    let (low, high) = (SCALE * range.min + near, SCALE * range.last() - near);
+    [share(&|disparity| disparity <= low), share(&|disparity| disparity >= high)]
+}
+
+/// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end.
+pub(super) fn widened(
+    range: DisparityRange,
+    source: RangeSource,
+    ends: [f32; 2],
+    least: Option<i32>,
+) -> Option<DisparityRange> {
+    let RangeSource::Found([low, _]) = source else { return None };
+    let more = (range.count / 2).max(16).cast_signed();
+    let down = ends[0] > MOST_AT_END && low != RangeEnd::Zero;
+    let up = ends[1] > MOST_AT_END;
+    let min = (range.min - if down { more } else { 0 }).max(least.unwrap_or(i32::MIN));
+    let wider = DisparityRange::inclusive(min, range.last() + if up { more } else { 0 }).ok()?;
+    (wider != range).then_some(wider)
+}
+
+/// The part of a found range that lies above `least`.
+fn not_below(found: &FoundRange, least: Option<i32>) -> Result<DisparityRange> {
+    let range = found.range;
+    let Some(least) = least.filter(|&least| least > range.min) else { return Ok(range) };
+    // A margin alone above the limit is no range.
+    if least as f32 <= found.seen[1] {
+        return DisparityRange::inclusive(least, range.last());
+    }
+    Err(Error::NoRange {
+        reason: format!(
+            "the views show {:.0} to {:.0} px and nothing below {least} is to be searched; if left and right are mixed up, \
+             exchange them",
+            found.seen[0], found.seen[1],
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_by_hand() {
+        let range = DisparityRange::inclusive(2, 9).unwrap();
+        // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not.
+        let map = DisparityMap::new((6, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920]).unwrap();
+        assert_eq!(at_ends(&map, range), [0.4, 0.2]);
+        assert_eq!(at_ends(&DisparityMap::filled((2, 2), NONE), range), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_range_grows_where_the_map_touches_its_end() {
+        let range = DisparityRange::inclusive(10, 49).unwrap();
+        let found = |low| RangeSource::Found([low, RangeEnd::CoarseMap]);
+        let wider = |source, ends, least| widened(range, source, ends, least).map(|range| (range.min, range.last()));
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.02, 0.0], None), None);
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.0], None), Some((-10, 49)));
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(0)), Some((0, 69)));
+        assert_eq!(wider(found(RangeEnd::Zero), [0.03, 0.0], None), None);
+        assert_eq!(wider(RangeSource::Asked, [0.5, 0.5], None), None);
+    }
+
+    #[test]
+    fn a_found_range_is_cut_at_the_limit() {
+        let range = DisparityRange::inclusive(-9, 40).unwrap();
+        let found = FoundRange { range, seen: [-5.0, 36.0], ends: [RangeEnd::Seeds, RangeEnd::CoarseMap] };
+        assert_eq!(not_below(&found, None).unwrap(), range);
+        assert_eq!(not_below(&found, Some(-20)).unwrap(), range);
+        assert_eq!(not_below(&found, Some(0)).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
+        let error = not_below(&found, Some(37)).unwrap_err().to_string();
+        assert!(error.contains("-5 to 36 px") && error.contains("exchange"), "{error}");
+        let exchanged = FoundRange { range: DisparityRange::inclusive(-40, 3).unwrap(), seen: [-37.0, -4.0], ..found };
+        assert!(not_below(&exchanged, Some(0)).is_err(), "the margin reaches above 0, the disparities do not");
+    }
+}

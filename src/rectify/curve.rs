@@ -1,0 +1,157 @@
+//! The rows of the right view as a curve with parameters, and its robust fit to corresponding points.
+
+use glam::DVec2;
+
+/// Largest number of free parameters: those of a projective model, and the distortion of the lens.
+pub(super) const MOST: usize = 6;
+/// Widths of the Cauchy weights, in pixels, the widest first: the first one reaches what a start within the tolerance of
+/// inliers is off by, the last one is the precision of a match.
+const WIDTHS: [f64; 3] = [3.0, 1.0, PRECISION];
+/// Row error of a match that counts half, in pixels.
+pub(super) const PRECISION: f64 = 0.3;
+/// Largest number of steps per width.
+const STEPS: usize = 8;
+/// Steps end when no parameter changes by more, in units of the picture.
+const SETTLED: f64 = 1e-9;
+
+/// Corresponding points of both views, in units of half the larger side of the picture, from its centre.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub left: DVec2,
+    pub right: DVec2,
+}
+
+/// The left row of a right pixel, `y (1 + k r^2) = (p0 X + p1 Y + p2) / (1 + p3 X + p4 Y)` with right coordinates
+/// `(X, Y) = (x, y) (1 + k r^2)`: both views are taken through the same lens with a radial distortion. Without
+/// distortion, `k = 0`, it is a [`super::RowModel`].
+///
+/// The parameters are `p2, p0, p1, p3, p4, k`: a simpler model frees fewer of them, from the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Curve(pub [f64; MOST]);
+
+impl Curve {
+    pub const AS_IS: Self = Self([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+
+    /// Row of the curve minus row of the left point.
+    pub fn error(&self, point: &Point) -> f64 {
+        self.linearised(point).0
+    }
+
+    /// The error and its derivatives by all parameters.
+    fn linearised(&self, Point { left, right }: &Point) -> (f64, [f64; MOST]) {
+        let [p2, p0, p1, p3, p4, k] = self.0;
+        let (left_square, right_square) = (left.length_squared(), right.length_squared());
+        let [x, y] = (*right * (1.0 + k * right_square)).to_array();
+        let below = 1.0 + p3 * x + p4 * y;
+        let row = (p0 * x + p1 * y + p2) / below;
+        let [by_x, by_y] = [(p0 - row * p3) / below, (p1 - row * p4) / below];
+        let by_k = (by_x * right.x + by_y * right.y) * right_square - left.y * left_square;
+        let slopes = [1.0 / below, x / below, y / below, -row * x / below, -row * y / below, by_k];
+        (row - left.y * (1.0 + k * left_square), slopes)
+    }
+
+    /// Sum over all points of `ln(1 + (r / 0.3)^2)`, `r` being the error in pixels over the square root of 2, since
+    /// either view has a part in it. `unit` is the unit of the points in pixels.
+    pub fn cost(&self, points: &[Point], unit: f64) -> f64 {
+        points.iter().map(|point| libm::log1p(deviation(self.error(point) * unit, PRECISION))).sum()
+    }
+
+    /// The curve of a vertical shift that puts the right point on the row of the left one.
+    pub fn shift(point: &Point) -> Self {
+        Self([point.left.y - point.right.y, 0.0, 1.0, 0.0, 0.0, 0.0])
+    }
+
+    /// Gauss-Newton steps on the first `free` parameters with Cauchy weights, from wide to narrow (Huber, Robust
+    /// Statistics, 1981); `None` if the points do not determine the parameters.
+    pub fn refined(mut self, free: usize, points: &[Point], unit: f64) -> Option<Self> {
+        for width in WIDTHS {
+            for _ in 0..STEPS {
+                let (mut normal, mut moment) = ([[0.0; MOST]; MOST], [0.0; MOST]);
+                for point in points {
+                    let (error, slopes) = self.linearised(point);
+                    let weight = 1.0 / (1.0 + deviation(error * unit, width));
+                    for i in 0..free {
+                        moment[i] -= weight * slopes[i] * error;
+                        for j in 0..=i {
+                            normal[i][j] += weight * slopes[i] * slopes[j];
+                        }
+                    }
+                }
+                let step = solved(normal, moment, free)?;
+                self.0.iter_mut().zip(step).for_each(|(parameter, change)| *parameter += change);
+                if step.iter().all(|change| change.abs() <= SETTLED) {
+                    break;
+                }
+            }
+        }
+        self.0.iter().all(|value| value.is_finite()).then_some(self)
+    }
+}
+
+/// Square of an error in pixels in units of `width`, as the error of one of two views.
+fn deviation(error: f64, width: f64) -> f64 {
+    error * error / (2.0 * width * width)
+}
+
+/// Solution of the first `free` normal equations, given by their lower triangle (Cholesky); zeros for the others; `None` if
+/// the equations are singular.
+fn solved(mut normal: [[f64; MOST]; MOST], mut moment: [f64; MOST], free: usize) -> Option<[f64; MOST]> {
+    /// Smallest share of a diagonal element that has to remain.
+    const LEAST: f64 = 1e-10;
+    for i in 0..free {
+        let whole = normal[i][i];
+        for j in 0..=i {
+            let known: f64 = (0..j).map(|k| normal[i][k] * normal[j][k]).sum();
+            let rest = normal[i][j] - known;
+            if i != j {
+                normal[i][j] = rest / normal[j][j];
+            } else if rest > LEAST * whole {
+                normal[i][i] = rest.sqrt();
+            } else {
+                return None;
+            }
+        }
+    }
+    for i in 0..free {
+        let known: f64 = (0..i).map(|k| normal[i][k] * moment[k]).sum();
+        moment[i] = (moment[i] - known) / normal[i][i];
+    }
+    for i in (0..free).rev() {
+        let known: f64 = (i + 1..free).map(|k| normal[k][i] * moment[k]).sum();
+        moment[i] = (moment[i] - known) / normal[i][i];
+    }
+    moment[free..].fill(0.0);
+    Some(moment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equations_are_solved_by_hand() {
+        // 4 a + 2 b = 2 and 2 a + 5 b = -3: a = 1, b = -1.
+        let mut normal = [[0.0; MOST]; MOST];
+        (normal[0][0], normal[1][0], normal[1][1]) = (4.0, 2.0, 5.0);
+        let step = solved(normal, [2.0, -3.0, 9.0, 9.0, 9.0, 9.0], 2).unwrap();
+        assert!((step[0] - 1.0).abs() < 1e-12 && (step[1] + 1.0).abs() < 1e-12, "{step:?}");
+        assert_eq!(step[2..], [0.0; 4]);
+        normal[1][1] = 1.0;
+        assert_eq!(solved(normal, [0.0; MOST], 2), None, "2 a + b = 0 twice");
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_error() {
+        let curve = Curve([0.02, 0.1, 0.95, 0.08, -0.05, -0.15]);
+        let point = Point { left: DVec2::new(0.6, -0.4), right: DVec2::new(0.45, -0.5) };
+        let (_, slopes) = curve.linearised(&point);
+        for (i, slope) in slopes.into_iter().enumerate() {
+            let moved = |by: f64| {
+                let mut curve = curve;
+                curve.0[i] += by;
+                curve.error(&point)
+            };
+            assert!(((moved(1e-5) - moved(-1e-5)) / 2e-5 - slope).abs() < 1e-8, "parameter {i}");
+        }
+    }
+}
