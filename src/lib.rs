@@ -79,7 +79,7 @@
 //!     if let Some(relation) = &seeding.brightness {
 //!         matcher.set_brightness(relation.equalising())?;
 //!     }
-//!     Ok(seeding.range?)
+//!     Ok(seeding.range?.range)
 //! }
 //! ```
 //!

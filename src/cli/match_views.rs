@@ -31,7 +31,7 @@ use super::{
   hsad match left.png right.png -o out --mask round.png round.png
   hsad match left.tif right.tif -o out --nodata -9999
 
-Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified (--force goes on all the same)"))]
+Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified, 4 written but not to be trusted (--force goes on all the same)"))]
 pub struct Match {
     /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
     left: PathBuf,
@@ -86,6 +86,6 @@ impl Match {
             completed.warnings[told..].iter().for_each(terminal::warning);
             terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
-        Ok(())
+        completed.not_trusted.map_or(Ok(()), |doubt| Err(doubt.into()))
     }
 }

@@ -3,6 +3,7 @@
 mod completions;
 mod demo;
 mod devices;
+mod doubts;
 mod eval;
 mod features;
 mod job;
@@ -22,12 +23,15 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use doubts::NotTrusted;
+
 const EXIT_CODES: &str = "\
 Exit codes:
   0  success
   1  failure: a file, a picture or a device is missing or unusable
   2  usage: an unknown option, or a value outside its range
   3  the pair is not rectified (hsad match --force matches it all the same)
+  4  the map was written, but is not to be trusted (hsad match --force accepts it)
 130  interrupted: no incomplete files are left behind";
 
 /// Stereo depth from two photographs, on any GPU
@@ -69,6 +73,9 @@ impl Cli {
 
 /// The exit code that [`EXIT_CODES`] promises for an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
+    if error.is::<NotTrusted>() {
+        return ExitCode::from(4);
+    }
     match error.downcast_ref() {
         Some(hsad::Error::Parameter { .. } | hsad::Error::TooManyFeatures { .. }) => ExitCode::from(2),
         Some(hsad::Error::NotRectified { .. }) => ExitCode::from(3),

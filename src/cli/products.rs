@@ -32,7 +32,9 @@ impl CompletedJob {
         output.add("disparity-color.png", |out| png::write_rgb8(out, &colors))?;
         output.add("confidence.png", |out| png::write_grey8(out, &dense.confidence))?;
 
-        if let Some(calibration) = self.job.calibration {
+        // Disparities of a pair without parallax are 0 but for noise, and so are the inverse depths.
+        let has_depth = !self.outcome.no_parallax || self.job.config.force;
+        if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
             let (picture, calibration) = match self.job.config.reference {
                 View::Left => (&self.job.left, calibration),
                 View::Right => (&self.job.right, calibration.seen_from_right()),

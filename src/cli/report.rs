@@ -17,7 +17,7 @@ use super::job::CompletedJob;
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, total, warnings } = self;
+        let Self { job, backend, outcome, total, warnings, not_trusted } = self;
         let mut seconds: Map<String, Value> =
             outcome.times.iter().map(|(step, time)| (step.name().into(), json!(time.as_secs_f64()))).collect();
         seconds.insert("total".into(), json!(total.as_secs_f64()));
@@ -41,6 +41,8 @@ impl CompletedJob {
                 "offset": f64::from(outcome.brightness.offset) / 256.0,
             },
             "trust": number(outcome.trust),
+            "no_parallax": outcome.no_parallax,
+            "not_trusted": not_trusted.as_ref().map(|doubt| &doubt.reason),
             "coverage": coverage(&outcome.dense.disparity),
             "measured": outcome.dense.measured(),
             "seconds": seconds,

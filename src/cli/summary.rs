@@ -2,10 +2,7 @@
 
 use hsad::{disparity::coverage, image::Size, pipeline::RangeSource, seeding::Verdict};
 
-use super::{
-    job::{CompletedJob, span},
-    output::Output,
-};
+use super::{doubts::span, job::CompletedJob, output::Output};
 
 impl CompletedJob {
     /// Device, stretch of the samples, range, matches, rectification, trust, coverage and time, one line each.

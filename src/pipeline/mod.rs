@@ -1,13 +1,16 @@
 //! The pipeline from two pictures to a disparity map.
 
 mod range;
+mod trust;
 mod views;
 
 pub use range::RangeSource;
+pub use trust::TRUSTED;
 
 use web_time::{Duration, Instant};
 
 use range::{at_ends, range_to_search, widened};
+use trust::{in_proportion, shows_no_parallax, trust, without_ends};
 use views::Views;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -72,8 +75,10 @@ pub struct Outcome {
     pub masks: [Option<Plane<u8>>; 2],
     /// Disparities and confidences of the reference view.
     pub dense: Dense,
-    /// Trust in the map, 0 to 1.
+    /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
     pub trust: f32,
+    /// Whether the views show no parallax: nearly all disparities are 0, and no depth follows from them.
+    pub no_parallax: bool,
     /// Duration of each step, with the compilation of its kernels and the wait for its results.
     pub times: Vec<(Step, Duration)>,
 }
@@ -179,10 +184,15 @@ pub async fn run_async(
             _ => break (dense, ends),
         }
     };
+    let ends_at_zero = range_source.ends_at_zero();
+    let dense = without_ends(dense, range, ends_at_zero);
+    let trust = trust(&dense, config, &seeding);
+    let dense = in_proportion(dense, trust);
     enter(None);
     Ok(Outcome {
         features,
-        trust: seeding.agreement,
+        no_parallax: shows_no_parallax(&dense),
+        trust,
         seeding,
         range,
         range_source,

@@ -7,8 +7,8 @@ use crate::{
     seeding::{FoundRange, RangeEnd, Seeding, ThinSupport},
 };
 
-/// Largest distance of a disparity from an end of the range that counts as the end, in pixels.
-const AT_END: f32 = 1.5;
+/// Largest distance of a disparity from an end of the range that counts as the end, in 1/256 px.
+const AT_END: i32 = 3 * SCALE / 2;
 /// Largest share of the map's disparities at an end of a range that holds the scene, 0 to 1. Ten sound scenes have at most
 /// 0.003; a range that cuts 5 % of the truth has at least 0.13.
 const MOST_AT_END: f32 = 0.02;
@@ -22,6 +22,13 @@ pub enum RangeSource {
     Found([RangeEnd; 2]),
     /// Unknown: a quarter of the width of the picture, from [`Config::least`] or 0 upwards.
     Fallback(ThinSupport),
+}
+
+impl RangeSource {
+    /// Whether the range ends at 0 since nothing below 0 was seen.
+    pub(super) fn ends_at_zero(self) -> bool {
+        matches!(self, Self::Found([RangeEnd::Zero, _]))
+    }
 }
 
 /// The range to search in views of `width` px, and its origin.
@@ -39,15 +46,19 @@ pub(super) fn range_to_search(config: &Config, seeding: &Seeding, width: u32) ->
     })
 }
 
+/// Whether a disparity lies within 1.5 px of the smallest and of the largest disparity of `range`.
+pub(super) fn is_at_end(disparity: i32, range: DisparityRange) -> [bool; 2] {
+    let known = disparity != NONE;
+    let (low, high) = (SCALE * range.min + AT_END, SCALE * range.last() - AT_END);
+    [known && disparity <= low, known && disparity >= high]
+}
+
 /// The shares of a map's disparities within 1.5 px of the smallest and of the largest disparity of `range`, 0 to 1.
 pub(super) fn at_ends(map: &DisparityMap, range: DisparityRange) -> [f32; 2] {
-    let near = (AT_END * SCALE as f32) as i32;
-    let known = || map.data().iter().filter(|&&disparity| disparity != NONE);
-    let share = |wanted: &dyn Fn(i32) -> bool| {
-        known().filter(|&&disparity| wanted(disparity)).count() as f32 / known().count().max(1) as f32
-    };
-    let (low, high) = (SCALE * range.min + near, SCALE * range.last() - near);
-    [share(&|disparity| disparity <= low), share(&|disparity| disparity >= high)]
+    let known = map.data().iter().filter(|&&disparity| disparity != NONE).count().max(1);
+    [0, 1].map(|end| {
+        map.data().iter().filter(|&&disparity| is_at_end(disparity, range)[end]).count() as f32 / known as f32
+    })
 }
 
 /// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end.
@@ -57,9 +68,9 @@ pub(super) fn widened(
     ends: [f32; 2],
     least: Option<i32>,
 ) -> Option<DisparityRange> {
-    let RangeSource::Found([low, _]) = source else { return None };
+    let RangeSource::Found(_) = source else { return None };
     let more = (range.count / 2).max(16).cast_signed();
-    let down = ends[0] > MOST_AT_END && low != RangeEnd::Zero;
+    let down = ends[0] > MOST_AT_END && !source.ends_at_zero();
     let up = ends[1] > MOST_AT_END;
     let min = (range.min - if down { more } else { 0 }).max(least.unwrap_or(i32::MIN));
     let wider = DisparityRange::inclusive(min, range.last() + if up { more } else { 0 }).ok()?;

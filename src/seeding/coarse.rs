@@ -27,6 +27,9 @@ const TAIL: f32 = 0.002;
 /// Largest distance from an end of the span that counts as the end, in pixels of the downscaled pair.
 const AT_END: f32 = 1.5;
 
+/// Largest difference of a disparity from the surfaces around it that agrees with them, in 1/256 px of the downscaled pair.
+const AGREEMENT: f32 = 1.25 * SCALE as f32;
+
 /// Semi-global matching, with a second search for the left-right consistency check and without any filling.
 const PARAMETERS: DenseParameters = DenseParameters {
     aggregation: Aggregation::Costs(CostAggregation { cross_check: CrossCheck::Searched, ..CostAggregation::TUNED }),
@@ -93,10 +96,6 @@ impl CoarseMap {
         Self { factor, map, disparities, searched }
     }
 
-    #[allow(missing_docs)]
-    pub fn lab(&self) -> (&DisparityMap, u32) {
-        (&self.map, self.factor)
-    }
     /// Share of the downscaled left view that lies on a surface, 0 to 1.
     pub fn coverage(&self) -> f32 {
         self.disparities.len() as f32 / self.map.data().len() as f32
@@ -125,9 +124,40 @@ impl CoarseMap {
         self.share(|disparity| disparity <= min + AT_END || disparity >= last - AT_END)
     }
 
+    /// Smallest and largest disparity around each pixel of the downscaled view.
+    pub(crate) fn around(&self) -> Around {
+        let bounds = Plane::from_fn(self.map.size(), |x, y| {
+            let columns = (-1..=1).flat_map(|j| (-1..=1).map(move |i| (i64::from(x) + i, i64::from(y) + j)));
+            let near = columns.map(|(x, y)| self.map.get_clamped(x, y)).filter(|&disparity| disparity != NONE);
+            near.fold(None, |bounds, disparity| {
+                let [low, high] = bounds.unwrap_or([disparity; 2]);
+                Some([low.min(disparity), high.max(disparity)])
+            })
+        });
+        Around { factor: self.factor as f32, bounds }
+    }
+
     fn share(&self, wanted: impl Fn(f32) -> bool) -> f32 {
         let count = self.disparities.iter().filter(|&&disparity| wanted(disparity)).count();
         count as f32 / self.disparities.len().max(1) as f32
+    }
+}
+
+/// The bounds of a coarse map around each of its pixels.
+pub(crate) struct Around {
+    factor: f32,
+    /// Smallest and largest disparity of 3x3 pixels, in 1/256 px of the downscaled view; `None` off the surfaces.
+    bounds: Plane<Option<[i32; 2]>>,
+}
+
+impl Around {
+    /// Whether the surfaces around column `x` and row `y` of the left view contradict a disparity there, all in pixels of the
+    /// view: none is as near as [`AGREEMENT`]. Views without surfaces contradict nothing.
+    pub fn contradicts(&self, x: f32, y: u32, disparity: f32) -> bool {
+        let place = (x / self.factor) as i64;
+        let Some([low, high]) = self.bounds.get_clamped(place, (y as f32 / self.factor) as i64) else { return false };
+        let coarse = disparity * SCALE as f32 / self.factor;
+        coarse < low as f32 - AGREEMENT || coarse > high as f32 + AGREEMENT
     }
 }
 
@@ -183,6 +213,19 @@ mod tests {
         assert_eq!(at_end.at_ends(), 1.0);
         let nothing = CoarseMap::of_surfaces(&Plane::filled((5, 5), NONE), 4, searched);
         assert_eq!((nothing.extent(), nothing.coverage(), nothing.at_ends()), (None, 0.0, 0.0));
+    }
+
+    #[test]
+    fn what_surfaces_around_contradict() {
+        // Surfaces at 3 px and, right of column 10, at 9 px; the pair is four times as large.
+        let map = Plane::from_fn((20, 20), |x, _| if x < 10 { 3 * SCALE } else { 9 * SCALE });
+        let around = CoarseMap::of_surfaces(&map, 4, DisparityRange::inclusive(0, 12).unwrap()).around();
+        let contradicts = |x: f32, disparity: f32| around.contradicts(x, 40, disparity);
+        assert!(!contradicts(4.0, 12.0) && !contradicts(4.0, 17.0) && contradicts(4.0, 17.1) && contradicts(4.0, 36.0));
+        // Beside the edge both surfaces are near.
+        assert!(!contradicts(39.0, 12.0) && !contradicts(39.0, 36.0) && contradicts(48.0, 12.0));
+        let nothing = CoarseMap::of_surfaces(&map.map(|_| NONE), 4, DisparityRange::new(0, 1).unwrap()).around();
+        assert!(!nothing.contradicts(4.0, 0, 100.0));
     }
 
     #[test]

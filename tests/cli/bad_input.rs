@@ -54,7 +54,7 @@ fn sizes_that_do_not_fit() {
     pair_fails(&tiny, &tiny, &[], 1, "1x1 pixels is too small for a window of 5x5");
     pair_fails(&small, &small, &["--window", "11"], 1, "40x9 pixels is too small for a window of 11x11");
     let out = temporary.path().join("out");
-    match_on_cpu(&small, &small, &out).args(["--window", "9"]).assert().success();
+    match_on_cpu(&small, &small, &out).args(["--window", "9", "--force"]).assert().success();
 }
 
 #[test]

@@ -98,13 +98,13 @@ fn options_override_the_preset() {
     command.args(["--preset", "paper", "--window", "5", "--min-disparity", "-3", "--disparities", "40", "-q"]);
     command.args(["--uniqueness", "7", "--max-lr-difference", "1.5", "--interpolation", "none", "--octaves", "3"]);
     command.args(["--step", "2", "--threshold", "0.002", "--upright", "--max-features", "5000", "--ratio", "0.8"]);
-    command.args(["--strongest", "4"]);
+    command.args(["--strongest", "4", "--force"]);
     command.assert().success().stdout("").stderr("");
     let report = report(out);
     assert_eq!(ends(&report["range"]), asked(-3, 36));
     let expected = json!({
         "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "search": "whole", "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
-        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "align": false, "force": false,
+        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "align": false, "force": true,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },
         "strongest": 4
@@ -163,7 +163,7 @@ fn the_hybrid_method_takes_any_picture() {
         grey_png(&path("noise.png"), &noise(width, height, 3));
         for (left, right) in [("black.png", "black.png"), ("black.png", "noise.png"), ("noise.png", "noise.png")] {
             let mut command = match_on_cpu(&path(left), &path(right), &path("out"));
-            command.args(["--method", "kamencay"]).assert().success();
+            command.args(["--method", "kamencay"]).arg("--force").assert().success();
         }
     }
 }
@@ -206,7 +206,7 @@ fn blocks_are_matched_by_the_costs_of_paths() {
 fn the_paper_searches_to_one_side_from_the_right_view() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let out = temporary.path();
-    match_on_cpu(&left, &right, out).args(["--preset", "paper", "--figures"]).assert().success();
+    match_on_cpu(&left, &right, out).args(["--preset", "paper", "--figures", "--force"]).assert().success();
     let found = report(out);
     let parameters = &found["parameters"];
     assert_eq!([&parameters["reference"], &parameters["window"]], [&json!("right"), &json!(7)]);
@@ -270,7 +270,7 @@ fn a_range_that_misses_the_matches_is_told() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let warned = |left: &Path, right: &Path, args: &[&str], expected: &'static str| {
         let mut command = match_on_cpu(left, right, temporary.path());
-        command.args(args).assert().success().stderr(contains("warning: ").and(contains(expected)));
+        command.args(args).arg("--force").assert().success().stderr(contains("warning: ").and(contains(expected)));
     };
     warned(&left, &right, &["--min-disparity", "100", "--disparities", "50"], "leave --disparities out");
     warned(&left, &right, &["--min-disparity", "50"], "lower --min-disparity");
@@ -290,9 +290,11 @@ fn pictures_without_depth_give_results_without_measured_disparities() {
     for (left, right, most) in [("black.png", "black.png", 0.0), ("noise1.png", "noise2.png", 0.15)] {
         let out = path("out");
         let mut command = match_on_cpu(&path(left), &path(right), &out);
-        command.assert().success().stderr(contains("range could not be found").and(contains("were searched instead")));
+        let told = contains("range could not be found").and(contains("were searched instead"));
+        command.assert().code(4).stderr(told.and(contains("error: the map is not to be trusted")));
         let report = report(&out);
-        assert_eq!((&report["range"]["source"], &report["trust"]), (&json!("fallback"), &json!(0.0)));
+        assert_eq!(report["range"]["source"], "fallback");
+        assert!(report["trust"].as_f64().unwrap() < 0.05, "{left}: {}", report["trust"]);
         assert!(report["measured"].as_f64().unwrap() <= most, "{left}: {}", report["measured"]);
     }
 }
@@ -301,9 +303,33 @@ fn pictures_without_depth_give_results_without_measured_disparities() {
 fn the_same_picture_twice_has_no_depth() {
     let (temporary, [left, _]) = (folder(), views("planes"));
     let out = temporary.path();
-    match_on_cpu(&left, &left, out).assert().success().stderr(contains("both views are the same picture"));
+    let calibration = ["--focal", "300", "--baseline", "0.1"];
+    let told = contains("both views are the same picture").and(contains("error: the views show no parallax"));
+    match_on_cpu(&left, &left, out).args(calibration).assert().code(4).stderr(told);
+    assert!(out.join("disparity.pfm").exists() && !out.join("depth.pfm").exists() && !out.join("cloud.ply").exists());
+    assert_eq!(report(out)["no_parallax"], true);
+    match_on_cpu(&left, &left, out).args(calibration).arg("--force").assert().success();
+    assert!(out.join("depth.pfm").exists());
     let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
     assert!(map.data().iter().all(|&d| d == NONE || d.abs() < 256));
+}
+
+#[test]
+fn a_map_that_is_not_to_be_trusted_ends_with_four() {
+    let (temporary, [left, _]) = (folder(), views("planes"));
+    let unrelated = temporary.path().join("unrelated.png");
+    grey_png(&unrelated, &noise(340, 255, 5));
+    let out = temporary.path().join("out");
+    let told = contains("error: the map is not to be trusted").and(contains("--force accepts"));
+    match_on_cpu(&left, &unrelated, &out).arg("-q").assert().code(4).stdout("").stderr(told);
+    let found = report(&out);
+    assert!(found["trust"].as_f64().unwrap() < 0.1 && found["not_trusted"].as_str().is_some(), "{found}");
+    assert!(out.join("disparity.pfm").exists());
+    // Confidences say the same as the trust.
+    let confidence = load::load(&out.join("confidence.png")).unwrap().luma();
+    assert!(confidence.data().iter().all(|&value| value < 64));
+    match_on_cpu(&left, &unrelated, &out).args(["-q", "--force"]).assert().success().stdout("").stderr("");
+    assert!(report(&out)["warnings"].to_string().contains("not to be trusted"));
 }
 
 #[test]
@@ -338,7 +364,7 @@ fn other_kinds_of_pictures_are_read() {
     image::DynamicImage::ImageLuma16(deep).save(&deep_path).unwrap();
     image::DynamicImage::ImageLumaA8(alpha).save(&alpha_path).unwrap();
     // Both files decode to the same grey values.
-    match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().success().stderr(contains("the same picture"));
+    match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().code(4).stderr(contains("the same picture"));
 }
 
 /// A pair that the twins take a minute for, and the arguments of a match of it that leaves its results in `out`.

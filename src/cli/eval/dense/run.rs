@@ -14,7 +14,7 @@ use hsad::{
 use serde_json::Value;
 
 use super::{Dense, Failure, OURS, Results, record::Record, supplied_maps::SuppliedMaps};
-use crate::cli::{eval::saved_results::SavedResults, job, output::Output, products, report, terminal::Progress};
+use crate::cli::{doubts, eval::saved_results::SavedResults, output::Output, products, report, terminal::Progress};
 
 /// The methods, and where their results are saved.
 pub struct Run<'a> {
@@ -139,7 +139,7 @@ impl<'a> Run<'a> {
             scores: scene.score(&map)?,
             range: report::searched(&outcome),
             seconds: Some(seconds),
-            warnings: job::warnings(views, self.config, &outcome),
+            warnings: doubts::warnings(views, self.config, &outcome),
         };
         Ok((map, record))
     }

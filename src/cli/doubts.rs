@@ -1,0 +1,141 @@
+//! Doubts about a map: warnings, and the reason for which a map is not to be trusted.
+
+use hsad::{
+    Error,
+    config::Config,
+    disparity::DisparityRange,
+    io::Picture,
+    pipeline::{Outcome, RangeSource, TRUSTED},
+    seeding::Verdict,
+};
+
+use super::wording::in_options;
+
+/// A map that is likely to be wrong in large parts, or that shows no depth. The files are written all the same.
+#[derive(Debug, thiserror::Error)]
+#[error("{reason}; the files were written, and --force accepts the result")]
+pub struct NotTrusted {
+    /// What is doubtful, in words.
+    pub reason: String,
+}
+
+impl NotTrusted {
+    /// `None` for a map that can be trusted.
+    pub fn new(outcome: &Outcome) -> Option<Self> {
+        if outcome.no_parallax {
+            let reason = "the views show no parallax, as pictures from one place do: no depth follows from them";
+            return Some(Self { reason: reason.into() });
+        }
+        if outcome.trust >= TRUSTED {
+            return None;
+        }
+        let reason = if outcome.seeding.rectification.verdict == Verdict::Unknown {
+            "nothing tells whether the rows of the views correspond"
+        } else if outcome.seeding.seeds.len() < 20 {
+            "hardly any interest point was found in both views"
+        } else {
+            "the views correspond in too little of the picture"
+        };
+        Some(Self { reason: format!("the map is not to be trusted (trust {:.2} of 1): {reason}", outcome.trust) })
+    }
+}
+
+/// Warnings about a result: identical views, a guessed or cut disparity range, a distorted lens, matches outside the range,
+/// surfaces at an end of the range, and a difference in brightness.
+pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if left == right {
+        warnings.push("both views are the same picture, which shows no depth".into());
+    }
+    if let RangeSource::Fallback(thin) = outcome.range_source {
+        let reason = in_options(&Error::from(thin));
+        warnings.push(format!("{reason}; {} were searched instead", span(outcome.range)));
+    }
+    if let Some(asked) = config.range.filter(|&asked| asked != outcome.range) {
+        let reason = "no pixel has a partner further away than the picture is wide";
+        warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
+    }
+    warnings.extend(distortion(outcome));
+    warnings.extend(outside(config, outcome));
+    warnings.extend(at_end(outcome));
+    warnings.extend(brightness(outcome));
+    warnings
+}
+
+/// A disparity range as text, `MIN to MAX px`.
+pub fn span(range: DisparityRange) -> String {
+    format!("{} to {} px", range.min, range.last())
+}
+
+/// A warning if rows differ as the rows of a distorted lens do.
+fn distortion(outcome: &Outcome) -> Option<String> {
+    let rows = &outcome.seeding.rectification;
+    rows.is_distorted().then(|| {
+        format!(
+            "rows are off by up to {:.1} px in parts of the picture, as by a distorted lens: remove the distortion from \
+             both pictures first",
+            rows.unexplained
+        )
+    })
+}
+
+/// A warning if most matches lie outside the searched range, or have negative disparities: the range is wrong, or the
+/// views are exchanged.
+fn outside(config: &Config, outcome: &Outcome) -> Option<String> {
+    let disparities: Vec<f32> = outcome.seeding.seeds.iter().map(|seed| seed.disparity).collect();
+    let share = |wanted: &dyn Fn(f32) -> bool| {
+        disparities.iter().filter(|&&disparity| wanted(disparity)).count() as f32 / disparities.len() as f32
+    };
+    let least = disparities.iter().copied().reduce(f32::min)?;
+    let most = disparities.iter().copied().reduce(f32::max)?;
+    let within = share(&|disparity| outcome.range.contains(disparity.round() as i32));
+    let negative = share(&|disparity| disparity < 0.0);
+    let mixed_up = "if left and right are mixed up, exchange them";
+    if within < 0.5 {
+        let (percent, range) = (100.0 * within, span(outcome.range));
+        let advice = match outcome.range_source {
+            _ if negative > 0.5 => mixed_up,
+            RangeSource::Asked => "leave --disparities out to have the range found",
+            _ if config.least.is_some_and(|min| least < min as f32) => "lower --min-disparity",
+            _ => "name the range with --min-disparity and --disparities",
+        };
+        Some(format!(
+            "only {percent:.0} % of the matches lie in {range}, their disparities are {least:.0} to {most:.0} px: {advice}"
+        ))
+    } else if negative > 0.75 {
+        Some(format!("disparities are {least:.0} to {most:.0} px, mostly negative: {mixed_up}"))
+    } else {
+        None
+    }
+}
+
+/// A warning if surfaces lie at an end of the searched range.
+fn at_end(outcome: &Outcome) -> Option<String> {
+    /// Share of the map at an end of a range that holds the scene, in per cent.
+    const USUAL: f32 = 2.0;
+    let Outcome { range, at_ends: [low, high], .. } = outcome;
+    let (share, end) = if high >= low { (100.0 * high, range.last()) } else { (100.0 * low, range.min) };
+    let seen_there = end == 0 && outcome.seeding.range.is_ok();
+    (share > USUAL && !seen_there).then(|| {
+        format!("{share:.0} % of the map lies at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
+    })
+}
+
+/// A warning if the views differ notably in brightness, which absolute differences suffer from.
+fn brightness(outcome: &Outcome) -> Option<String> {
+    /// Difference in grey values that most pairs from two cameras of one kind stay below.
+    const NOTABLE: f32 = 8.0;
+    let found = outcome.seeding.brightness?;
+    let difference = |grey: f32| found.gain * grey + found.offset - grey;
+    let largest = [64.0, 192.0].map(difference).into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let word = if largest > 0.0 { "brighter" } else { "darker" };
+    (largest.abs() > NOTABLE).then(|| {
+        format!(
+            "the right view is up to {:.0} grey values {word} than the left (x {:.2} {:+.0}): take both with one \
+             exposure for a better result",
+            largest.abs(),
+            found.gain,
+            found.offset
+        )
+    })
+}

@@ -1,0 +1,152 @@
+//! Trust in a map, and confidences that are too high for what the whole map shows.
+//!
+//! Trust was fitted to 240 maps with known truth: 11 scenes, and the scenes with rows off, blur, noise, little light, masks,
+//! wrong ranges, and other right views. Maps with under 10 % of the pixels wrong by over 2 px have a trust of at least 0.5, maps
+//! with over 30 % wrong less: docs/trust.md.
+
+use super::range::is_at_end;
+use crate::{
+    config::{Config, Method},
+    dense::{Dense, View},
+    disparity::{DisparityRange, pixels},
+    image::Size,
+    seeding::Seeding,
+};
+
+/// Trust from which a map is good for use, 0 to 1.
+pub const TRUSTED: f32 = 0.5;
+
+/// Evidence of a map at which trust is 1, where confidences come from the support of neighbours.
+const FULL_BY_SUPPORT: f32 = 0.71;
+/// The same where confidences come from the margin of the costs alone, which is smaller.
+const FULL_BY_MARGIN: f32 = 0.52;
+/// Weight of the pixels that contradict the coarse map.
+const CONTRADICTION: f32 = 2.0;
+/// Part of the evidence that does not depend on the number of seeds, and number of seeds at which half of the rest is there.
+const SEEDS: (f32, f32) = (0.6, 400.0);
+/// Largest magnitude of a disparity that may be none, in pixels, and share of such pixels from which a pair shows no
+/// parallax, 0 to 1.
+const NO_PARALLAX: (f32, f32) = (0.5, 0.98);
+
+/// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse
+/// map, and for few seeds.
+pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
+    let around = seeding.coarse.around();
+    let (mut known, mut sure, mut contradicted) = (0u64, 0u64, 0u64);
+    for ((x, y), disparity) in known_pixels(dense) {
+        known += 1;
+        sure += u64::from(dense.confidence.get(x, y));
+        let shift = if config.reference == View::Left { 0.0 } else { disparity };
+        contradicted += u64::from(around.contradicts(x as f32 + shift, y, disparity));
+    }
+    if known == 0 {
+        return 0.0;
+    }
+    let share = |count: u64| count as f32 / known as f32;
+    let seeds = seeding.seeds.len() as f32;
+    let by_seeds = SEEDS.0 + (1.0 - SEEDS.0) * seeds / (seeds + SEEDS.1);
+    let evidence = share(sure) / 255.0 * (1.0 - CONTRADICTION * share(contradicted)).max(0.0) * by_seeds;
+    let full = match &config.method {
+        Method::Hsad(parameters) if parameters.refinement.is_none() => FULL_BY_MARGIN,
+        Method::Hsad(_) | Method::Kamencay(_) => FULL_BY_SUPPORT,
+    };
+    (evidence / full).min(1.0)
+}
+
+/// Whether a map shows no parallax: hardly any measured disparity differs from 0 by more than half a pixel.
+pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
+    let measured = || known_pixels(dense).filter(|&((x, y), _)| dense.confidence.get(x, y) > 0);
+    let none = measured().filter(|(_, disparity)| disparity.abs() <= NO_PARALLAX.0).count();
+    none > 0 && none as f32 >= NO_PARALLAX.1 * measured().count() as f32
+}
+
+/// The map with confidence 0 where a disparity lies at an end of `range`, beyond which it may go on.
+pub(super) fn without_ends(mut dense: Dense, range: DisparityRange, ends_at_zero: bool) -> Dense {
+    let Size { width, height } = dense.disparity.size();
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let [low, high] = is_at_end(dense.disparity.get(x, y), range);
+        if low && !ends_at_zero || high {
+            dense.confidence.set(x, y, 0);
+        }
+    }
+    dense
+}
+
+/// The map with confidences in proportion to `trust`, where that is below [`TRUSTED`].
+pub(super) fn in_proportion(mut dense: Dense, trust: f32) -> Dense {
+    if trust < TRUSTED {
+        // In 1/256, so that the arithmetic is in integers.
+        let factor = (256.0 * trust / TRUSTED) as u32;
+        dense.confidence.data_mut().iter_mut().for_each(|value| *value = (u32::from(*value) * factor / 256) as u8);
+    }
+    dense
+}
+
+/// Column and row of each pixel with a disparity, and the disparity in pixels.
+fn known_pixels(dense: &Dense) -> impl Iterator<Item = ((u32, u32), f32)> {
+    let width = dense.disparity.width() as usize;
+    let place = move |index: usize| ((index % width) as u32, (index / width) as u32);
+    let disparities = dense.disparity.data().iter().enumerate();
+    disparities.filter_map(move |(index, &disparity)| Some((place(index), pixels(disparity)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        config::Preset,
+        disparity::{NONE, SCALE},
+        image::{Luma, Plane},
+        seeding::SeedingConfig,
+    };
+
+    /// A map of two halves, 10 and 20 px, with `confidence` everywhere.
+    fn map(confidence: u8) -> Dense {
+        Dense {
+            disparity: Plane::from_fn((40, 10), |x, _| if x < 20 { 10 * SCALE } else { 20 * SCALE }),
+            confidence: Plane::filled((40, 10), confidence),
+        }
+    }
+
+    #[test]
+    fn an_end_has_no_confidence_unless_it_is_zero() {
+        let range = |min, last| DisparityRange::inclusive(min, last).unwrap();
+        let halves = |dense: Dense| [dense.confidence.get(0, 0), dense.confidence.get(39, 0)];
+        assert_eq!(halves(without_ends(map(90), range(8, 22), false)), [90, 90]);
+        assert_eq!(halves(without_ends(map(90), range(9, 22), false)), [0, 90]);
+        assert_eq!(halves(without_ends(map(90), range(9, 21), true)), [90, 0]);
+    }
+
+    #[test]
+    fn confidences_follow_a_small_trust() {
+        assert_eq!(in_proportion(map(200), 0.5).confidence.get(0, 0), 200);
+        assert_eq!(in_proportion(map(200), 0.25).confidence.get(0, 0), 100);
+        assert_eq!(in_proportion(map(200), 0.0).confidence.get(0, 0), 0);
+    }
+
+    #[test]
+    fn parallax_is_what_differs_from_zero() {
+        let moved = |pixels: i32| {
+            let mut dense = map(9);
+            dense.disparity.data_mut().iter_mut().for_each(|disparity| *disparity = 128);
+            dense.disparity.data_mut()[..pixels as usize].fill(129);
+            dense
+        };
+        assert!(shows_no_parallax(&moved(8)) && !shows_no_parallax(&moved(9)));
+        assert!(!shows_no_parallax(&map(9)) && !shows_no_parallax(&map(0)));
+    }
+
+    #[test]
+    fn trust_by_hand() {
+        // Views without content: no seeds, no surfaces that contradict.
+        let grey = Luma::filled((40, 10), 90);
+        let seeding = Seeding::find((&grey, &grey), (&[], &[]), &SeedingConfig::default()).unwrap();
+        let config = Preset::Balanced.config();
+        let expected = 102.0 / 255.0 * 0.6 / 0.71;
+        assert!((trust(&map(102), &config, &seeding) - expected).abs() < 1e-6);
+        let by_margin = trust(&map(102), &Preset::Fast.config(), &seeding);
+        assert!((by_margin - expected * 0.71 / 0.52).abs() < 1e-6);
+        let nothing = Dense { disparity: map(0).disparity.map(|_| NONE), ..map(0) };
+        assert_eq!(trust(&nothing, &config, &seeding), 0.0);
+    }
+}
