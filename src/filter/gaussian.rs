@@ -1,8 +1,6 @@
 //! Gaussian smoothing.
 
-use rayon::prelude::*;
-
-use super::grey;
+use super::{grey, in_parallel};
 use crate::image::{Plane, Size};
 
 /// Smooths by a Gaussian of standard deviation `sigma` in pixels (0: none), truncated at 3 `sigma`; border pixels are
@@ -33,14 +31,6 @@ pub fn gaussian<const N: usize>(plane: &Plane<[u8; N]>, sigma: f64) -> Plane<[u8
         }
         sum.map(grey)
     })
-}
-
-/// As [`Plane::from_fn`], with rows computed in parallel.
-fn in_parallel<T: Clone + Send>(size: Size, value: impl Fn(u32, u32) -> T + Sync) -> Plane<T> {
-    let Size { width, height } = size;
-    let row = |y| (0..width).map(|x| value(x, y)).collect::<Vec<T>>();
-    let rows: Vec<Vec<T>> = (0..height).into_par_iter().map(row).collect();
-    Plane::from_fn((width, height), |x, y| rows[y as usize][x as usize].clone())
 }
 
 #[cfg(test)]
