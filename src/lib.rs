@@ -139,6 +139,7 @@ pub mod kamencay;
 pub mod luma;
 mod mask;
 pub mod matching;
+mod mosaic;
 mod names;
 mod pair;
 pub mod pipeline;

@@ -18,7 +18,6 @@ use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     config::{Config, Method},
-    cpu,
     dense::{Brightness, Dense, DenseConfig},
     disparity::DisparityRange,
     error::{Error, Result},
@@ -27,8 +26,7 @@ use crate::{
     io::Picture,
     kamencay::KamencayConfig,
     names::names,
-    pair::Pair,
-    rectify::RowModel,
+    rectify::{RowModel, WarpMap},
     seeding::{RawMatches, Seeding, Verdict, enlarged_feature},
 };
 
@@ -73,6 +71,9 @@ pub struct Outcome {
     /// Which pixels of the left and of the right view show the scene: 255, or 0 for a pixel in a constant border or with an
     /// alpha of 0; `None` if all do.
     pub masks: [Option<Plane<u8>>; 2],
+    /// Whether the left and the right view are raw mosaics of a Bayer colour filter array; the luma of their colours was
+    /// matched then.
+    pub mosaics: [bool; 2],
     /// Disparities and confidences of the reference view.
     pub dense: Dense,
     /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
@@ -168,14 +169,10 @@ pub async fn run_async(
 
     enter(Some(Step::Dense));
     let views = views.drowned().await?;
-    let right = match (&config.method, &map) {
-        (Method::Kamencay(_), Some(map)) => &cpu::rectify::warp_picture(right, map),
-        _ => right,
-    };
     let mut searches = 0;
     let (dense, at_ends) = loop {
         let dense;
-        (range, dense) = search(&views.pair, (left, right), config, range, brightness).await?;
+        (range, dense) = search(&views, [left, right], map.as_ref(), config, range, brightness).await?;
         let dense = views.masked(dense, config.reference);
         let ends = at_ends(&dense.disparity, range);
         searches += 1;
@@ -199,16 +196,18 @@ pub async fn run_async(
         at_ends,
         brightness,
         masks: views.masks,
+        mosaics: views.mosaics,
         dense,
         times,
     })
 }
 
-/// Searches `range` for the disparities of a prepared pair; Kamencay's method takes the pictures. Returns the part of the range
+/// Searches `range` for the disparities of prepared views; Kamencay's method takes the pictures. Returns the part of the range
 /// that the width of the picture allows.
 async fn search(
-    pair: &Pair<'_>,
-    (left, right): (&Picture, &Picture),
+    views: &Views<'_>,
+    pictures: [&Picture; 2],
+    map: Option<&WarpMap>,
     config: &Config,
     range: DisparityRange,
     brightness: Brightness,
@@ -216,13 +215,14 @@ async fn search(
     match &config.method {
         Method::Hsad(parameters) => {
             let task = config.dense(parameters, range, brightness);
-            let range = task.searched(left.width())?;
-            Ok((range, pair.dense(&DenseConfig { range, ..task }).await?))
+            let range = task.searched(views.size().width)?;
+            Ok((range, views.pair.dense(&DenseConfig { range, ..task }).await?))
         }
         Method::Kamencay(parameters) => {
             let task = config.kamencay(parameters, range, brightness);
-            let range = task.searched(left.width())?;
-            Ok((range, pair.backend().kamencay(left, right, &KamencayConfig { range, ..task }).await?))
+            let range = task.searched(views.size().width)?;
+            let [left, right] = views.pictures(pictures, map);
+            Ok((range, views.pair.backend().kamencay(&left, &right, &KamencayConfig { range, ..task }).await?))
         }
     }
 }

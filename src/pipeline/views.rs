@@ -4,31 +4,40 @@ use std::borrow::Cow;
 
 use crate::{
     backend::Backend,
+    cpu,
     dense::{Dense, View},
     error::Result,
     features::{Feature, FeatureConfig},
     image::{self, Luma, Size},
     io::Picture,
     mask::{self, Mask},
+    mosaic::demosaicked,
     pair::Pair,
     rectify::WarpMap,
 };
 
-/// A pair with the masks of its left and of its right view.
+/// A pair, with what was found about its left and its right view.
 pub(super) struct Views<'b> {
     pub pair: Pair<'b>,
     pub masks: [Option<Mask>; 2],
+    /// Whether the view was a raw mosaic, which the luma of its colours replaced.
+    pub mosaics: [bool; 2],
 }
 
 impl<'b> Views<'b> {
-    /// The views of two pictures, with unseen pixels replaced by their neighbours.
+    /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours.
     pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
         let pair = Pair::new(backend, left, right).await?;
         let views = pair.views();
+        // Before demosaicking, which mixes the edge of a border with the scene.
         let masks = [mask::mask_of(left, views.0), mask::mask_of(right, views.1)];
+        let lumas = [demosaicked(left, views.0), demosaicked(right, views.1)];
+        let mosaics = lumas.each_ref().map(Option::is_some);
+        let pair = pair.with_views(lumas).await?;
+        let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
-        Ok(Self { pair: pair.with_views(extended).await?, masks })
+        Ok(Self { pair: pair.with_views(extended).await?, masks, mosaics })
     }
 
     /// The interest points of both views downscaled by `factor`, in pixels of the downscaled views.
@@ -62,7 +71,8 @@ impl<'b> Views<'b> {
         let pair = self.pair.with_right_warped(map).await?;
         let [left, right] = self.masks;
         let right = right.map(|mask| map.visible_through(&mask)).transpose()?.unwrap_or_else(|| map.visible());
-        Ok(Self { pair, masks: [left, right.data().contains(&0).then_some(right)] })
+        let masks = [left, right.data().contains(&0).then_some(right)];
+        Ok(Self { pair, masks, mosaics: self.mosaics })
     }
 
     /// The views ready for dense matching: unseen pixels correspond to nothing.
@@ -70,7 +80,21 @@ impl<'b> Views<'b> {
         let (left, right) = self.pair.views();
         let shown = [(left, &self.masks[0], 0), (right, &self.masks[1], 1)];
         let drowned = shown.map(|(view, mask, seed)| mask.as_ref().map(|mask| mask::drowned(view, mask, seed)));
-        Ok(Self { pair: self.pair.with_views(drowned).await?, masks: self.masks })
+        Ok(Self { pair: self.pair.with_views(drowned).await?, ..self })
+    }
+
+    /// The pictures of the views in colour, the right one resampled by `map`; grey for mosaics.
+    pub fn pictures<'p>(&self, [left, right]: [&'p Picture; 2], map: Option<&WarpMap>) -> [Cow<'p, Picture>; 2] {
+        let grey = |luma: &Luma| Cow::Owned(luma.map(|&grey| [grey, grey, grey, 255]));
+        let views = self.pair.views();
+        [
+            if self.mosaics[0] { grey(views.0) } else { Cow::Borrowed(left) },
+            match map {
+                _ if self.mosaics[1] => grey(views.1),
+                Some(map) => Cow::Owned(cpu::rectify::warp_picture(right, map)),
+                None => Cow::Borrowed(right),
+            },
+        ]
     }
 
     /// A map of the `reference` view without what the views do not show.
