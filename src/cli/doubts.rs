@@ -40,13 +40,14 @@ impl NotTrusted {
     }
 }
 
-/// Warnings about a result: identical views, a guessed or cut disparity range, a distorted lens, matches outside the range,
+/// Warnings about a result: identical views, raw mosaics, a guessed or cut disparity range, a distorted lens, matches outside the range,
 /// surfaces at an end of the range, and a difference in brightness.
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
     if left == right {
         warnings.push("both views are the same picture, which shows no depth".into());
     }
+    warnings.extend(mosaics(outcome.mosaics));
     if let RangeSource::Fallback(thin) = outcome.range_source {
         let reason = in_options(&Error::from(thin));
         warnings.push(format!("{reason}; {} were searched instead", span(outcome.range)));
@@ -60,6 +61,19 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
     warnings.extend(at_end(outcome));
     warnings.extend(brightness(outcome));
     warnings
+}
+
+/// A warning if views are raw mosaics, whose luma is less sharp than that of a picture from the camera.
+fn mosaics(found: [bool; 2]) -> Option<String> {
+    let (views, them) = match found {
+        [true, true] => ("both views are raw Bayer mosaics", "them"),
+        [true, false] => ("the left view is a raw Bayer mosaic", "it"),
+        [false, true] => ("the right view is a raw Bayer mosaic", "it"),
+        [false, false] => return None,
+    };
+    Some(format!(
+        "{views}: the luma of the colours was matched; demosaic {them} to colour pictures for a sharper result"
+    ))
 }
 
 /// A disparity range as text, `MIN to MAX px`.

@@ -18,6 +18,7 @@ mod features;
 mod interruption;
 mod man;
 mod match_views;
+mod mosaics;
 #[path = "../pictures/mod.rs"]
 mod pictures;
 mod verify;
