@@ -2,11 +2,13 @@
 
 use crate::{
     filter::in_parallel,
-    image::{Luma, Size},
+    image::{Luma, Plane, Size},
 };
 
 /// Units per grey value of the green plane.
 const SCALE: i64 = 16;
+/// Pixels that the interpolation reaches: 2 for green, 1 for its difference from red and blue.
+const FRAME: u32 = 3;
 
 /// The luma `(R + 2 G + B) / 4` at each pixel of a mosaic whose green pixels have the parity `green` of `x + y`. Red and
 /// blue need not be told apart.
@@ -15,41 +17,38 @@ const SCALE: i64 = 16;
 /// colour (Hamilton and Adams 1997, Adaptive color plane interpolation in single sensor color electronic camera, US patent
 /// 5,629,734), but with weights in place of a choice. `R - G` and `B - G` are smoother than the colours: they are
 /// interpolated over 3x3 pixels with binomial weights, which sum them up to `(R - G) / 4 + (B - G) / 4`. Beyond the edges the
-/// mosaic is mirrored, which keeps its phase if no side is below 3 pixels.
+/// mosaic is mirrored, which keeps its phase.
 pub fn luma_of_mosaic(mosaic: &Luma, green: u32) -> Luma {
-    let greens = in_parallel(mosaic.size(), |x, y| {
-        if (x + y) % 2 == green { SCALE * i64::from(mosaic.get(x, y)) } else { green_at(mosaic, x, y) }
+    let Size { width, height } = mosaic.size();
+    let wide = mirrored(mosaic);
+    // R - G or B - G, with a frame of 1 px.
+    let differences = in_parallel(Size::new(width + 2, height + 2), |x, y| {
+        let own = SCALE * wide.get(x + FRAME - 1, y + FRAME - 1);
+        if (x + y) % 2 == green { 0 } else { own - green_at(&wide, x + FRAME - 1, y + FRAME - 1) }
     });
-    let difference = |x: u32, y: u32| SCALE * i64::from(mosaic.get(x, y)) - greens.get(x, y);
     in_parallel(mosaic.size(), |x, y| {
-        let mut sum = 0;
-        for (j, weight_y) in [(-1, 1), (0, 2), (1, 1)] {
-            for (i, weight_x) in [(-1, 1), (0, 2), (1, 1)] {
-                let (x, y) = mirrored(mosaic.size(), x, y, (i, j));
-                sum += weight_x * weight_y * difference(x, y);
-            }
-        }
-        let luma = 16 * greens.get(x, y) + sum;
+        let rows = [y, y + 1, y + 2].map(|y| &differences.row(y)[x as usize..][..3]);
+        let [above, own, below] = rows.map(|row| row[0] + 2 * row[1] + row[2]);
+        let greens = SCALE * i64::from(mosaic.get(x, y)) - rows[1][1];
+        let luma = 16 * greens + above + 2 * own + below;
         rounded(luma, 16 * SCALE).clamp(0, 255) as u8
     })
 }
 
-/// Green at a red or blue pixel, in 1 / [`SCALE`] grey value.
-fn green_at(mosaic: &Luma, x: u32, y: u32) -> i64 {
-    // Four times green, and the gradient, along one direction.
-    let along = |(i, j): (i64, i64)| {
-        let at = |step: i64| {
-            let (x, y) = mirrored(mosaic.size(), x, y, (step * i, step * j));
-            i64::from(mosaic.get(x, y))
-        };
-        let second_difference = 2 * at(0) - at(-2) - at(2);
-        let fourfold = 2 * (at(-1) + at(1)) + second_difference;
-        (fourfold, (at(-1) - at(1)).abs() + second_difference.abs())
-    };
-    let [(green_x, gradient_x), (green_y, gradient_y)] = [along((1, 0)), along((0, 1))];
+/// Green at a red or blue pixel of a mosaic, in 1 / [`SCALE`] grey value.
+fn green_at(mosaic: &Plane<i64>, x: u32, y: u32) -> i64 {
+    let row = &mosaic.row(y)[x as usize - 2..][..5];
+    let column = [y - 2, y - 1, y, y + 1, y + 2].map(|y| mosaic.get(x, y));
+    let [(green_x, gradient_x), (green_y, gradient_y)] = [row, &column].map(along);
     // Weights in the inverse ratio of the squared gradients; 1 for gradients of 0.
     let [weight_x, weight_y] = [gradient_y, gradient_x].map(|other| (1 + other) * (1 + other));
     rounded(SCALE / 4 * (weight_x * green_x + weight_y * green_y), weight_x + weight_y)
+}
+
+/// Four times green at the middle of five pixels, and the gradient there.
+fn along(pixels: &[i64]) -> (i64, i64) {
+    let second_difference = 2 * pixels[2] - pixels[0] - pixels[4];
+    (2 * (pixels[1] + pixels[3]) + second_difference, (pixels[1] - pixels[3]).abs() + second_difference.abs())
 }
 
 /// Rounds `numerator / denominator` to the nearest integer, halves up.
@@ -57,13 +56,17 @@ fn rounded(numerator: i64, denominator: i64) -> i64 {
     (2 * numerator + denominator).div_euclid(2 * denominator)
 }
 
-/// The pixel at an offset of at most 2 from `(x, y)`, mirrored at the edge pixels.
-fn mirrored(Size { width, height }: Size, x: u32, y: u32, (i, j): (i64, i64)) -> (u32, u32) {
-    let mirror = |at: i64, side: u32| {
-        let last = i64::from(side) - 1;
-        (last - (last - at.abs()).abs()).clamp(0, last) as u32
+/// The mosaic with a frame of [`FRAME`] px, mirrored at the edge pixels.
+fn mirrored(mosaic: &Luma) -> Plane<i64> {
+    let Size { width, height } = mosaic.size();
+    let mirror = |at: u32, side: u32| {
+        let period = i64::from(2 * (side - 1)).max(1);
+        let place = (i64::from(at) - i64::from(FRAME)).rem_euclid(period);
+        place.min(period - place) as u32
     };
-    (mirror(i64::from(x) + i, width), mirror(i64::from(y) + j, height))
+    let columns: Vec<u32> = (0..width + 2 * FRAME).map(|x| mirror(x, width)).collect();
+    let size = Size::new(width + 2 * FRAME, height + 2 * FRAME);
+    Plane::from_fn(size, |x, y| i64::from(mosaic.get(columns[x as usize], mirror(y, height))))
 }
 
 #[cfg(test)]
@@ -83,7 +86,7 @@ mod tests {
     fn one_colour_is_one_luma_up_to_the_edges() {
         for red in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let green = (red.0 + red.1 + 1) % 2;
-            for size in [(4, 4), (5, 3), (3, 4)] {
+            for size in [(4, 4), (5, 3), (2, 2)] {
                 // (90 + 2 * 60 + 30) / 4
                 let luma = luma_of_mosaic(&mosaic_of(size, [90, 60, 30], red), green);
                 assert_eq!(luma, Luma::filled(size, 60), "{red:?}");
@@ -112,7 +115,7 @@ mod tests {
     #[test]
     fn green_by_hand() {
         let column = |y: u32| [1, 5, 60, 9, 3][y as usize];
-        let mosaic = Luma::from_fn((5, 5), |x, y| match (x, y) {
+        let mosaic = Plane::from_fn((5, 5), |x, y| match (x, y) {
             (2, y) => column(y),
             (x, 2) => [40, 50, 60, 70, 80][x as usize],
             _ => 0,
