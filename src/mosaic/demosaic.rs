@@ -2,7 +2,7 @@
 
 use crate::{
     filter::in_parallel,
-    image::{Luma, Plane, Size},
+    image::{Luma, Size},
 };
 
 /// Units per grey value of the green plane.
@@ -23,30 +23,32 @@ pub fn luma_of_mosaic(mosaic: &Luma, green: u32) -> Luma {
     let wide = mirrored(mosaic);
     // R - G or B - G, with a frame of 1 px.
     let differences = in_parallel(Size::new(width + 2, height + 2), |x, y| {
-        let own = SCALE * wide.get(x + FRAME - 1, y + FRAME - 1);
-        if (x + y) % 2 == green { 0 } else { own - green_at(&wide, x + FRAME - 1, y + FRAME - 1) }
+        let (wide_x, wide_y) = (x + FRAME - 1, y + FRAME - 1);
+        let own = SCALE * i64::from(wide.get(wide_x, wide_y));
+        if (x + y) % 2 == green { 0 } else { (own - green_at(&wide, wide_x, wide_y)) as i32 }
     });
     in_parallel(mosaic.size(), |x, y| {
         let rows = [y, y + 1, y + 2].map(|y| &differences.row(y)[x as usize..][..3]);
         let [above, own, below] = rows.map(|row| row[0] + 2 * row[1] + row[2]);
-        let greens = SCALE * i64::from(mosaic.get(x, y)) - rows[1][1];
-        let luma = 16 * greens + above + 2 * own + below;
+        let greens = SCALE * i64::from(mosaic.get(x, y)) - i64::from(rows[1][1]);
+        let luma = 16 * greens + i64::from(above + 2 * own + below);
         rounded(luma, 16 * SCALE).clamp(0, 255) as u8
     })
 }
 
 /// Green at a red or blue pixel of a mosaic, in 1 / [`SCALE`] grey value.
-fn green_at(mosaic: &Plane<i64>, x: u32, y: u32) -> i64 {
-    let row = &mosaic.row(y)[x as usize - 2..][..5];
+fn green_at(mosaic: &Luma, x: u32, y: u32) -> i64 {
+    let row = [x - 2, x - 1, x, x + 1, x + 2].map(|x| mosaic.get(x, y));
     let column = [y - 2, y - 1, y, y + 1, y + 2].map(|y| mosaic.get(x, y));
-    let [(green_x, gradient_x), (green_y, gradient_y)] = [row, &column].map(along);
+    let [(green_x, gradient_x), (green_y, gradient_y)] = [row, column].map(along);
     // Weights in the inverse ratio of the squared gradients; 1 for gradients of 0.
     let [weight_x, weight_y] = [gradient_y, gradient_x].map(|other| (1 + other) * (1 + other));
     rounded(SCALE / 4 * (weight_x * green_x + weight_y * green_y), weight_x + weight_y)
 }
 
 /// Four times green at the middle of five pixels, and the gradient there.
-fn along(pixels: &[i64]) -> (i64, i64) {
+fn along(pixels: [u8; 5]) -> (i64, i64) {
+    let pixels = pixels.map(i64::from);
     let second_difference = 2 * pixels[2] - pixels[0] - pixels[4];
     (2 * (pixels[1] + pixels[3]) + second_difference, (pixels[1] - pixels[3]).abs() + second_difference.abs())
 }
@@ -57,7 +59,7 @@ fn rounded(numerator: i64, denominator: i64) -> i64 {
 }
 
 /// The mosaic with a frame of [`FRAME`] px, mirrored at the edge pixels.
-fn mirrored(mosaic: &Luma) -> Plane<i64> {
+fn mirrored(mosaic: &Luma) -> Luma {
     let Size { width, height } = mosaic.size();
     let mirror = |at: u32, side: u32| {
         let period = i64::from(2 * (side - 1)).max(1);
@@ -66,7 +68,7 @@ fn mirrored(mosaic: &Luma) -> Plane<i64> {
     };
     let columns: Vec<u32> = (0..width + 2 * FRAME).map(|x| mirror(x, width)).collect();
     let size = Size::new(width + 2 * FRAME, height + 2 * FRAME);
-    Plane::from_fn(size, |x, y| i64::from(mosaic.get(columns[x as usize], mirror(y, height))))
+    Luma::from_fn(size, |x, y| mosaic.get(columns[x as usize], mirror(y, height)))
 }
 
 #[cfg(test)]
@@ -115,7 +117,7 @@ mod tests {
     #[test]
     fn green_by_hand() {
         let column = |y: u32| [1, 5, 60, 9, 3][y as usize];
-        let mosaic = Plane::from_fn((5, 5), |x, y| match (x, y) {
+        let mosaic = Luma::from_fn((5, 5), |x, y| match (x, y) {
             (2, y) => column(y),
             (x, 2) => [40, 50, 60, 70, 80][x as usize],
             _ => 0,
