@@ -131,7 +131,7 @@ fn at_end(outcome: &Outcome) -> Option<String> {
     let (share, end) = if high >= low { (100.0 * high, range.last()) } else { (100.0 * low, range.min) };
     let seen_there = end == 0 && outcome.seeding.range.is_ok();
     (share > USUAL && !seen_there).then(|| {
-        format!("{share:.0} % of the map lies at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
+        format!("{share:.0} % of the measured disparities lie at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
     })
 }
 

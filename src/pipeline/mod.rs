@@ -64,7 +64,7 @@ pub struct Outcome {
     pub range: DisparityRange,
     /// Origin of the range.
     pub range_source: RangeSource,
-    /// Shares of the disparities within 1.5 px of the smallest and of the largest disparity of the range, 0 to 1.
+    /// Shares of the measured disparities within 1.5 px of the smallest and of the largest disparity of the range, 0 to 1.
     pub at_ends: [f32; 2],
     /// Change of the right view's brightness before dense matching.
     pub brightness: Brightness,
@@ -173,8 +173,8 @@ pub async fn run_async(
     let (dense, at_ends) = loop {
         let dense;
         (range, dense) = search(&views, [left, right], map.as_ref(), config, range, brightness).await?;
-        let dense = views.masked(dense, config.reference);
-        let ends = at_ends(&dense.disparity, range);
+        let dense = views.confirmed(dense, config.reference);
+        let ends = at_ends(&dense, range);
         searches += 1;
         match widened(range, range_source, ends, config.least) {
             Some(wider) if searches < SEARCHES => range = wider,
@@ -216,7 +216,7 @@ async fn search(
         Method::Hsad(parameters) => {
             let task = config.dense(parameters, range, brightness);
             let range = task.searched(views.size().width)?;
-            Ok((range, views.pair.dense(&DenseConfig { range, ..task }).await?))
+            Ok((range, views.dense(&DenseConfig { range, ..task }).await?))
         }
         Method::Kamencay(parameters) => {
             let task = config.kamencay(parameters, range, brightness);

@@ -2,7 +2,8 @@
 
 use crate::{
     config::Config,
-    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
+    dense::Dense,
+    disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
     seeding::{FoundRange, RangeEnd, Seeding, ThinSupport},
 };
@@ -53,12 +54,19 @@ pub(super) fn is_at_end(disparity: i32, range: DisparityRange) -> [bool; 2] {
     [known && disparity <= low, known && disparity >= high]
 }
 
-/// The shares of a map's disparities within 1.5 px of the smallest and of the largest disparity of `range`, 0 to 1.
-pub(super) fn at_ends(map: &DisparityMap, range: DisparityRange) -> [f32; 2] {
-    let known = map.data().iter().filter(|&&disparity| disparity != NONE).count().max(1);
-    [0, 1].map(|end| {
-        map.data().iter().filter(|&&disparity| is_at_end(disparity, range)[end]).count() as f32 / known as f32
-    })
+/// The shares of the measured disparities, those with a confidence, within 1.5 px of the smallest and of the largest disparity
+/// of `range`, 0 to 1.
+pub(super) fn at_ends(dense: &Dense, range: DisparityRange) -> [f32; 2] {
+    let confidences = dense.confidence.data().iter();
+    let measured = dense.disparity.data().iter().zip(confidences).filter(|&(_, &confidence)| confidence > 0);
+    let (mut count, mut ends) = (0, [0; 2]);
+    for (&disparity, _) in measured {
+        count += 1;
+        let [low, high] = is_at_end(disparity, range);
+        ends[0] += u32::from(low);
+        ends[1] += u32::from(high);
+    }
+    ends.map(|end| end as f32 / count.max(1) as f32)
 }
 
 /// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end.
@@ -97,14 +105,19 @@ fn not_below(found: &FoundRange, least: Option<i32>) -> Result<DisparityRange> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::Plane;
 
     #[test]
     fn ends_by_hand() {
         let range = DisparityRange::inclusive(2, 9).unwrap();
-        // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not.
-        let map = DisparityMap::new((6, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920]).unwrap();
-        assert_eq!(at_ends(&map, range), [0.4, 0.2]);
-        assert_eq!(at_ends(&DisparityMap::filled((2, 2), NONE), range), [0.0, 0.0]);
+        // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not; the last one is filled.
+        let dense = Dense {
+            disparity: Plane::new((7, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920, 2 * SCALE]).unwrap(),
+            confidence: Plane::new((7, 1), vec![0, 1, 1, 1, 1, 255, 0]).unwrap(),
+        };
+        assert_eq!(at_ends(&dense, range), [0.4, 0.2]);
+        let nothing = Dense { confidence: dense.confidence.map(|_| 0), ..dense };
+        assert_eq!(at_ends(&nothing, range), [0.0, 0.0]);
     }
 
     #[test]

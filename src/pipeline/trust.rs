@@ -26,7 +26,7 @@ const CONTRADICTION: f32 = 2.0;
 const SEEDS: (f32, f32) = (0.6, 400.0);
 /// Largest magnitude of a disparity that may be none, in pixels, and share of such pixels from which a pair shows no
 /// parallax, 0 to 1.
-const NO_PARALLAX: (f32, f32) = (0.5, 0.98);
+const NO_PARALLAX: (f32, f32) = (0.5, 0.95);
 
 /// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse
 /// map, and for few seeds.
@@ -132,7 +132,7 @@ mod tests {
             dense.disparity.data_mut()[..pixels as usize].fill(129);
             dense
         };
-        assert!(shows_no_parallax(&moved(8)) && !shows_no_parallax(&moved(9)));
+        assert!(shows_no_parallax(&moved(20)) && !shows_no_parallax(&moved(21)));
         assert!(!shows_no_parallax(&map(9)) && !shows_no_parallax(&map(0)));
     }
 

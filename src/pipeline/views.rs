@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::{
     backend::Backend,
     cpu,
-    dense::{Dense, View},
+    dense::{Dense, DenseConfig, DenseParameters, View},
     error::Result,
     features::{Feature, FeatureConfig},
     image::{self, Luma, Size},
@@ -20,6 +20,8 @@ use crate::{
 pub(super) struct Views<'b> {
     pub pair: Pair<'b>,
     pub masks: [Option<Mask>; 2],
+    /// Pixels of the resampled right view that lie in the right view as given, if any do not.
+    within: Option<Mask>,
     /// Whether the view was a raw mosaic, which the luma of its colours replaced.
     pub mosaics: [bool; 2],
 }
@@ -37,7 +39,7 @@ impl<'b> Views<'b> {
         let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
-        Ok(Self { pair: pair.with_views(extended).await?, masks, mosaics })
+        Ok(Self { pair: pair.with_views(extended).await?, masks, within: None, mosaics })
     }
 
     /// The interest points of both views downscaled by `factor`, in pixels of the downscaled views.
@@ -70,9 +72,9 @@ impl<'b> Views<'b> {
     pub async fn aligned(self, map: &WarpMap) -> Result<Self> {
         let pair = self.pair.with_right_warped(map).await?;
         let [left, right] = self.masks;
-        let right = right.map(|mask| map.visible_through(&mask)).transpose()?.unwrap_or_else(|| map.visible());
-        let masks = [left, right.data().contains(&0).then_some(right)];
-        Ok(Self { pair, masks, mosaics: self.mosaics })
+        let right = right.map(|mask| map.visible_through(&mask)).transpose()?;
+        let within = Some(map.visible()).filter(|mask| mask.data().contains(&0));
+        Ok(Self { pair, masks: [left, right], within, ..self })
     }
 
     /// The views ready for dense matching: unseen pixels correspond to nothing.
@@ -97,13 +99,40 @@ impl<'b> Views<'b> {
         ]
     }
 
+    /// Matches the pair: a disparity and a confidence for each pixel of the reference view that both views show.
+    ///
+    /// Unseen pixels must not take part in the refinement, which fills holes from their neighbours. The twins refine a masked
+    /// pair; their results are the device's.
+    pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
+        let masked = self.masks.iter().any(Option::is_some);
+        let Some(refinement) = config.parameters.refinement.filter(|_| masked) else {
+            return self.pair.dense(config).await;
+        };
+        let parameters = DenseParameters { refinement: None, ..config.parameters };
+        let raw = self.pair.dense(&DenseConfig { parameters, ..config.clone() }).await?;
+        let (left, right) = self.pair.views();
+        let seen = self.seen(raw, config.reference);
+        Ok(cpu::dense::refined([left, right], &seen, &refinement, config))
+    }
+
     /// A map of the `reference` view without what the views do not show.
-    pub fn masked(&self, dense: Dense, reference: View) -> Dense {
+    pub fn seen(&self, dense: Dense, reference: View) -> Dense {
         let [left, right] = self.masks.each_ref().map(Option::as_ref);
-        match reference {
-            View::Left => mask::masked(dense, reference, left, right),
-            View::Right => mask::masked(dense, reference, right, left),
-        }
+        let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
+        mask::without_unseen(dense, reference, own, other)
+    }
+
+    /// A map of the `reference` view without what it does not show, and without confidence where the other view does not
+    /// show the partner.
+    pub fn confirmed(&self, dense: Dense, reference: View) -> Dense {
+        let [left, right] = self.masks.each_ref().map(Option::as_ref);
+        let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
+        let dense = mask::without_unseen(dense, reference, own, None);
+        let beyond = self.within.as_ref().filter(|_| reference == View::Left);
+        [other, beyond]
+            .into_iter()
+            .flatten()
+            .fold(dense, |dense, mask| mask::unconfirmed_beyond(dense, reference, mask))
     }
 
     /// Width and height of both views, in pixels.

@@ -36,7 +36,7 @@ const COVERAGE: f32 = 0.2;
 /// Largest share of the coarse map's surfaces at an end of the searched disparities, 0 to 1.
 const AT_ENDS: f32 = 0.01;
 /// Smallest share of the coarse map's surfaces that are evidence of disparities below 0, 0 to 1.
-const NEGATIVE: f32 = 0.02;
+const NEGATIVE: f32 = 0.05;
 
 /// Origin of an end of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,9 +11,9 @@ use crate::{
         Aggregation, CostAggregation, CrossCheck, Dense, DenseConfig, Refinement, Search, SemiGlobal, View,
         kernels::halved_config,
     },
-    disparity::{DisparityRange, NONE, SCALE},
+    disparity::{NONE, SCALE},
     error::{Error, Result},
-    image::{Luma, Plane},
+    image::Luma,
 };
 
 /// [`crate::dense::compute`] on the CPU.
@@ -58,11 +58,7 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
         consistency(&mut dense, view, &other_disparities, max_difference);
     }
     match &config.parameters.refinement {
-        Some(refinement) => {
-            let residuals = residual([left, right], view, &dense.disparity);
-            let luma = unchanged[usize::from(view == View::Right)];
-            Ok(refined(&dense, &residuals, luma, refinement, config.range))
-        }
+        Some(refinement) => Ok(refined(unchanged, &dense, refinement, &config)),
         None => Ok(dense),
     }
 }
@@ -83,15 +79,18 @@ fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &Den
     dense
 }
 
-/// The map after all steps of `refinement`.
-fn refined(dense: &Dense, residuals: &Plane<u8>, luma: &Luma, refinement: &Refinement, range: DisparityRange) -> Dense {
-    let Dense { disparity: mut map, confidence } = support(dense, residuals, refinement.support);
+/// The map of the pair `views`, before the change of brightness, after all steps of `refinement`.
+pub fn refined([left, right]: [&Luma; 2], dense: &Dense, refinement: &Refinement, config: &DenseConfig) -> Dense {
+    let equalised = right.map(|&luma| config.brightness.apply(luma));
+    let residuals = residual([left, &equalised], config.reference, &dense.disparity);
+    let luma = if config.reference == View::Left { left } else { right };
+    let Dense { disparity: mut map, confidence } = support(dense, &residuals, refinement.support);
     for median in refinement.before() {
         map = weighted_median(luma, &map, &map, median);
     }
     let before = map.clone();
     if refinement.fill {
-        map = fill(&map, range);
+        map = fill(&map, config.range);
     }
     for median in refinement.after() {
         map = weighted_median(luma, &map, &before, median);

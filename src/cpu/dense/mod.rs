@@ -23,7 +23,7 @@ pub use box_mean::box_mean;
 pub use cell_ranges::{CellPlane, cell_ranges};
 pub use census::census;
 pub use claim::claim;
-pub use compute::compute;
+pub use compute::{compute, refined};
 pub use consistency::{consistency, half_consistency};
 pub use cost::cost;
 pub use fill::fill;
