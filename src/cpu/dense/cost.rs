@@ -17,13 +17,14 @@ pub fn cost([reference, other]: [&Plane<u32>; 2], view: View, cost: &Cost, range
     let gradient = |plane: &Plane<u32>, x: i64, y: u32| luma(at(plane, x + 1, y)) - luma(at(plane, x - 1, y));
     let row = |y: u32| {
         (0..i64::from(width)).flat_map(move |x| {
+            let (a, slope) = (at(reference, x, y), gradient(reference, x, y));
             (0..range.count.next_multiple_of(4)).map(move |index| {
                 let disparity = i64::from(range.min) + i64::from(index);
                 let partner = if view == View::Left { x - disparity } else { x + disparity };
-                let (a, b) = (at(reference, x, y), at(other, partner, y));
+                let b = at(other, partner, y);
                 let hamming = ((a ^ b) >> 8).count_ones();
                 let difference = luma(a).abs_diff(luma(b)) as u32;
-                let change = gradient(reference, x, y).abs_diff(gradient(other, partner, y)) as u32;
+                let change = slope.abs_diff(gradient(other, partner, y)) as u32;
                 let sum = cost.census * hamming
                     + cost.difference.weight * difference.min(cost.difference.limit)
                     + cost.gradient.weight * change.min(cost.gradient.limit);

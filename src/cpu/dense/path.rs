@@ -5,6 +5,9 @@ use crate::{
     image::Plane,
 };
 
+/// A cost above every other, to which a penalty can be added.
+const NO_COST: u32 = u32::MAX / 2;
+
 /// The path costs of each pixel of `reference` and disparity, in the layout of `costs` (Hirschmueller, PAMI 2008).
 pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, direction: Direction) -> Vec<u8> {
     let (width, height) = (i64::from(reference.width()), i64::from(reference.height()));
@@ -15,6 +18,8 @@ pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, directi
         if step < 0 { (0..length).rev().collect() } else { (0..length).collect() }
     };
     let mut out = costs.to_vec();
+    // Costs of the pixel before on the path, between two that no disparity has.
+    let mut before = vec![NO_COST; count + 2];
     for &y in &ordered(height, direction.dy) {
         for &x in &ordered(width, direction.dx) {
             let (qx, qy) = (x - i64::from(direction.dx), y - i64::from(direction.dy));
@@ -22,14 +27,12 @@ pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, directi
                 continue;
             }
             let p2 = penalties.p2_at(luma(x, y).abs_diff(luma(qx, qy)));
-            let before: Vec<u32> = out[place(qx, qy)..][..count].iter().map(|&cost| cost.into()).collect();
-            let least = before.iter().copied().min().unwrap_or(0);
-            for d in 0..count {
-                let stay = before[d];
-                let neighbours = [d.checked_sub(1), Some(d + 1)].into_iter().flatten();
-                let step = neighbours.filter_map(|n| before.get(n)).map(|cost| cost + penalties.p1).min();
-                let cheapest = stay.min(least + p2).min(step.unwrap_or(u32::MAX));
-                let cost = &mut out[place(x, y) + d];
+            let costs_before = &out[place(qx, qy)..][..count];
+            before[1..=count].iter_mut().zip(costs_before).for_each(|(before, &cost)| *before = cost.into());
+            let least = before[1..=count].iter().copied().min().unwrap_or(0);
+            for (cost, near) in out[place(x, y)..][..count].iter_mut().zip(before.windows(3)) {
+                let step = near[0].min(near[2]) + penalties.p1;
+                let cheapest = near[1].min(step).min(least + p2);
                 *cost = (u32::from(*cost) + cheapest - least) as u8;
             }
         }

@@ -29,10 +29,11 @@ pub fn select(paths: &[Vec<u8>], Size { width, height }: Size, config: &DenseCon
     let count = config.range.count.next_multiple_of(4) as usize;
     let selected: Vec<(i32, u8)> = (0..width as usize * height as usize)
         .into_par_iter()
-        .map(|pixel| {
+        .map_init(Vec::new, |sums, pixel| {
             let sum = |d| Some(paths.iter().map(|path| u32::from(path[pixel * count + d])).sum());
-            let sums: Vec<Option<u32>> = (0..config.range.count as usize).map(sum).collect();
-            decide(&sums, config)
+            sums.clear();
+            sums.extend((0..config.range.count as usize).map(sum));
+            decide(sums, config)
         })
         .collect();
     let at = |x: u32, y: u32| selected[(y * width + x) as usize];
