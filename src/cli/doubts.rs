@@ -6,7 +6,7 @@ use hsad::{
     disparity::DisparityRange,
     io::Picture,
     pipeline::{Outcome, RangeSource, TRUSTED},
-    seeding::Verdict,
+    seeding::{RangeEnd, Verdict},
 };
 
 use super::wording::in_options;
@@ -130,7 +130,8 @@ fn at_end(outcome: &Outcome) -> Option<String> {
     let Outcome { range, at_ends: [low, high], .. } = outcome;
     let (share, end) = if high >= low { (100.0 * high, range.last()) } else { (100.0 * low, range.min) };
     let seen_there = end == 0 && outcome.seeding.range.is_ok();
-    (share > USUAL && !seen_there).then(|| {
+    let by_few_seeds = outcome.range_source == RangeSource::Found([RangeEnd::Seeds; 2]);
+    (share > USUAL && !seen_there && !by_few_seeds).then(|| {
         format!("{share:.0} % of the measured disparities lie at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
     })
 }
