@@ -67,3 +67,15 @@ fn stream_follows_the_cameras() {
     let speeds: Vec<f64> = text.lines().last().unwrap().split(' ').filter_map(|word| word.parse().ok()).collect();
     assert!(speeds.len() == 2 && speeds.iter().all(|&speed| speed > 0.0), "{text}");
 }
+
+/// The tables of one scene: a right view that lies lower is found so, and sure pixels are right.
+#[test]
+fn trust_prints_its_tables() {
+    let text = run("trust", &["confidence", "rows", "data/planes"]);
+    assert!(text.contains("| alignable, 3.0"), "{text}");
+    assert!(!text.contains("## Ranges"), "only what was asked for: {text}");
+    let table = text.split("## Confidence").nth(1).expect("the table");
+    let line = table.lines().find(|line| line.starts_with("| planes |")).expect("the scene");
+    let shares: Vec<f64> = line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+    assert!(shares.len() == 4 && shares[2] < 1.0 && shares[3] > 30.0, "{line}");
+}
