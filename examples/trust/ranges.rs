@@ -45,6 +45,7 @@ pub fn print(backend: &Backend, scenes: &[Named]) -> Result<(), AnyError> {
     Ok(())
 }
 
-fn line(name: &str, ranges: [String; 2], figures: [f64; 5]) {
-    row(&[name.to_owned()].into_iter().chain(ranges).chain(figures.map(percent)).collect::<Vec<_>>());
+fn line(name: &str, ranges: [String; 2], [outside, bad @ ..]: [f64; 5]) {
+    let start = [name.to_owned()].into_iter().chain(ranges).chain([format!("{:.2}", 100.0 * outside)]);
+    row(&start.chain(bad.map(percent)).collect::<Vec<_>>());
 }

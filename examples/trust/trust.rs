@@ -33,7 +33,7 @@ impl Map {
             variant.clone(),
             scene.clone(),
             percent(*wrong),
-            format!("{trust:.2}"),
+            format!("{trust:.3}"),
             exit_code.to_string(),
             percent(*measured),
         ]
@@ -62,12 +62,38 @@ pub fn print(backend: &Backend, scenes: &[Named]) -> Result<(), AnyError> {
     maps.sort_by(|a, b| b.wrong.total_cmp(&a.wrong));
     heading("Trust");
     list(maps.iter());
-    summary(&maps);
+    heading("Trust by variant");
+    by_variant(&maps);
+    promises(&maps);
     Ok(())
 }
 
+/// Prints one line per variant: least and largest figures of its maps, the most wrong variant first.
+fn by_variant(maps: &[Map]) {
+    let mut variants: Vec<&str> = Vec::new();
+    for map in maps {
+        if !variants.contains(&map.variant.as_str()) {
+            variants.push(&map.variant);
+        }
+    }
+    columns(&["variant", "wrong by over 2 px, %", "trust", "maps of exit code 0", "of 3", "of 4"]);
+    for variant in variants {
+        let of_variant = || maps.iter().filter(|map| map.variant == variant);
+        let [least, most] = ends(of_variant().map(|map| map.wrong)).map(percent);
+        let [low, high] = ends(of_variant().map(|map| map.trust.into()));
+        let count = |code| of_variant().filter(|map| map.exit_code == code).count().to_string();
+        let [wrong, trust] = [format!("{least} to {most}"), format!("{low:.3} to {high:.3}")];
+        row(&[variant.into(), wrong, trust, count(0), count(3), count(4)]);
+    }
+}
+
+/// The smallest and the largest value.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// Prints the maps that break a promise of trust.
-fn summary(maps: &[Map]) {
+fn promises(maps: &[Map]) {
     let most_wrong = |map: &Map| map.wrong > MOST_WRONG;
     let few_wrong = |map: &Map| map.wrong < FEW_WRONG;
     let refused = maps.iter().filter(|map| map.exit_code == 3).count();

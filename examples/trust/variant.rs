@@ -36,7 +36,7 @@ pub enum Variant {
     Noisy(f64),
     /// The left view has 0.15 of its brightness, the right view 0.12.
     Dark,
-    /// Both views are black outside the largest circle, as behind a round lens.
+    /// Both views are black outside the largest circle, as in pictures of a round lens.
     RoundMask,
     /// The range is told, and ends at the median of the truth.
     LowerHalf,
