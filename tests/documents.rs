@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// Pages, and the folders whose files they name.
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/ARCHITECTURE.md",
@@ -12,6 +12,7 @@ const PAGES: [&str; 10] = [
     "docs/embedding.md",
     "docs/evaluation.md",
     "docs/results.md",
+    "docs/trust.md",
     "docs/verify.md",
     "examples/README.md",
 ];
