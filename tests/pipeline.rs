@@ -75,6 +75,7 @@ fn a_large_pair_is_seen_at_its_own_size() {
     let (inside, outside): (Vec<i32>, Vec<i32>) = known.partition(|&d| outcome.range.contains(d));
     assert!(outside.len() * 100 < inside.len(), "{} of the truth outside of {:?}", outside.len(), outcome.range);
     assert!(outcome.seeding.rectification.is_alignable());
+    assert!(outcome.trust > 0.5, "{}", outcome.trust);
     let Size { width, height } = views.0.size();
     let far = outcome.features[0].iter().filter(|f| f.x > width as f32 / 2.0 && f.x < width as f32).count();
     assert!(far > outcome.features[0].len() / 4, "points are not where the picture is");

@@ -1,6 +1,7 @@
 //! The pipeline from two pictures to a disparity map.
 
 mod range;
+mod search;
 mod trust;
 mod views;
 
@@ -9,7 +10,8 @@ pub use trust::TRUSTED;
 
 use web_time::{Duration, Instant};
 
-use range::{at_ends, range_to_search, widened};
+use range::range_to_search;
+use search::{Found, Search};
 use trust::{in_proportion, shows_no_parallax, trust, without_ends};
 use views::Views;
 
@@ -17,23 +19,20 @@ use views::Views;
 use crate::gpu::block_on;
 use crate::{
     backend::Backend,
-    config::{Config, Method},
-    dense::{Brightness, Dense, DenseConfig},
+    config::Config,
+    dense::{Brightness, Dense},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Feature, FeatureConfig},
     image::{Plane, Size},
     io::Picture,
-    kamencay::KamencayConfig,
     names::names,
-    rectify::{RowModel, WarpMap},
+    rectify::RowModel,
     seeding::{RawMatches, Seeding, Verdict, enlarged_feature},
 };
 
 /// Largest row difference that is matched without alignment, in pixels.
 const LARGEST_AS_IS: f32 = 1.5;
-/// Largest number of searches, each over a wider range than the one before.
-const SEARCHES: u32 = 3;
 /// Largest number of pixels of a picture in which interest points are detected; larger pictures are downscaled first.
 const MAX_SPARSE_PIXELS: u64 = 1 << 21;
 
@@ -127,21 +126,10 @@ pub async fn run_async(
 
     enter(Some(Step::Features));
     let factor = reduction(size);
-    let mut features = views.features(factor, &config.features).await?;
+    let features = views.features(factor, &config.features).await?;
 
     enter(Some(Step::Seeding));
-    let match_anywhere =
-        |[left, right]: &[Vec<Feature>; 2]| RawMatches::new((left, right), size.reduced(factor), &config.seeding);
-    let mut matches = match_anywhere(&features)?;
-    if !matches.rectification.is_certain() && config.features.upright {
-        // Upright descriptors of views that are rotated against each other do not match, or rarely.
-        let turned = views.features(factor, &FeatureConfig { upright: false, ..config.features.clone() }).await?;
-        let found = match_anywhere(&turned)?;
-        let unknown = |matches: &RawMatches| matches.rectification.verdict == Verdict::Unknown;
-        if found.rectification.is_certain() || unknown(&matches) && !unknown(&found) {
-            (features, matches) = (turned, found);
-        }
-    }
+    let (features, mut matches) = matched(&views, factor, features, config).await?;
     if !config.align {
         matches.rectification.rows = RowModel::AS_IS;
     }
@@ -165,24 +153,13 @@ pub async fn run_async(
         Some(found) if config.equalise => found.equalising(),
         _ => Brightness::SAME,
     };
-    let (mut range, range_source) = range_to_search(config, &seeding, size.width)?;
+    let (range, range_source) = range_to_search(config, &seeding, size.width)?;
 
     enter(Some(Step::Dense));
     let views = views.drowned().await?;
-    let mut searches = 0;
-    let (dense, at_ends) = loop {
-        let dense;
-        (range, dense) = search(&views, [left, right], map.as_ref(), config, range, brightness).await?;
-        let dense = views.confirmed(dense, config.reference);
-        let ends = at_ends(&dense, range);
-        searches += 1;
-        match widened(range, range_source, ends, config.least) {
-            Some(wider) if searches < SEARCHES => range = wider,
-            _ => break (dense, ends),
-        }
-    };
-    let ends_at_zero = range_source.ends_at_zero();
-    let dense = without_ends(dense, range, ends_at_zero);
+    let search = Search { views: &views, pictures: [left, right], map: map.as_ref(), config, brightness };
+    let Found { range, dense, at_ends } = search.widening(range, range_source).await?;
+    let dense = without_ends(dense, range, range_source.ends_at_zero());
     let trust = trust(&dense, config, &seeding);
     let dense = in_proportion(dense, trust);
     enter(None);
@@ -202,29 +179,28 @@ pub async fn run_async(
     })
 }
 
-/// Searches `range` for the disparities of prepared views; Kamencay's method takes the pictures. Returns the part of the range
-/// that the width of the picture allows.
-async fn search(
+/// Matches `features` of the views in any row, or features with orientations where upright ones do not tell how rows
+/// correspond; returns the features that were matched, too.
+async fn matched(
     views: &Views<'_>,
-    pictures: [&Picture; 2],
-    map: Option<&WarpMap>,
+    factor: u32,
+    features: [Vec<Feature>; 2],
     config: &Config,
-    range: DisparityRange,
-    brightness: Brightness,
-) -> Result<(DisparityRange, Dense)> {
-    match &config.method {
-        Method::Hsad(parameters) => {
-            let task = config.dense(parameters, range, brightness);
-            let range = task.searched(views.size().width)?;
-            Ok((range, views.dense(&DenseConfig { range, ..task }).await?))
-        }
-        Method::Kamencay(parameters) => {
-            let task = config.kamencay(parameters, range, brightness);
-            let range = task.searched(views.size().width)?;
-            let [left, right] = views.pictures(pictures, map);
-            Ok((range, views.pair.backend().kamencay(&left, &right, &KamencayConfig { range, ..task }).await?))
-        }
+) -> Result<([Vec<Feature>; 2], RawMatches)> {
+    let size = views.size().reduced(factor);
+    let anywhere = |[left, right]: &[Vec<Feature>; 2]| RawMatches::new((left, right), size, &config.seeding);
+    let matches = anywhere(&features)?;
+    if matches.rectification.is_certain() || !config.features.upright {
+        return Ok((features, matches));
     }
+    // Upright descriptors of views that are rotated against each other do not match, or rarely.
+    let turned = views.features(factor, &FeatureConfig { upright: false, ..config.features.clone() }).await?;
+    let found = anywhere(&turned)?;
+    let unknown = |matches: &RawMatches| matches.rectification.verdict == Verdict::Unknown;
+    if found.rectification.is_certain() || unknown(&matches) && !unknown(&found) {
+        return Ok((turned, found));
+    }
+    Ok((features, matches))
 }
 
 /// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine

@@ -69,12 +69,14 @@ pub(super) fn at_ends(dense: &Dense, range: DisparityRange) -> [f32; 2] {
     ends.map(|end| end as f32 / count.max(1) as f32)
 }
 
-/// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end.
+/// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end;
+/// within what a `width` of the views in pixels allows.
 pub(super) fn widened(
     range: DisparityRange,
     source: RangeSource,
     ends: [f32; 2],
     least: Option<i32>,
+    width: u32,
 ) -> Option<DisparityRange> {
     // Few seeds alone do not tell a surface at an end from noise.
     let (RangeSource::Found([_, RangeEnd::CoarseMap]) | RangeSource::Found([RangeEnd::CoarseMap | RangeEnd::Zero, _])) =
@@ -85,8 +87,10 @@ pub(super) fn widened(
     let more = (range.count / 2).max(16).cast_signed();
     let down = ends[0] > MOST_AT_END && !source.ends_at_zero();
     let up = ends[1] > MOST_AT_END;
-    let min = (range.min - if down { more } else { 0 }).max(least.unwrap_or(i32::MIN));
-    let wider = DisparityRange::inclusive(min, range.last() + if up { more } else { 0 }).ok()?;
+    let most = width.cast_signed() - 1;
+    let min = if down { (range.min - more).max(least.unwrap_or(-most)).max(-most) } else { range.min };
+    let last = if up { (range.last() + more).min(most) } else { range.last() };
+    let wider = DisparityRange::inclusive(min, last).ok()?;
     (wider != range).then_some(wider)
 }
 
@@ -130,12 +134,14 @@ mod tests {
         let range = DisparityRange::inclusive(10, 49).unwrap();
         let found = |low| RangeSource::Found([low, RangeEnd::CoarseMap]);
         let seeds = RangeSource::Found([RangeEnd::Seeds; 2]);
-        let wider = |source, ends, least| widened(range, source, ends, least).map(|range| (range.min, range.last()));
+        let wider =
+            |source, ends, least| widened(range, source, ends, least, 60).map(|range| (range.min, range.last()));
         assert_eq!(wider(found(RangeEnd::Seeds), [0.02, 0.0], None), None);
         assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.0], None), Some((-10, 49)));
-        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(0)), Some((0, 69)));
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(0)), Some((0, 59)));
         assert_eq!(wider(found(RangeEnd::Zero), [0.03, 0.0], None), None);
         assert_eq!(wider(seeds, [0.5, 0.5], None), None);
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.0, 0.5], None), Some((10, 59)), "no further than the width");
         assert_eq!(wider(RangeSource::Asked, [0.5, 0.5], None), None);
     }
 

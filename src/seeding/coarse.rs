@@ -96,6 +96,11 @@ impl CoarseMap {
         Self { factor, map, disparities, searched }
     }
 
+    /// The map of views enlarged by `factor`.
+    pub(super) fn enlarged(self, factor: u32) -> Self {
+        Self { factor: factor * self.factor, ..self }
+    }
+
     /// Share of the downscaled left view that lies on a surface, 0 to 1.
     pub fn coverage(&self) -> f32 {
         self.disparities.len() as f32 / self.map.data().len() as f32
@@ -224,6 +229,8 @@ mod tests {
         assert!(!contradicts(4.0, 12.0) && !contradicts(4.0, 17.0) && contradicts(4.0, 17.1) && contradicts(4.0, 36.0));
         // Beside the edge both surfaces are near.
         assert!(!contradicts(39.0, 12.0) && !contradicts(39.0, 36.0) && contradicts(48.0, 12.0));
+        let enlarged = CoarseMap::of_surfaces(&map, 2, DisparityRange::inclusive(0, 12).unwrap()).enlarged(2).around();
+        assert!(!enlarged.contradicts(4.0, 40, 17.0) && enlarged.contradicts(4.0, 40, 17.1));
         let nothing = CoarseMap::of_surfaces(&map.map(|_| NONE), 4, DisparityRange::new(0, 1).unwrap()).around();
         assert!(!nothing.contradicts(4.0, 0, 100.0));
     }

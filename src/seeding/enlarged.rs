@@ -61,6 +61,7 @@ impl Seeding {
                 ..found
             }),
             rectification: self.rectification.enlarged(factor),
+            coarse: self.coarse.enlarged(factor),
             seeds: self.seeds.iter().map(seed).collect(),
             ..self
         }

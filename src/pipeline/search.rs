@@ -1,0 +1,74 @@
+//! The dense search of prepared views, over a wider range where surfaces go on.
+
+use super::{
+    range::{RangeSource, at_ends, widened},
+    views::Views,
+};
+use crate::{
+    config::{Config, Method},
+    dense::{Brightness, Dense, DenseConfig},
+    disparity::DisparityRange,
+    error::Result,
+    io::Picture,
+    kamencay::KamencayConfig,
+    rectify::WarpMap,
+};
+
+/// Largest number of searches, each over a wider range than the one before.
+const SEARCHES: u32 = 3;
+
+/// A task without its range.
+pub(super) struct Search<'a, 'b> {
+    pub views: &'a Views<'b>,
+    /// The pictures as given, which Kamencay's method takes.
+    pub pictures: [&'a Picture; 2],
+    /// The map that resampled the right view, if one did.
+    pub map: Option<&'a WarpMap>,
+    pub config: &'a Config,
+    pub brightness: Brightness,
+}
+
+/// A map and the range that was searched for it.
+pub(super) struct Found {
+    /// The range, without what the width of the views rules out.
+    pub range: DisparityRange,
+    pub dense: Dense,
+    /// Shares of the measured disparities at the ends of the range.
+    pub at_ends: [f32; 2],
+}
+
+impl Search<'_, '_> {
+    /// Searches `range`, and wider ranges while the map touches an end of a range that was found.
+    pub async fn widening(&self, mut range: DisparityRange, source: RangeSource) -> Result<Found> {
+        let width = self.views.size().width;
+        for _ in 1..SEARCHES {
+            let found = self.once(range).await?;
+            match widened(found.range, source, found.at_ends, self.config.least, width) {
+                Some(wider) => range = wider,
+                None => return Ok(found),
+            }
+        }
+        self.once(range).await
+    }
+
+    async fn once(&self, range: DisparityRange) -> Result<Found> {
+        let Self { views, config, brightness, .. } = *self;
+        let width = views.size().width;
+        let (range, dense) = match &config.method {
+            Method::Hsad(parameters) => {
+                let task = config.dense(parameters, range, brightness);
+                let range = task.searched(width)?;
+                (range, views.dense(&DenseConfig { range, ..task }).await?)
+            }
+            Method::Kamencay(parameters) => {
+                let task = config.kamencay(parameters, range, brightness);
+                let range = task.searched(width)?;
+                let [left, right] = views.pictures(self.pictures, self.map);
+                let backend = views.pair.backend();
+                (range, backend.kamencay(&left, &right, &KamencayConfig { range, ..task }).await?)
+            }
+        };
+        let dense = views.confirmed(dense, config.reference);
+        Ok(Found { range, at_ends: at_ends(&dense, range), dense })
+    }
+}
