@@ -88,7 +88,7 @@ pub struct Outcome {
 /// # Errors
 /// [`Error::SizesDiffer`]; [`Error::Parameter`]; [`Error::TooSmall`] for pictures that hold no window;
 /// [`Error::NotRectified`] unless [`Config::force`]; [`Error::NoRange`] if the disparities found lie below
-/// [`Config::least`]; the errors of [`Pair`] and of [`Backend::kamencay`].
+/// [`Config::least`]; the errors of [`crate::Pair`] and of [`Backend::kamencay`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn run(
     backend: &Backend,
