@@ -77,7 +77,7 @@ pub struct Outcome {
     pub dense: Dense,
     /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
     pub trust: f32,
-    /// Whether the views show no parallax: nearly all disparities are 0, and no depth follows from them.
+    /// Whether the views show no parallax: disparities are 0 but for noise, and no depth follows from them.
     pub no_parallax: bool,
     /// Duration of each step, with the compilation of its kernels and the wait for its results.
     pub times: Vec<(Step, Duration)>,
