@@ -6,7 +6,7 @@ use hsad::{
     disparity::DisparityRange,
     io::Picture,
     pipeline::{Outcome, RangeSource, TRUSTED},
-    seeding::{RangeEnd, Verdict},
+    seeding::Verdict,
 };
 
 use super::wording::in_options;
@@ -58,7 +58,7 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
     }
     warnings.extend(distortion(outcome));
     warnings.extend(outside(config, outcome));
-    warnings.extend(at_end(outcome));
+    warnings.extend(at_end(config, outcome));
     warnings.extend(brightness(outcome));
     warnings
 }
@@ -123,15 +123,16 @@ fn outside(config: &Config, outcome: &Outcome) -> Option<String> {
     }
 }
 
-/// A warning if surfaces lie at an end of the searched range.
-fn at_end(outcome: &Outcome) -> Option<String> {
+/// A warning if surfaces lie at an end of the searched range. A map that is not to be trusted, of a range that was found and
+/// widened already, says nothing of its range.
+fn at_end(config: &Config, outcome: &Outcome) -> Option<String> {
     /// Share of the map at an end of a range that holds the scene, in per cent.
     const USUAL: f32 = 2.0;
     let Outcome { range, at_ends: [low, high], .. } = outcome;
     let (share, end) = if high >= low { (100.0 * high, range.last()) } else { (100.0 * low, range.min) };
     let seen_there = end == 0 && outcome.seeding.range.is_ok();
-    let by_few_seeds = outcome.range_source == RangeSource::Found([RangeEnd::Seeds; 2]);
-    (share > USUAL && !seen_there && !by_few_seeds).then(|| {
+    let named = config.range.is_some() || config.least == Some(range.min);
+    (share > USUAL && !seen_there && (named || outcome.trust >= TRUSTED)).then(|| {
         format!("{share:.0} % of the measured disparities lie at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
     })
 }
