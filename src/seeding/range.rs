@@ -21,6 +21,8 @@ const FEW: usize = 5;
 /// Share of the seeds that is cut off at either end: a repeated pattern has groups of wrong seeds, which support each
 /// other.
 const TAIL: f32 = 0.02;
+/// Smallest number of seeds that is cut off at either end of [`NEEDED`] or more: the smallest group that supports itself.
+const LEAST_TAIL: usize = 2;
 /// Smallest margin at either end, in pixels.
 const LEAST_MARGIN: f32 = 3.0;
 /// Margins beyond the far and the near end of the seeds, as shares of their extent, where the coarse map says nothing.
@@ -153,7 +155,8 @@ fn extent(seeds: &[Seed]) -> Option<[f32; 2]> {
     let mut disparities: Vec<f32> = seeds.iter().map(|seed| seed.disparity).collect();
     disparities.sort_by(f32::total_cmp);
     let last = disparities.len().checked_sub(1)?;
-    let tail = (TAIL * last as f32) as usize;
+    let least = if seeds.len() < NEEDED { 0 } else { LEAST_TAIL };
+    let tail = least.max((TAIL * last as f32) as usize);
     Some([disparities[tail], disparities[last - tail]])
 }
 
@@ -194,6 +197,10 @@ mod tests {
         let [far, near] = extent(&seeds(disparities)).unwrap();
         assert_eq!([far, near], [10.0, 49.0]);
         assert_eq!(extent(&[]), None);
+        // Two of 40 at either end; none of fewer than 20.
+        let pairs = |sound: usize| seeds([-190.0; 2].into_iter().chain([7.0].repeat(sound)).chain([90.0; 2]));
+        assert_eq!(extent(&pairs(36)), Some([7.0; 2]));
+        assert_eq!(extent(&pairs(15)), Some([-190.0, 90.0]));
     }
 
     #[test]
