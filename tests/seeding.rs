@@ -2,6 +2,8 @@
 
 #![cfg(feature = "cli")]
 
+mod texture;
+
 use std::path::Path;
 
 use hsad::{
@@ -13,24 +15,7 @@ use hsad::{
     io::{load, pfm},
     seeding::{RangeEnd, Seeding, SeedingConfig, Verdict},
 };
-
-/// Smooth noise, a pure function of its arguments.
-fn noise(x: f32, y: f32) -> f32 {
-    let lattice = |i: i32, j: i32| {
-        let mixed = (i as u32).wrapping_mul(0x9E37_79B9) ^ (j as u32).wrapping_mul(0x85EB_CA6B);
-        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D);
-        (mixed >> 16 & 0xFF) as f32
-    };
-    let (i, j) = (x.floor(), y.floor());
-    let ease = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (ease(x - i), ease(y - j));
-    let row = |j| lattice(i as i32, j) * (1.0 - u) + lattice(i as i32 + 1, j) * u;
-    row(j as i32) * (1.0 - v) + row(j as i32 + 1) * v
-}
-
-fn texture(x: f32, y: f32) -> f32 {
-    30.0 + 0.45 * noise(x / 7.0, y / 7.0) + 0.3 * noise(x / 17.0 + 50.0, y / 17.0)
-}
+use texture::texture;
 
 /// A pair that shows a wall at disparity `far` with a square in front of it at `near`; the right view's grey values are
 /// mapped by `grey`, and its content lies `lower` px lower.

@@ -1,0 +1,55 @@
+//! Trust in a map, and what follows from too little of it.
+
+use hsad::eval::conditions::Kind;
+
+use crate::{
+    pair::{Pair, changed},
+    scene::{Layer, layered, wall},
+    texture::texture,
+};
+
+#[test]
+fn good_maps_are_trusted() {
+    for scene in ["planes", "curved"] {
+        for preset in ["fast", "balanced"] {
+            let pair = Pair::shipped(scene);
+            let run = pair.matched(&["--preset", preset]).judges(&pair.truth).holds(&pair.truth, 72);
+            if preset == "balanced" {
+                assert!(run.code == 0 && run.trust() >= 0.5, "{scene}: {}", run.told);
+            }
+        }
+    }
+}
+
+/// A bare wall with a poster: most of the map is a guess.
+#[test]
+fn a_plain_wall_is_not_trusted() {
+    let poster = Layer {
+        disparity: 26.0,
+        grey: |x, y| texture(x + 40.0, y),
+        covers: |x, y| (40.0..110.0).contains(&x) && (40.0..120.0).contains(&y),
+    };
+    let picture = Layer {
+        disparity: 40.0,
+        grey: |x, y| texture(x + 500.0, y),
+        covers: |x, y| (220.0..290.0).contains(&x) && (130.0..200.0).contains(&y),
+    };
+    let pair = layered((360, 240), &[poster, picture, wall(20.0, |_, _| 200.0)]);
+    let pair = pair.with(|view, eye| changed(&view, Kind::Noise, 1.5, eye.into()));
+    pair.matched(&[]).judges(&pair.truth);
+}
+
+#[test]
+fn unrelated_pictures_are_not_trusted() {
+    let pair = layered((320, 240), &[wall(12.0, texture)]);
+    let other = layered((320, 240), &[wall(0.0, |x, y| texture(y + 5000.0, x + 3000.0))]);
+    let pair = Pair { right: other.left, ..pair };
+    let words = "the map is not to be trusted (trust 0.";
+    let run = pair.matched(&[]).ends(4, &[words, "the files were written, and --force accepts the result"]);
+    assert!(run.has("disparity.pfm") && run.has("report.json"));
+    assert!(run.report()["not_trusted"].is_string(), "{}", run.report());
+    let quiet = pair.matched(&["-q"]).ends(4, &[words]);
+    assert!(quiet.told.starts_with("error: ") && quiet.told.lines().count() == 1, "{}", quiet.told);
+    let forced = pair.matched(&["--force"]).ends(0, &["warning: ", words]);
+    assert!(forced.has("disparity.pfm"));
+}
