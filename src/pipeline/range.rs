@@ -78,12 +78,7 @@ pub(super) fn widened(
     least: Option<i32>,
     width: u32,
 ) -> Option<DisparityRange> {
-    // Few seeds alone do not tell a surface at an end from noise.
-    let (RangeSource::Found([_, RangeEnd::CoarseMap]) | RangeSource::Found([RangeEnd::CoarseMap | RangeEnd::Zero, _])) =
-        source
-    else {
-        return None;
-    };
+    let RangeSource::Found(_) = source else { return None };
     let more = (range.count / 2).max(16).cast_signed();
     let down = ends[0] > MOST_AT_END && !source.ends_at_zero();
     let up = ends[1] > MOST_AT_END;
@@ -133,14 +128,12 @@ mod tests {
     fn a_range_grows_where_the_map_touches_its_end() {
         let range = DisparityRange::inclusive(10, 49).unwrap();
         let found = |low| RangeSource::Found([low, RangeEnd::CoarseMap]);
-        let seeds = RangeSource::Found([RangeEnd::Seeds; 2]);
         let wider =
             |source, ends, least| widened(range, source, ends, least, 60).map(|range| (range.min, range.last()));
         assert_eq!(wider(found(RangeEnd::Seeds), [0.02, 0.0], None), None);
         assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.0], None), Some((-10, 49)));
         assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(0)), Some((0, 59)));
         assert_eq!(wider(found(RangeEnd::Zero), [0.03, 0.0], None), None);
-        assert_eq!(wider(seeds, [0.5, 0.5], None), None);
         assert_eq!(wider(found(RangeEnd::Seeds), [0.0, 0.5], None), Some((10, 59)), "no further than the width");
         assert_eq!(wider(RangeSource::Asked, [0.5, 0.5], None), None);
     }

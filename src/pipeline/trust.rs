@@ -26,11 +26,11 @@ const CONTRADICTION: f32 = 2.0;
 const SEEDS: (f32, f32) = (0.6, 400.0);
 /// Largest magnitude of half of the disparities of a pair without parallax, in pixels.
 const ZERO: f32 = 0.25;
-/// Largest magnitude of nearly all of them, in pixels, and their smallest share, 0 to 1; maps of noise of 8 grey values that have
-/// a trust of at least 0.5 have a share of 0.945.
+/// Largest magnitude of nearly all disparities of such a pair, in pixels, and their smallest share, 0 to 1. Six pictures with
+/// noise of 4 and 8 grey values have a share of at least 0.945 where trust is at least 0.5.
 const NOISE: (f32, f32) = (1.0, 0.9);
-/// Largest difference of the shares of disparities above and below those of [`NOISE`], 0 to 1; noise has up to 0.026, an object
-/// on a twentieth of the picture 0.04.
+/// Largest difference of the shares of disparities above and below [`NOISE`], 0 to 1: noise has up to 0.026, an object on a
+/// twentieth of the picture 0.04.
 const IMBALANCE: f32 = 0.03;
 
 /// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse

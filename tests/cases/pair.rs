@@ -76,7 +76,8 @@ pub fn transposed<T: Copy>(plane: &Plane<T>) -> Plane<T> {
     Plane::from_fn((plane.height(), plane.width()), |x, y| plane.get(y, x))
 }
 
-/// A picture whose pixel `(x, y)` is the bilinear value of `picture` at `place(x, y)`, with the edge's value beyond the edge.
+/// A picture whose pixel `(x, y)` is the bilinear value of `picture` at `place(x, y)`, with the edge's value beyond the
+/// edge.
 pub fn resampled(picture: &Picture, place: impl Fn(f64, f64) -> (f64, f64)) -> Picture {
     Picture::from_fn(picture.size(), |x, y| {
         let (u, v) = place(f64::from(x), f64::from(y));

@@ -76,8 +76,8 @@ fn exchanged_views_are_told() {
     assert!(run.code != 0 && run.told.contains(words), "exit {}: {}", run.code, run.told);
 }
 
-/// Near objects: the left 200 columns of the left view beside the right 200 of the right view, which lie 140 px further right.
-/// Few points are seen in both.
+/// Near objects: the left 200 columns of the left view beside the right 200 of the right view, which lie 140 px further
+/// right. Few points are seen in both.
 #[test]
 fn disparities_near_the_width_give_no_wrong_advice() {
     let Pair { left, right, truth } = Pair::shipped("planes");
@@ -95,8 +95,11 @@ fn disparities_near_the_width_give_no_wrong_advice() {
 fn a_range_that_cuts_the_scene_is_told() {
     let pair = Pair::shipped("planes");
     for (args, end) in [
-        (["--min-disparity", "0", "--disparities", "40"], " % of the map lies at 39 px, an end of the range"),
-        (["--min-disparity", "24", "--disparities", "48"], " % of the map lies at 24 px, an end of the range"),
+        (
+            ["--min-disparity", "0", "--disparities", "40"],
+            " % of the measured disparities lie at 39 px, an end of the range",
+        ),
+        (["--min-disparity", "24", "--disparities", "48"], " % of the measured disparities lie at 24 px, an end of the range"),
     ] {
         pair.matched(&args).ends(4, &["warning: ", end, "name a wider one"]).judges(&pair.truth);
     }

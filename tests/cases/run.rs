@@ -95,15 +95,15 @@ impl Run {
         eval::score(&self.disparity(), truth, None, &[2.0]).expect("maps of one size").bad[0]
     }
 
-    /// Why trust is on the wrong side of 0.5, if it is: more than 30 % of the disparities are wrong by over 2 px and trusted, or
-    /// fewer than 10 % and not trusted.
+    /// Why trust is on the wrong side of 0.5, if it is: more than 30 % of the disparities are wrong by over 2 px and
+    /// trusted, or fewer than 10 % and not trusted.
     pub fn misjudgement(&self, truth: &Plane<f32>) -> Option<String> {
         let (trust, wrong) = (self.trust(), self.bad(truth).of_estimated);
         let trusted = trust >= f64::from(TRUSTED);
         (trusted && wrong > 0.3 || !trusted && wrong < 0.1).then(|| format!("trust {trust:.2} with {wrong:.3} wrong"))
     }
 
-    /// The run, whose range must hold the truth, but for a part of 0.5 %, and must not be longer than `most` disparities.
+    /// The run, whose range must hold the truth, but for a part of 0.5 %, and have at most `most` disparities.
     #[track_caller]
     pub fn holds(self, truth: &Plane<f32>, most: u32) -> Self {
         let (range, outside) = (self.range(), self.outside(truth));
@@ -136,8 +136,8 @@ impl Run {
         self
     }
 
-    /// The run, whose map must have neither disparity nor confidence nor colour where `seen` is 0, and disparities in 90 % of
-    /// the rest.
+    /// The run, whose map must have neither disparity nor confidence nor colour where `seen` is 0, and disparities in
+    /// 90 % of the rest.
     #[track_caller]
     pub fn leaves_out(self, seen: &Plane<u8>) -> Self {
         let (map, confidence) = (self.disparity(), self.confidence());
