@@ -71,6 +71,7 @@ pub(super) fn at_ends(dense: &Dense, range: DisparityRange) -> [f32; 2] {
 
 /// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end;
 /// within what a `width` of the views in pixels allows.
+/// A range that does not reach below 0 stays so, since neither seeds nor coarse map show a disparity there.
 pub(super) fn widened(
     range: DisparityRange,
     source: RangeSource,
@@ -83,7 +84,8 @@ pub(super) fn widened(
     let down = ends[0] > MOST_AT_END && !source.ends_at_zero();
     let up = ends[1] > MOST_AT_END;
     let most = width.cast_signed() - 1;
-    let min = if down { (range.min - more).max(least.unwrap_or(-most)).max(-most) } else { range.min };
+    let lowest = if range.min < 0 { -most } else { 0 };
+    let min = if down { (range.min - more).max(least.unwrap_or(lowest)).max(lowest) } else { range.min };
     let last = if up { (range.last() + more).min(most) } else { range.last() };
     let wider = DisparityRange::inclusive(min, last).ok()?;
     (wider != range).then_some(wider)
@@ -131,11 +133,14 @@ mod tests {
         let wider =
             |source, ends, least| widened(range, source, ends, least, 60).map(|range| (range.min, range.last()));
         assert_eq!(wider(found(RangeEnd::Seeds), [0.02, 0.0], None), None);
-        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.0], None), Some((-10, 49)));
-        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(0)), Some((0, 59)));
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.0], None), Some((0, 49)));
+        assert_eq!(wider(found(RangeEnd::Seeds), [0.03, 0.5], Some(4)), Some((4, 59)));
         assert_eq!(wider(found(RangeEnd::Zero), [0.03, 0.0], None), None);
         assert_eq!(wider(found(RangeEnd::Seeds), [0.0, 0.5], None), Some((10, 59)), "no further than the width");
         assert_eq!(wider(RangeSource::Asked, [0.5, 0.5], None), None);
+        let negative = DisparityRange::inclusive(-4, 35).unwrap();
+        let wider = widened(negative, found(RangeEnd::Seeds), [0.03, 0.0], None, 60).unwrap();
+        assert_eq!((wider.min, wider.last()), (-24, 35));
     }
 
     #[test]

@@ -109,6 +109,14 @@ pub(super) fn disparity_range(
 ) -> std::result::Result<FoundRange, ThinSupport> {
     let seeds_extent = extent(supported);
     let thin = ThinSupport { seeds, supported: supported.len(), coverage: coarse.coverage() };
+    eprintln!(
+        "COARSE {:.3} {:?} seeds {} {:?} neg {:.3}",
+        coarse.coverage(),
+        coarse.extent(),
+        supported.len(),
+        seeds_extent,
+        coarse.negative()
+    );
     match (coarse.extent(), seeds_extent) {
         (Some(surfaces), extent) if coarse.coverage() >= COVERAGE => {
             let seeds_extent = extent.filter(|_| supported.len() >= NEEDED).unwrap_or(surfaces);
