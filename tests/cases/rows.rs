@@ -47,6 +47,7 @@ fn a_distorted_lens_is_told() {
     };
     let pair = Pair::shipped("planes").with(|view, _| distorted(&view));
     let run = pair.matched(&["--force"]).ends(0, &["warning: rows are off by up to ", "remove the distortion"]);
+    assert!(run.range().min >= 0, "{:?}", run.range());
     assert!(run.report()["rectification"]["unexplained_px"].as_f64().unwrap() > 0.5);
     Pair::shipped("planes").matched(&[]).ends(0, &[]).never_says(&["distort"]);
 }

@@ -79,6 +79,7 @@ fn borders_of_a_rectification_are_found() {
 fn a_round_mask_is_found() {
     let pair = hidden(disc, 0);
     let run = pair.matched(&CALIBRATION).leaves_out(&mask(disc, 0, pair.size()));
+    assert!(run.range().min >= 0, "{:?}", run.range());
     run.holds(&truth_where(&pair, disc), 72).judges(&truth_where(&pair, disc));
 }
 
