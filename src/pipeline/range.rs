@@ -13,6 +13,8 @@ const AT_END: i32 = 3 * SCALE / 2;
 /// Largest share of the map's disparities at an end of a range that holds the scene, 0 to 1. Ten sound scenes have at most
 /// 0.003; a range that cuts 5 % of the truth has at least 0.13.
 const MOST_AT_END: f32 = 0.02;
+/// Smallest share of seeds or surfaces in the range to search, 0 to 1.
+const SEEN: f32 = 0.05;
 
 /// Origin of the disparity range.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +41,10 @@ impl RangeSource {
 pub(super) fn range_to_search(config: &Config, seeding: &Seeding, width: u32) -> Result<(DisparityRange, RangeSource)> {
     Ok(match (config.range, seeding.range) {
         (Some(range), _) => (range, RangeSource::Asked),
-        (None, Ok(found)) => (not_below(&found, config.least)?, RangeSource::Found(found.ends)),
+        (None, Ok(found)) => {
+            let least = config.least.unwrap_or(found.range.min);
+            (not_below(&found, least, share_not_below(seeding, least))?, RangeSource::Found(found.ends))
+        }
         (None, Err(thin)) => {
             let range = DisparityRange::new(config.least.unwrap_or(0), width.div_ceil(4))?;
             (range, RangeSource::Fallback(thin))
@@ -91,12 +96,22 @@ pub(super) fn widened(
     (wider != range).then_some(wider)
 }
 
-/// The part of a found range that lies above `least`.
-fn not_below(found: &FoundRange, least: Option<i32>) -> Result<DisparityRange> {
+/// The share of the seeds, or of the surfaces if that is larger, that is not below `least`, 0 to 1.
+fn share_not_below(seeding: &Seeding, least: i32) -> f32 {
+    let least = least as f32;
+    let seeds = seeding.seeds.iter().filter(|seed| seed.disparity >= least).count();
+    let seeds = seeds as f32 / seeding.seeds.len().max(1) as f32;
+    seeds.max(seeding.coarse.not_below(least))
+}
+
+/// The part of a found range that is not below `least`, which holds `share` of what was seen.
+fn not_below(found: &FoundRange, least: i32, share: f32) -> Result<DisparityRange> {
     let range = found.range;
-    let Some(least) = least.filter(|&least| least > range.min) else { return Ok(range) };
-    // A margin alone above the limit is no range.
-    if least as f32 <= found.seen[1] {
+    if least <= range.min {
+        return Ok(range);
+    }
+    // A margin alone is no range, nor are the wrong surfaces of exchanged views.
+    if share >= SEEN && least <= range.last() {
         return DisparityRange::inclusive(least, range.last());
     }
     Err(Error::NoRange {
@@ -147,12 +162,11 @@ mod tests {
     fn a_found_range_is_cut_at_the_limit() {
         let range = DisparityRange::inclusive(-9, 40).unwrap();
         let found = FoundRange { range, seen: [-5.0, 36.0], ends: [RangeEnd::Seeds, RangeEnd::CoarseMap] };
-        assert_eq!(not_below(&found, None).unwrap(), range);
-        assert_eq!(not_below(&found, Some(-20)).unwrap(), range);
-        assert_eq!(not_below(&found, Some(0)).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
-        let error = not_below(&found, Some(37)).unwrap_err().to_string();
-        assert!(error.contains("-5 to 36 px") && error.contains("exchange"), "{error}");
-        let exchanged = FoundRange { range: DisparityRange::inclusive(-40, 3).unwrap(), seen: [-37.0, -4.0], ..found };
-        assert!(not_below(&exchanged, Some(0)).is_err(), "the margin reaches above 0, the disparities do not");
+        assert_eq!(not_below(&found, -20, 1.0).unwrap(), range);
+        assert_eq!(not_below(&found, 0, 0.9).unwrap(), DisparityRange::inclusive(0, 40).unwrap());
+        for (least, share) in [(41, 0.0), (0, 0.04)] {
+            let error = not_below(&found, least, share).unwrap_err().to_string();
+            assert!(error.contains("-5 to 36 px") && error.contains("exchange"), "{error}");
+        }
     }
 }

@@ -123,6 +123,11 @@ impl CoarseMap {
         self.share(|disparity| disparity < 0.0)
     }
 
+    /// Share of the surfaces with a disparity of at least `least` px of the pair, 0 to 1.
+    pub fn not_below(&self, least: f32) -> f32 {
+        self.share(|disparity| self.factor as f32 * disparity >= least)
+    }
+
     /// Share of the surfaces at an end of the searched disparities, 0 to 1: surfaces may go on beyond that end.
     pub fn at_ends(&self) -> f32 {
         let (min, last) = (self.searched.min as f32, self.searched.last() as f32);
@@ -214,6 +219,7 @@ mod tests {
         assert_eq!(found.extent(), Some([12.0, 12.0]));
         assert_eq!(found.coverage(), 391.0 / 400.0);
         assert_eq!((found.negative(), found.at_ends()), (0.0, 0.0));
+        assert_eq!((found.not_below(12.0), found.not_below(12.1)), (1.0, 0.0));
         let at_end = CoarseMap::of_surfaces(&map, 4, DisparityRange::inclusive(2, 12).unwrap());
         assert_eq!(at_end.at_ends(), 1.0);
         let nothing = CoarseMap::of_surfaces(&Plane::filled((5, 5), NONE), 4, searched);

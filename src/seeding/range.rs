@@ -35,6 +35,8 @@ const SPAN: [f32; 2] = [-0.05, 0.4];
 /// Smallest share of the coarse map that lies on surfaces, 0 to 1. Sound pairs have 0.5 to 1, unrelated views 0.01 to
 /// 0.15; where a bare wall fills most of the picture 0.27 was seen.
 const COVERAGE: f32 = 0.2;
+/// Share of the coarse map on surfaces from which they show the whole scene, 0 to 1.
+const WHOLE: f32 = 0.5;
 /// Largest share of the coarse map's surfaces at an end of the searched disparities, 0 to 1.
 const AT_ENDS: f32 = 0.01;
 /// Smallest share of the coarse map's surfaces that are evidence of disparities below 0, 0 to 1.
@@ -109,18 +111,10 @@ pub(super) fn disparity_range(
 ) -> std::result::Result<FoundRange, ThinSupport> {
     let seeds_extent = extent(supported);
     let thin = ThinSupport { seeds, supported: supported.len(), coverage: coarse.coverage() };
-    eprintln!(
-        "COARSE {:.3} {:?} seeds {} {:?} neg {:.3}",
-        coarse.coverage(),
-        coarse.extent(),
-        supported.len(),
-        seeds_extent,
-        coarse.negative()
-    );
     match (coarse.extent(), seeds_extent) {
         (Some(surfaces), extent) if coarse.coverage() >= COVERAGE => {
             let seeds_extent = extent.filter(|_| supported.len() >= NEEDED).unwrap_or(surfaces);
-            joined(surfaces, seeds_extent, coarse.error(), coarse.negative()).map_err(|_| thin)
+            joined(surfaces, seeds_extent, coarse.error(), coarse.negative(), coarse.coverage()).map_err(|_| thin)
         }
         (_, Some([far, near])) if supported.len() >= FEW => {
             let least = if supported.len() < NEEDED { ALONE * width as f32 } else { LEAST_MARGIN };
@@ -168,15 +162,18 @@ fn extent(seeds: &[Seed]) -> Option<[f32; 2]> {
     Some([disparities[tail], disparities[last - tail]])
 }
 
-/// The range of surfaces and seeds, with margins of `error` px; `negative` is the share of surfaces below 0.
-fn joined(surfaces: [f32; 2], seeds: [f32; 2], error: f32, negative: f32) -> Result<FoundRange> {
+/// The range of surfaces and seeds, with margins of `error` px; `negative` is the share of surfaces below 0, `coverage` that of
+/// the view on surfaces.
+fn joined(surfaces: [f32; 2], seeds: [f32; 2], error: f32, negative: f32, coverage: f32) -> Result<FoundRange> {
     let margin = error.max(LEAST_MARGIN);
     let mut seen = [surfaces[0].min(seeds[0]), surfaces[1].max(seeds[1])];
     let origin = |of_surface: bool| if of_surface { RangeEnd::CoarseMap } else { RangeEnd::Seeds };
     let mut ends = [origin(surfaces[0] <= seeds[0]), origin(surfaces[1] >= seeds[1])];
     let mut far = seen[0] - margin;
     // Disparities below 0 are rare: cameras that look at one point, or views exchanged. Without evidence none is searched.
-    if far < 0.0 && seeds[0] > -0.5 && negative < NEGATIVE && seen[1] >= 0.0 {
+    // A background that bears no surface, such as tiles, can lie as far as 0.
+    let reaches_zero = far < 0.0 || coverage < WHOLE;
+    if reaches_zero && seeds[0] > -0.5 && negative < NEGATIVE && seen[1] >= 0.0 {
         far = 0.0;
         seen[0] = seen[0].max(0.0);
         ends[0] = RangeEnd::Zero;
@@ -214,18 +211,21 @@ mod tests {
     #[test]
     fn surfaces_and_seeds_together_by_hand() {
         // Surfaces from 12 to 60 px, seeds from 20 to 62.5; a margin of 6 px on both sides.
-        let found = joined([12.0, 60.0], [20.0, 62.5], 6.0, 0.0).unwrap();
+        let found = joined([12.0, 60.0], [20.0, 62.5], 6.0, 0.0, 0.9).unwrap();
         assert_eq!((found.range.min, found.range.last()), (6, 69));
         assert_eq!((found.seen, found.ends), ([12.0, 62.5], [RangeEnd::CoarseMap, RangeEnd::Seeds]));
         // A margin of at least 3 px.
-        let exact = joined([12.0, 60.0], [12.0, 60.0], 1.5, 0.0).unwrap();
+        let exact = joined([12.0, 60.0], [12.0, 60.0], 1.5, 0.0, 0.9).unwrap();
         assert_eq!((exact.range.min, exact.range.last()), (9, 63));
+        // Most of the view bears no surface.
+        let partial = joined([12.0, 60.0], [12.0, 60.0], 1.5, 0.0, 0.49).unwrap();
+        assert_eq!((partial.range.min, partial.range.last(), partial.ends[0]), (0, 63, RangeEnd::Zero));
     }
 
     #[test]
     fn disparities_below_zero_need_evidence() {
         let range = |surfaces, seeds, negative| {
-            let found = joined(surfaces, seeds, 6.0, negative).unwrap();
+            let found = joined(surfaces, seeds, 6.0, negative, 0.9).unwrap();
             (found.range.min, found.ends[0])
         };
         assert_eq!(range([2.0, 60.0], [1.0, 60.0], 0.0), (0, RangeEnd::Zero));

@@ -72,8 +72,7 @@ fn exchanged_views_are_told() {
     let words = "if left and right are mixed up, exchange them";
     let run = pair.matched(&[]).ends(0, &["warning: ", words]);
     run.holds(&pair.truth, 90).judges(&pair.truth).errs_below(0.1, &pair.truth);
-    let run = pair.matched(&["--min-disparity", "0"]);
-    assert!(run.code != 0 && run.told.contains(words), "exit {}: {}", run.code, run.told);
+    pair.matched(&["--min-disparity", "0"]).ends(1, &["error: the disparity range could not be found", words]);
 }
 
 /// Near objects: the left 200 columns of the left view beside the right 200 of the right view, which lie 140 px further
