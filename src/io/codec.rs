@@ -3,30 +3,18 @@
 use std::{io::Cursor, path::Path};
 
 use ::image::{
-    ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits,
-    Rgb32FImage, Rgba32FImage, metadata::Orientation,
+    ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageFormat, ImageReader, Limits, metadata::Orientation,
 };
 
-use super::{MAX_PIXELS, check_pixels, jpeg, malformed, pfm, read_whole, tiff};
-use crate::{
-    error::{Error, Result},
-    image::Size,
+use super::{
+    MAX_PIXELS, check_pixels,
+    decoded::{Decoded, MAX_BYTES_PER_PIXEL, explain, float_image, most_bytes, unsupported},
+    jpeg, malformed, pfm, read_whole, tiff,
 };
-
-/// Bytes per pixel of the largest accepted layout, RGBA of 32 bits.
-const MAX_BYTES_PER_PIXEL: u64 = 16;
-
-/// Memory that a codec may need besides the pixels and the file, in bytes.
-const CODEC_BYTES: u64 = 1 << 22;
+use crate::error::Result;
 
 /// First bytes of a BigTIFF, little and big endian, which the `image` crate decodes but does not recognise.
 const BIG_TIFF: [&[u8]; 2] = [b"II+\0", b"MM\0+"];
-
-/// A decoded file: its samples, rotated upright, and the rotation.
-pub(super) struct Decoded {
-    pub image: DynamicImage,
-    pub orientation: Orientation,
-}
 
 /// Reads the bytes of a picture file, up to the length of the largest uncompressed picture.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
@@ -88,30 +76,6 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
     Ok(Decoded { image, orientation })
 }
 
-/// Memory that decoding may take, in bytes: whatever else the header claims, no more is needed than for the pixels and
-/// the file itself.
-pub(super) fn most_bytes((width, height): (u32, u32), bytes: &[u8]) -> u64 {
-    MAX_BYTES_PER_PIXEL * u64::from(width) * u64::from(height) + bytes.len() as u64 + CODEC_BYTES
-}
-
-/// A picture of 32-bit floats from samples of 1 (grey), 2 (grey and alpha), 3 (RGB) or 4 (RGBA) `channels`.
-///
-/// # Panics
-/// For samples of another number than `size` needs, or another number of channels.
-pub(super) fn float_image(size: impl Into<Size>, channels: usize, samples: Vec<f32>) -> DynamicImage {
-    let Size { width, height } = size.into();
-    let samples: Vec<f32> = match channels {
-        1 => samples.into_iter().flat_map(|grey| [grey; 3]).collect(),
-        2 => samples.as_chunks().0.iter().flat_map(|&[grey, alpha]| [grey, grey, grey, alpha]).collect(),
-        _ => samples,
-    };
-    let image = match channels {
-        1 | 3 => Rgb32FImage::from_raw(width, height, samples).map(DynamicImage::ImageRgb32F),
-        _ => Rgba32FImage::from_raw(width, height, samples).map(DynamicImage::ImageRgba32F),
-    };
-    image.expect("one to four samples per pixel")
-}
-
 /// Name of a colour type.
 pub(super) fn describe(color: ColorType) -> &'static str {
     match color {
@@ -125,22 +89,4 @@ pub(super) fn describe(color: ColorType) -> &'static str {
         ColorType::Rgba16 => "16-bit RGBA",
         _ => "floating-point values",
     }
-}
-
-pub(super) fn unsupported(what: &str, path: &Path) -> Error {
-    malformed(path, format!("a picture of {what}: convert it to grey or RGB of 8 or 16 bits, for example a PNG"))
-}
-
-pub(super) fn explain(error: ImageError, path: &Path) -> Error {
-    malformed(
-        path,
-        match error {
-            ImageError::IoError(_) => "the picture is cut off: copy or export it again".into(),
-            ImageError::Limits(_) => {
-                format!("the picture needs more memory than {MAX_PIXELS} pixels do: scale it down")
-            }
-            ImageError::Unsupported(what) => format!("{what}: convert the picture to PNG"),
-            damage => format!("the picture is damaged ({damage}): copy or export it again"),
-        },
-    )
 }

@@ -15,6 +15,8 @@ pub mod calibration;
 mod codec;
 pub mod color;
 pub mod csv;
+#[cfg(feature = "pictures")]
+mod decoded;
 #[cfg(feature = "files")]
 pub mod disparities;
 #[cfg(feature = "files")]

@@ -2,7 +2,7 @@
 
 use ::image::{DynamicImage, metadata::Orientation};
 
-use super::{Picture, codec::Decoded};
+use super::{Picture, decoded::Decoded};
 use crate::image::Size;
 
 /// The kind of a file's samples.

@@ -13,7 +13,7 @@ use ::tiff::{
 
 use super::{
     MAX_PIXELS, check_pixels,
-    codec::{Decoded, float_image, most_bytes},
+    decoded::{Decoded, float_image, most_bytes},
     malformed,
 };
 use crate::error::{Error, Result};

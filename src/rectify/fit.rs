@@ -1,16 +1,15 @@
 //! The row model that corresponding points show.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 
 use super::{
     RowKind, RowModel,
     curve::{Curve, MOST, Point},
+    frame::{AGREEMENT, Correspondence, Frame},
     lens,
 };
 use crate::image::Size;
 
-/// Largest row error of an inlier, in pixels: features are located to about half a pixel.
-pub(crate) const AGREEMENT: f64 = 1.5;
 /// Number of points on which candidate models are tested, the first ones.
 const TRIED: usize = 1000;
 /// Number of candidate models.
@@ -20,13 +19,6 @@ const AREA: f64 = 1e-3;
 /// A model with smaller row differences anywhere in the picture counts as 'as is', in pixels: rows of real pairs are found
 /// to 0.05 to 0.2 px.
 const NEGLIGIBLE: f64 = 1.0 / 16.0;
-
-/// Corresponding points of both views, in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Correspondence {
-    pub left: DVec2,
-    pub right: DVec2,
-}
 
 /// A row model fitted to correspondences.
 #[derive(Clone, Debug)]
@@ -85,36 +77,6 @@ impl RowFit {
     }
 }
 
-/// Pixels of a picture, and units of half its larger side from its centre.
-pub(super) struct Frame {
-    size: Size,
-    centre: DVec2,
-    /// Pixels per unit.
-    pub unit: f64,
-}
-
-impl Frame {
-    fn new(size: Size) -> Self {
-        let centre = DVec2::new(f64::from(size.width) - 1.0, f64::from(size.height) - 1.0) / 2.0;
-        Self { size, centre, unit: f64::from(size.width.max(size.height)) / 2.0 }
-    }
-
-    fn point(&self, point: &Correspondence) -> Point {
-        let normed = |place: DVec2| (place - self.centre) / self.unit;
-        Point { left: normed(point.left), right: normed(point.right) }
-    }
-
-    /// The curve without its distortion.
-    fn model(&self, &Curve([p2, p0, p1, p3, p4, _]): &Curve) -> RowModel {
-        RowModel::new(self.size, [p0, p1, self.unit * p2, p3 / self.unit, p4 / self.unit])
-    }
-
-    /// Half of width and height, in units.
-    pub fn half(&self) -> DVec2 {
-        self.centre / self.unit
-    }
-}
-
 /// A curve per kind that the points determine, the projective one refined from the affine one; `None` if they do not
 /// determine an affine one.
 fn candidates(points: &[Point], unit: f64) -> Option<Vec<(RowKind, Curve)>> {
@@ -162,6 +124,8 @@ fn through(points: [Point; 3]) -> Option<Curve> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
 
     const SIZE: Size = Size::new(641, 481);

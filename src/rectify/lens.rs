@@ -2,7 +2,7 @@
 
 use super::{
     curve::{Curve, Point},
-    fit::{AGREEMENT, Frame},
+    frame::{AGREEMENT, Frame},
 };
 
 /// Smallest and largest distortion that lenses have and matches tell, `k1` in `x_d = x_u (1 + k1 r^2)` with `r` in units

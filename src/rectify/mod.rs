@@ -8,6 +8,7 @@
 mod catmull_rom;
 mod curve;
 pub(crate) mod fit;
+mod frame;
 pub(crate) mod kernels;
 mod lens;
 mod map;
@@ -16,6 +17,7 @@ mod warp;
 
 pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
+pub(crate) use frame::Correspondence;
 pub use map::WarpMap;
 pub(crate) use map::{NONE, SPACING_BITS};
 pub use rows::{RowKind, RowModel};

@@ -6,6 +6,7 @@
 mod brightness;
 mod coarse;
 mod enlarged;
+mod evidence;
 mod range;
 mod rectification;
 mod support;

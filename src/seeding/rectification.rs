@@ -2,28 +2,21 @@
 
 use glam::DVec2;
 
-use super::{Verdict, brightness::median, vertical::vertical};
+use super::{
+    Verdict,
+    brightness::median,
+    evidence::{TURN, is_enough, is_majority, is_of_one_scale, is_small},
+    vertical::vertical,
+};
 use crate::{
     image::Size,
     matching::Seed,
-    rectify::{
-        RowKind, RowModel,
-        fit::{Correspondence, RowFit},
-    },
+    rectify::{Correspondence, RowKind, RowModel, fit::RowFit},
 };
 
-/// Smallest number of inliers, and their smallest share of all seeds. By chance about one seed in a hundred is an
-/// inlier.
-pub(super) const NEEDED: (usize, f64) = (15, 0.2);
 /// Smallest share of the inliers of a fit that agree with the rows as they are, for these to be preferred where most seeds
 /// contradict the fit.
 const AS_MANY: f64 = 0.9;
-/// Largest rotation that a warp of rows alone removes, in degrees: it shears disparities by 9 % of the height.
-const TURN: f32 = 5.0;
-/// Largest vertical scale that a warp of rows alone removes, and its inverse: windows of 11 columns differ by a column.
-const SCALE: f32 = 1.1;
-/// Largest row difference that a warp of rows alone removes, as a share of the height: so much of the picture may be lost.
-const ROWS: f64 = 0.1;
 
 /// How the rows of the two views correspond.
 ///
@@ -156,14 +149,6 @@ fn correspondence(seed: &Seed) -> Correspondence {
     Correspondence { left: place(seed.x, seed.y), right: place(seed.right_x(), seed.right_y()) }
 }
 
-fn is_enough(agreeing: usize, seeds: usize) -> bool {
-    agreeing >= NEEDED.0 && agreeing as f64 >= NEEDED.1 * seeds as f64
-}
-
-pub(super) fn is_majority(agreeing: usize, seeds: usize) -> bool {
-    agreeing >= NEEDED.0 && 2 * agreeing >= seeds
-}
-
 /// The fit, or the rows as they are if most points contradict the fit and nearly as many agree with the rows as they are:
 /// few points do not justify a warp.
 fn preferred(fit: RowFit, points: &[Correspondence]) -> RowFit {
@@ -172,16 +157,6 @@ fn preferred(fit: RowFit, points: &[Correspondence]) -> RowFit {
     }
     let as_is = RowFit::of(RowModel::AS_IS, points);
     if as_is.agreeing() as f64 >= AS_MANY * fit.agreeing() as f64 { as_is } else { fit }
-}
-
-/// Whether a warp by rows alone mends the rows.
-pub(super) fn is_small(model: &RowModel, size: Size) -> bool {
-    let turned = model.rotation().abs() > TURN.into();
-    !turned && is_of_one_scale(model) && model.largest(size) <= ROWS * f64::from(size.height)
-}
-
-fn is_of_one_scale(model: &RowModel) -> bool {
-    (1.0 / SCALE..=SCALE).contains(&(model.scale() as f32))
 }
 
 #[cfg(test)]

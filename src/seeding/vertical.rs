@@ -2,10 +2,10 @@
 
 use glam::Vec2Swizzles;
 
-use super::rectification::{NEEDED, is_majority, is_small};
+use super::evidence::{NEEDED, is_majority, is_small};
 use crate::{
     image::Size,
-    rectify::fit::{Correspondence, RowFit},
+    rectify::{Correspondence, fit::RowFit},
 };
 
 /// Smallest share of the seeds that agree on columns and not on rows, for cameras above each other: the surfaces in front of
