@@ -22,6 +22,8 @@ const FULL_BY_SUPPORT: f32 = 0.71;
 const FULL_BY_MARGIN: f32 = 0.52;
 /// Weight of the pixels that contradict the coarse map.
 const CONTRADICTION: f32 = 2.0;
+/// Share of the coarse map on surfaces from which it confirms what it does not contradict, 0 to 1.
+const COVERED: f32 = 0.5;
 /// Part of the evidence that does not depend on the number of seeds, and number of seeds at which half of the rest is there.
 const SEEDS: (f32, f32) = (0.6, 400.0);
 /// Largest magnitude of half of the disparities of a pair without parallax, in pixels.
@@ -29,12 +31,15 @@ const ZERO: f32 = 0.25;
 /// Largest magnitude of nearly all disparities of such a pair, in pixels, and their smallest share, 0 to 1. Six pictures with
 /// noise of 4 and 8 grey values have a share of at least 0.945 where trust is at least 0.5.
 const NOISE: (f32, f32) = (1.0, 0.9);
+/// An object before a background at infinity: smallest magnitude of its disparities in pixels, their smallest confidence, and
+/// largest share of such pixels without an object, 0 to 1.
+const FAR: (f32, u8, f32) = (2.0, 128, 0.002);
 /// Largest difference of the shares of disparities above and below [`NOISE`], 0 to 1: noise has up to 0.026, an object on a
 /// twentieth of the picture 0.04.
 const IMBALANCE: f32 = 0.03;
 
-/// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse
-/// map, and for few seeds.
+/// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse map, for a coarse map
+/// that shows little, and for few seeds.
 pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let around = seeding.coarse.around();
     let (mut known, mut sure, mut contradicted) = (0u64, 0u64, 0u64);
@@ -50,7 +55,8 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let share = |count: u64| count as f32 / known as f32;
     let seeds = seeding.seeds.len() as f32;
     let by_seeds = SEEDS.0 + (1.0 - SEEDS.0) * seeds / (seeds + SEEDS.1);
-    let evidence = share(sure) / 255.0 * (1.0 - CONTRADICTION * share(contradicted)).max(0.0) * by_seeds;
+    let covered = (seeding.coarse.coverage() / COVERED).min(1.0);
+    let evidence = share(sure) / 255.0 * (1.0 - CONTRADICTION * share(contradicted)).max(0.0) * by_seeds * covered;
     let full = match &config.method {
         Method::Hsad(parameters) if parameters.refinement.is_none() => FULL_BY_MARGIN,
         Method::Hsad(_) | Method::Kamencay(_) => FULL_BY_SUPPORT,
@@ -69,7 +75,14 @@ pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
     };
     let within = |magnitude: f32| share(&|disparity| disparity.abs() <= magnitude);
     let (above, below) = (share(&|disparity| disparity > NOISE.0), share(&|disparity| disparity < -NOISE.0));
-    within(ZERO) >= 0.5 && within(NOISE.0) >= NOISE.1 && (above - below).abs() <= IMBALANCE
+    // Noise leaves no sure disparity far from 0.
+    let sure = known_pixels(dense)
+        .filter(|&((x, y), disparity)| disparity.abs() > FAR.0 && dense.confidence.get(x, y) >= FAR.1)
+        .count();
+    sure as f32 <= FAR.2 * measured.len() as f32
+        && within(ZERO) >= 0.5
+        && within(NOISE.0) >= NOISE.1
+        && (above - below).abs() <= IMBALANCE
 }
 
 /// The map with confidence 0 where a disparity lies at an end of `range`, beyond which it may go on.
@@ -160,14 +173,22 @@ mod tests {
 
     #[test]
     fn trust_by_hand() {
-        // Views without content: no seeds, no surfaces that contradict.
-        let grey = Luma::filled((40, 10), 90);
-        let seeding = Seeding::find((&grey, &grey), (&[], &[]), &SeedingConfig::default()).unwrap();
+        // No seeds; surfaces of disparity 0 in most of the view.
+        let texture = |x: u32, y: u32| (x.wrapping_mul(0x9E37_79B9) ^ y.wrapping_mul(0x85EB_CA6B)).rotate_left(9) >> 24;
+        let view = Luma::from_fn((80, 40), |x, y| texture(x / 2, y / 2) as u8);
+        let seeding = Seeding::find((&view, &view), (&[], &[]), &SeedingConfig::default()).unwrap();
+        assert!(seeding.coarse.coverage() > COVERED, "{}", seeding.coarse.coverage());
+        let flat = |confidence: u8| Dense { disparity: Plane::filled((40, 10), 0), ..map(confidence) };
         let config = Preset::Balanced.config();
         let expected = 102.0 / 255.0 * 0.6 / 0.71;
-        assert!((trust(&map(102), &config, &seeding) - expected).abs() < 1e-6);
-        let by_margin = trust(&map(102), &Preset::Fast.config(), &seeding);
+        assert!((trust(&flat(102), &config, &seeding) - expected).abs() < 1e-6);
+        let by_margin = trust(&flat(102), &Preset::Fast.config(), &seeding);
         assert!((by_margin - expected * 0.71 / 0.52).abs() < 1e-6);
+        // What the surfaces contradict, and views without content, are not trusted.
+        assert_eq!(trust(&map(255), &config, &seeding), 0.0);
+        let grey = Luma::filled((40, 10), 90);
+        let empty = Seeding::find((&grey, &grey), (&[], &[]), &SeedingConfig::default()).unwrap();
+        assert_eq!(trust(&flat(255), &config, &empty), 0.0);
         let nothing = Dense { disparity: map(0).disparity.map(|_| NONE), ..map(0) };
         assert_eq!(trust(&nothing, &config, &seeding), 0.0);
     }

@@ -7,7 +7,7 @@ use super::{
 
 /// Smallest and largest distortion that lenses have and matches tell, `k1` in `x_d = x_u (1 + k1 r^2)` with `r` in units
 /// of the mean of width and height.
-const DISTORTION: [f64; 2] = [-0.4, 0.2];
+const DISTORTION: [f64; 2] = [-1.0, 0.5];
 /// Number of points per side of the grid on which models are compared.
 const GRID: u32 = 9;
 /// Share of the inliers' disparities left out at either end.

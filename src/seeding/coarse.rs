@@ -54,6 +54,8 @@ pub struct CoarseMap {
     map: DisparityMap,
     /// The disparities on surfaces, sorted, in pixels of the downscaled pair.
     disparities: Vec<f32>,
+    /// Number of pixels of the downscaled view that show the scene.
+    seen: usize,
     /// Searched disparities, in pixels of the downscaled pair.
     searched: DisparityRange,
 }
@@ -82,7 +84,8 @@ impl CoarseMap {
             let counts = confidence.get(x, y) >= SURE && seen.as_ref().is_none_or(|mask| mask.get(x, y) != 0);
             if counts { disparity.get(x, y) } else { NONE }
         });
-        Ok(Self::of_surfaces(&sure, factor, searched))
+        let seen = seen.map_or(sure.data().len(), |mask| mask.data().iter().filter(|&&value| value != 0).count());
+        Ok(Self { seen, ..Self::of_surfaces(&sure, factor, searched) })
     }
 
     fn of_surfaces(sure: &DisparityMap, factor: u32, searched: DisparityRange) -> Self {
@@ -93,7 +96,8 @@ impl CoarseMap {
         let on_surfaces = map.data().iter().filter(|&&disparity| disparity != NONE);
         let mut disparities: Vec<f32> = on_surfaces.map(|&disparity| disparity as f32 / SCALE as f32).collect();
         disparities.sort_by(f32::total_cmp);
-        Self { factor, map, disparities, searched }
+        let seen = map.data().len();
+        Self { factor, map, disparities, seen, searched }
     }
 
     /// The map of views enlarged by `factor`.
@@ -101,9 +105,9 @@ impl CoarseMap {
         Self { factor: factor * self.factor, ..self }
     }
 
-    /// Share of the downscaled left view that lies on a surface, 0 to 1.
+    /// Share of what the downscaled left view shows that lies on a surface, 0 to 1.
     pub fn coverage(&self) -> f32 {
-        self.disparities.len() as f32 / self.map.data().len() as f32
+        self.disparities.len() as f32 / self.seen.max(1) as f32
     }
 
     /// Smallest and largest disparity of the surfaces, without the tails, in pixels of the pair; `None` without surfaces.

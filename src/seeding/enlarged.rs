@@ -1,6 +1,6 @@
 //! Conversion of results from reduced views to pixels of the full-size views.
 
-use super::{FoundRange, Rectification, Seeding};
+use super::{FoundRange, RangeEnd, Rectification, Seeding};
 use crate::{disparity::DisparityRange, features::Feature, matching::Seed};
 
 /// Coordinate in the full-size picture of a coordinate in the picture reduced by `factor`: the centre of a block.
@@ -21,6 +21,11 @@ pub(super) fn enlarged_range(range: DisparityRange, factor: u32) -> DisparityRan
     let end = |disparity: i32, more: i32| disparity.saturating_mul(factor).saturating_add(more).clamp(-limit, limit);
     let (min, last) = (end(range.min, 1 - factor), end(range.last(), factor - 1));
     DisparityRange { min, count: (last - min) as u32 + 1 }
+}
+
+/// The part of a range from 0 upwards.
+fn from_zero(range: DisparityRange) -> DisparityRange {
+    DisparityRange { min: 0, count: (range.last() + 1).max(1).cast_unsigned() }
 }
 
 impl Rectification {
@@ -56,7 +61,10 @@ impl Seeding {
         };
         Self {
             range: self.range.map(|found| FoundRange {
-                range: enlarged_range(found.range, factor),
+                range: match found.ends[0] {
+                    RangeEnd::Zero => from_zero(enlarged_range(found.range, factor)),
+                    RangeEnd::Seeds | RangeEnd::CoarseMap => enlarged_range(found.range, factor),
+                },
                 seen: found.seen.map(|disparity| scale * disparity),
                 ..found
             }),
@@ -78,6 +86,7 @@ mod tests {
         // With blocks of three pixels, -2 stands for -8 to -4, and 5 for 13 to 17.
         assert_eq!(enlarged_range(range, 3), DisparityRange::inclusive(-8, 17).unwrap());
         assert_eq!(enlarged_range(range, 1), range);
+        assert_eq!(from_zero(enlarged_range(DisparityRange::inclusive(0, 5).unwrap(), 3)).min, 0);
     }
 
     #[test]

@@ -119,8 +119,10 @@ pub(super) fn disparity_range(
         (_, Some([far, near])) if supported.len() >= FEW => {
             let least = if supported.len() < NEEDED { ALONE * width as f32 } else { LEAST_MARGIN };
             let [before, beyond] = SEED_MARGINS.map(|share| (share * (near - far)).max(least));
-            range([far - before, near + beyond])
-                .map(|range| FoundRange { range, seen: [far, near], ends: [RangeEnd::Seeds; 2] })
+            // A background without surfaces can lie as far as 0.
+            let (least, end) = if far > 0.0 { (0.0, RangeEnd::Zero) } else { (far - before, RangeEnd::Seeds) };
+            range([least, near + beyond])
+                .map(|range| FoundRange { range, seen: [far, near], ends: [end, RangeEnd::Seeds] })
                 .map_err(|_| thin)
         }
         _ => Err(thin),
