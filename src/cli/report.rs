@@ -41,6 +41,7 @@ impl CompletedJob {
                 "gain": f64::from(outcome.brightness.gain) / 256.0,
                 "offset": f64::from(outcome.brightness.offset) / 256.0,
             },
+            "unseen": unseen(&outcome.masks),
             "trust": number(outcome.trust),
             "no_parallax": outcome.no_parallax,
             "not_trusted": not_trusted.as_ref().map(|doubt| &doubt.reason),
@@ -211,6 +212,16 @@ pub fn searched(Outcome { range, range_source, at_ends: [at_min, at_max], .. }: 
     value["at_min"] = number(*at_min);
     value["at_max"] = number(*at_max);
     value
+}
+
+/// The shares of both views that do not show the scene: transparent, masked, without data, or a constant border.
+fn unseen(masks: &[Option<Plane<u8>>; 2]) -> Value {
+    let [left, right] = masks.each_ref().map(|mask| {
+        mask.as_ref().map_or(0.0, |mask| {
+            mask.data().iter().filter(|&&value| value == 0).count() as f64 / mask.data().len() as f64
+        })
+    });
+    json!({ "left": left, "right": right })
 }
 
 /// The verdict; figures of a fit only where most matches agree with the fit.
