@@ -5,6 +5,7 @@ use hsad::{
     config::{Config, Method},
     dense::{Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search},
     disparity::{DisparityRange, SCALE, coverage},
+    image::Plane,
     io::{Calibration, load::Stretch},
     kamencay::KamencayParameters,
     pipeline::{Outcome, RangeSource},
