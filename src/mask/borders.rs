@@ -7,7 +7,9 @@ use crate::image::{Luma, Size};
 const TOLERANCE: u8 = 8;
 /// Smallest share of neighbours in a border that are equal, in per cent. Borders stored as JPEG have 53 to 96; the noise of a
 /// sensor leaves 30 or less.
-const EQUAL: usize = 45;
+const EQUAL: usize = 50;
+/// Largest grey value that is black, and smallest share of a black border's pixels that are, in per cent.
+const BLACK: (u8, usize) = (4, 80);
 /// Smallest area of a border, in pixels, and the share of the picture's pixels that it is at least, as a divisor.
 const AREA: (usize, usize) = (64, 500);
 /// Smallest share of a side of the picture along which a border without a corner lies, as a divisor: a black object in
@@ -72,7 +74,8 @@ fn is_border(luma: &Luma, area: &[(u32, u32)]) -> bool {
         area.iter().filter(|&&(x, y)| on(x, y)).count() >= (side / CONTACT) as usize
     };
     let corner = area.iter().any(|&(x, y)| (x == 0 || x == width - 1) && (y == 0 || y == height - 1));
-    let is_black = luma.get(area[0].0, area[0].1) <= TOLERANCE;
+    let black = area.iter().filter(|&&(x, y)| luma.get(x, y) <= BLACK.0).count();
+    let is_black = 100 * black >= BLACK.1 * area.len();
     is_constant(luma, area)
         && (is_black || is_bar(area, luma.size()))
         && (corner
@@ -162,6 +165,7 @@ mod tests {
         assert_eq!(unseen(&picture(0, |x, y| (30..80).contains(&x) && (20..70).contains(&y))), 0, "a black object");
         assert_eq!(unseen(&picture(0, |x, y| (30..60).contains(&x) && y > 60)), 0, "a black object at the edge");
         assert_eq!(unseen(&picture(0, |x, y| x < 5 && y < 5)), 0, "a dark corner");
+        assert_eq!(unseen(&picture(7, |x, y| x + 2 * y < 60)), 0, "a dark object");
         assert_eq!(unseen(&picture(255, |x, y| y < 20 + x / 4)), 0, "an overexposed sky");
         assert_eq!(unseen(&Luma::filled((120, 90), 0)), 0, "a lens cap");
         // Blocks of a JPEG whose grey values differ, with ringing in one of four pixels.
