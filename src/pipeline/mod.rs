@@ -43,7 +43,7 @@ pub enum Step {
     Luma,
     /// Detection and description of interest points.
     Features,
-    /// Matching of interest points; disparity range, rectification and brightness from the matches.
+    /// Matching of interest points, alignment of rows, brightness, coarse map and disparity range.
     Seeding,
     /// Dense matching, or Kamencay's method.
     Dense,
@@ -57,7 +57,7 @@ pub struct Outcome {
     /// Interest points of the left and of the right view. Points with orientations, against
     /// [`FeatureConfig::upright`], if upright points left rectification unknown and points with orientations did not.
     pub features: [Vec<Feature>; 2],
-    /// Seeds, disparity range, rectification, brightness relation and trust, from the matches of the interest points.
+    /// Seeds, coarse map, disparity range, rectification, brightness relation and agreement.
     pub seeding: Seeding,
     /// Searched disparity range, without the disparities that the width of the picture rules out.
     pub range: DisparityRange,

@@ -117,22 +117,26 @@ impl<'b> Views<'b> {
 
     /// A map of the `reference` view without what the views do not show.
     pub fn seen(&self, dense: Dense, reference: View) -> Dense {
-        let [left, right] = self.masks.each_ref().map(Option::as_ref);
-        let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
+        let [own, other] = self.own_and_other(reference);
         mask::without_unseen(dense, reference, own, other)
     }
 
     /// A map of the `reference` view without what it does not show, and without confidence where the other view does not
     /// show the partner.
     pub fn confirmed(&self, dense: Dense, reference: View) -> Dense {
-        let [left, right] = self.masks.each_ref().map(Option::as_ref);
-        let (own, other) = if reference == View::Left { (left, right) } else { (right, left) };
+        let [own, other] = self.own_and_other(reference);
         let dense = mask::without_unseen(dense, reference, own, None);
         let beyond = self.within.as_ref().filter(|_| reference == View::Left);
         [other, beyond]
             .into_iter()
             .flatten()
             .fold(dense, |dense, mask| mask::unconfirmed_beyond(dense, reference, mask))
+    }
+
+    /// The masks of the `reference` view and of the other one.
+    fn own_and_other(&self, reference: View) -> [Option<&Mask>; 2] {
+        let [left, right] = self.masks.each_ref().map(Option::as_ref);
+        if reference == View::Left { [left, right] } else { [right, left] }
     }
 
     /// Width and height of both views, in pixels.

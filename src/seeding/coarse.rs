@@ -61,8 +61,8 @@ pub struct CoarseMap {
 }
 
 impl CoarseMap {
-    /// Matches a pair of one size, as far as the left view is `seen`, over the disparities `span`, in pixels of the pair, with a change of the right view's
-    /// brightness.
+    /// Matches a pair of one size, as far as the left view is `seen`, over the disparities `span`, in pixels of the pair,
+    /// with a change of the right view's brightness.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] if the span lies beyond the width of the pair.
