@@ -22,15 +22,23 @@ pub(super) struct Point {
 }
 
 /// The left row of a right pixel, `y (1 + k r^2) = (p0 X + p1 Y + p2) / (1 + p3 X + p4 Y)` with right coordinates
-/// `(X, Y) = (x, y) (1 + k r^2)`: both views are taken through the same lens with a radial distortion. Without
+/// `(X, Y) = (x, y) (1 + k r^2)`: the views are taken through a lens with a radial distortion, both of them or one. Without
 /// distortion, `k = 0`, it is a [`super::RowModel`].
-///
-/// The parameters are `p2, p0, p1, p3, p4, k`: a simpler model frees fewer of them, from the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Curve(pub [f64; MOST]);
+pub(super) struct Curve {
+    /// `p2, p0, p1, p3, p4, k`: a simpler model frees fewer of them, from the first.
+    pub parameters: [f64; MOST],
+    /// 1 for the left and for the right view if the lens distorts that view, 0 if not.
+    pub distorted: [f64; 2],
+}
 
 impl Curve {
-    pub const AS_IS: Self = Self([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+    pub const AS_IS: Self = Self::undistorted([0.0, 1.0, 0.0, 0.0, 0.0]);
+
+    /// The curve of a row model with the parameters `p0` to `p4`.
+    pub const fn undistorted([p0, p1, p2, p3, p4]: [f64; 5]) -> Self {
+        Self { parameters: [p2, p0, p1, p3, p4, 0.0], distorted: [1.0; 2] }
+    }
 
     /// Row of the curve minus row of the left point.
     pub fn error(&self, point: &Point) -> f64 {
@@ -39,8 +47,9 @@ impl Curve {
 
     /// The error and its derivatives by all parameters.
     fn linearised(&self, Point { left, right }: &Point) -> (f64, [f64; MOST]) {
-        let [p2, p0, p1, p3, p4, k] = self.0;
-        let (left_square, right_square) = (left.length_squared(), right.length_squared());
+        let [p2, p0, p1, p3, p4, k] = self.parameters;
+        let [in_left, in_right] = self.distorted;
+        let (left_square, right_square) = (in_left * left.length_squared(), in_right * right.length_squared());
         let [x, y] = (*right * (1.0 + k * right_square)).to_array();
         let below = 1.0 + p3 * x + p4 * y;
         let row = (p0 * x + p1 * y + p2) / below;
@@ -58,7 +67,7 @@ impl Curve {
 
     /// The curve of a vertical shift that puts the right point on the row of the left one.
     pub fn shift(point: &Point) -> Self {
-        Self([point.left.y - point.right.y, 0.0, 1.0, 0.0, 0.0, 0.0])
+        Self::undistorted([0.0, 1.0, point.left.y - point.right.y, 0.0, 0.0])
     }
 
     /// Gauss-Newton steps on the first `free` parameters with Cauchy weights, from wide to narrow (Huber, Robust
@@ -78,13 +87,13 @@ impl Curve {
                     }
                 }
                 let step = solved(normal, moment, free)?;
-                self.0.iter_mut().zip(step).for_each(|(parameter, change)| *parameter += change);
+                self.parameters.iter_mut().zip(step).for_each(|(parameter, change)| *parameter += change);
                 if step.iter().all(|change| change.abs() <= SETTLED) {
                     break;
                 }
             }
         }
-        self.0.iter().all(|value| value.is_finite()).then_some(self)
+        self.parameters.iter().all(|value| value.is_finite()).then_some(self)
     }
 }
 
@@ -142,16 +151,20 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_error() {
-        let curve = Curve([0.02, 0.1, 0.95, 0.08, -0.05, -0.15]);
+        let parameters = [0.02, 0.1, 0.95, 0.08, -0.05, -0.15];
         let point = Point { left: DVec2::new(0.6, -0.4), right: DVec2::new(0.45, -0.5) };
-        let (_, slopes) = curve.linearised(&point);
-        for (i, slope) in slopes.into_iter().enumerate() {
-            let moved = |by: f64| {
-                let mut curve = curve;
-                curve.0[i] += by;
-                curve.error(&point)
-            };
-            assert!(((moved(1e-5) - moved(-1e-5)) / 2e-5 - slope).abs() < 1e-8, "parameter {i}");
+        for distorted in [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]] {
+            let curve = Curve { parameters, distorted };
+            let (_, slopes) = curve.linearised(&point);
+            for (i, slope) in slopes.into_iter().enumerate() {
+                let moved = |by: f64| {
+                    let mut curve = curve;
+                    curve.parameters[i] += by;
+                    curve.error(&point)
+                };
+                let measured = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+                assert!((measured - slope).abs() < 1e-8, "parameter {i}, {distorted:?}");
+            }
         }
     }
 }

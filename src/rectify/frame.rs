@@ -38,7 +38,7 @@ impl Frame {
     }
 
     /// The curve without its distortion.
-    pub fn model(&self, &Curve([p2, p0, p1, p3, p4, _]): &Curve) -> RowModel {
+    pub fn model(&self, &Curve { parameters: [p2, p0, p1, p3, p4, _], .. }: &Curve) -> RowModel {
         RowModel::new(self.size, [p0, p1, self.unit * p2, p3 / self.unit, p4 / self.unit])
     }
 

@@ -1,7 +1,7 @@
 //! Lens distortion that a row model leaves unexplained.
 
 use super::{
-    curve::{Curve, Point},
+    curve::{Curve, MOST, Point},
     frame::{AGREEMENT, Frame},
 };
 
@@ -13,17 +13,26 @@ const GRID: u32 = 9;
 /// Share of the inliers' disparities left out at either end.
 const TAIL: f64 = 0.05;
 
-/// Largest row error of `curve` anywhere in the picture if `lens`, a fit with distortion, is right, in units of `frame`; 0
-/// if no lens has such a distortion.
+/// Views that a lens distorts: both through the same lens, or one of two different cameras.
+const DISTORTED: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+
+/// Fits with the distortion of a lens, refined from `start`, if lenses have such a distortion.
+pub(super) fn fits(start: &Curve, points: &[Point], frame: &Frame) -> impl Iterator<Item = Curve> {
+    let half = frame.half();
+    let is_of_a_lens = move |fit: &Curve| {
+        let k1 = -fit.parameters[MOST - 1] * (half.x + half.y) * (half.x + half.y);
+        (DISTORTION[0]..=DISTORTION[1]).contains(&k1)
+    };
+    let starts = DISTORTED.map(|distorted| Curve { parameters: start.parameters, distorted });
+    starts.into_iter().filter_map(|start| start.refined(MOST, points, frame.unit)).filter(is_of_a_lens)
+}
+
+/// Largest row error of `curve` anywhere in the picture if `lens`, a fit with distortion, is right, in units of `frame`.
 ///
 /// The error depends on the disparity, since a point appears in different parts of the two views: the disparities near
 /// both ends of the inliers' are tried.
 pub(super) fn effect(lens: &Curve, curve: &Curve, points: &[Point], frame: &Frame) -> f64 {
     let half = frame.half();
-    let k1 = -lens.0[5] * (half.x + half.y) * (half.x + half.y);
-    if !(DISTORTION[0]..=DISTORTION[1]).contains(&k1) {
-        return 0.0;
-    }
     let inlier = |point: &&Point| lens.error(point).abs() * frame.unit <= AGREEMENT;
     let mut disparities: Vec<f64> = points.iter().filter(inlier).map(|point| point.left.x - point.right.x).collect();
     disparities.sort_by(f64::total_cmp);
