@@ -20,22 +20,27 @@ const SEAM: i64 = 2;
 
 /// Removes the constant borders of a view, and the seam beside them, from its `mask`.
 ///
-/// A border is a connected black area at the edge of the picture that holds a corner, or lies along a third of a side. An
-/// area of another grey value must fill rows or columns or have straight edges, since an overexposed sky is white in any
-/// shape. A mask that would leave nothing is returned as it was.
+/// A border is a connected black area that lies along a third of a side of the picture, or holds a corner where another
+/// corner is held as well, as by the round mask of an endoscope: one black corner is an object. An area of another grey
+/// value must fill rows or columns or have straight edges, since an overexposed sky is white in any shape. A mask that
+/// would leave nothing is returned as it was.
 pub(crate) fn without_borders(luma: &Luma, mask: Mask) -> Mask {
     let size = luma.size();
     let mut reached = luma.map(|_| false);
-    let mut bordered = mask.clone();
+    let mut constant = Vec::new();
     for (x, y) in edge(size) {
-        if reached.get(x, y) {
-            continue;
-        }
-        let area = constant_area(luma, (x, y), &mut reached);
-        if is_border(luma, &area) {
-            for &(x, y) in &area {
-                remove(&mut bordered, (x, y));
+        if !reached.get(x, y) {
+            let area = constant_area(luma, (x, y), &mut reached);
+            if looks_like_a_border(luma, &area) {
+                constant.push(area);
             }
+        }
+    }
+    let held: usize = constant.iter().map(|area| corners(area, size)).sum();
+    let mut bordered = mask.clone();
+    for area in constant {
+        if lies_along_a_side(&area, size) || held >= 2 && corners(&area, size) > 0 {
+            area.into_iter().for_each(|place| remove(&mut bordered, place));
         }
     }
     if bordered.data().contains(&SEEN) { bordered } else { mask }
@@ -66,24 +71,30 @@ fn constant_area(luma: &Luma, start: (u32, u32), reached: &mut crate::image::Pla
     area
 }
 
-fn is_border(luma: &Luma, area: &[(u32, u32)]) -> bool {
-    let Size { width, height } = luma.size();
+/// Whether an area is large, constant, and black or of straight edges.
+fn looks_like_a_border(luma: &Luma, area: &[(u32, u32)]) -> bool {
     if area.len() < AREA.0.max(luma.data().len() / AREA.1) {
         return false;
     }
+    let black = area.iter().filter(|&&(x, y)| luma.get(x, y) <= BLACK.0).count();
+    let is_black = 100 * black >= BLACK.1 * area.len();
+    is_constant(luma, area) && (is_black || is_bar(area, luma.size()) || is_straight(area, luma.size()))
+}
+
+/// Number of the picture's corners in an area.
+fn corners(area: &[(u32, u32)], Size { width, height }: Size) -> usize {
+    area.iter().filter(|&&(x, y)| (x == 0 || x == width - 1) && (y == 0 || y == height - 1)).count()
+}
+
+/// Whether an area touches a side of the picture along a third.
+fn lies_along_a_side(area: &[(u32, u32)], Size { width, height }: Size) -> bool {
     let along = |side: u32, on: &dyn Fn(u32, u32) -> bool| {
         area.iter().filter(|&&(x, y)| on(x, y)).count() >= (side / CONTACT) as usize
     };
-    let corner = area.iter().any(|&(x, y)| (x == 0 || x == width - 1) && (y == 0 || y == height - 1));
-    let black = area.iter().filter(|&&(x, y)| luma.get(x, y) <= BLACK.0).count();
-    let is_black = 100 * black >= BLACK.1 * area.len();
-    is_constant(luma, area)
-        && (is_black || is_bar(area, luma.size()) || is_straight(area, luma.size()))
-        && (corner
-            || along(width, &|_, y| y == 0)
-            || along(width, &|_, y| y == height - 1)
-            || along(height, &|x, _| x == 0)
-            || along(height, &|x, _| x == width - 1))
+    along(width, &|_, y| y == 0)
+        || along(width, &|_, y| y == height - 1)
+        || along(height, &|x, _| x == 0)
+        || along(height, &|x, _| x == width - 1)
 }
 
 /// Whether most neighbours in an area are equal. Neighbours within the tolerance of the area's first pixel are in the area.
@@ -197,6 +208,8 @@ mod tests {
         assert_eq!(unseen(&picture(0, |x, y| (30..80).contains(&x) && (20..70).contains(&y))), 0, "a black object");
         assert_eq!(unseen(&picture(0, |x, y| (30..60).contains(&x) && y > 60)), 0, "a black object at the edge");
         assert_eq!(unseen(&picture(0, |x, y| x < 5 && y < 5)), 0, "a dark corner");
+        assert_eq!(unseen(&picture(0, |x, y| x < 25 && y < 25)), 0, "a black object in a corner");
+        assert!(unseen(&picture(0, |x, y| x + y < 25 || x + y > 183)) > 600, "two corners");
         assert_eq!(unseen(&picture(7, |x, y| x * x + y * y < 1600)), 0, "a dark object");
         assert!(unseen(&picture(255, |x, y| x + 2 * y < 60)) > 900, "a white corner");
         assert_eq!(unseen(&picture(255, |x, y| y < 20 + 12 * (x / 15 % 2))), 0, "an overexposed sky above roofs");
