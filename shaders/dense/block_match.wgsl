@@ -59,9 +59,7 @@ struct Params {
     others_width: u32,
 }
 
-@group(0) @binding(0) var<uniform> uniforms: Params;
-// Copy of the uniforms, loaded once before any branch: behind a branch software drivers load uniforms for each lane.
-var<private> params: Params;
+@group(0) @binding(0) var<uniform> params: Params;
 // Padded planes of both views, four pixels packed per u32.
 @group(0) @binding(1) var words: texture_storage_2d<r32uint, read>;
 // Range searched in each cell of the picture: index of the first disparity, number of disparities.
@@ -196,7 +194,6 @@ fn row_sums(reference: array<vec4<i32>, WORDS>, searched: array<u32, WORDS + 1>)
 
 @compute @workgroup_size(TILES_ACROSS * TILES_DOWN)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
-    params = uniforms;
     let column = QUADS * (TILES_ACROSS * group.x + thread % TILES_ACROSS);
     let x = 4u * column;
     let y0 = TILE_HEIGHT * (TILES_DOWN * group.y + thread / TILES_ACROSS);

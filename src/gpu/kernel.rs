@@ -65,7 +65,7 @@ impl Kernel {
             })
             .collect();
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-        let text = stage.wgsl();
+        let text = if gpu.is_lavapipe() { stage.wgsl_without_inlinable_uniforms() } else { stage.wgsl() };
         #[cfg(not(target_arch = "wasm32"))]
         super::dump::dump(stage.name, &text);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -3,9 +3,9 @@
 //! # The text that is compiled
 //!
 //! The driver does not get a shader's file as it is: constants and imported parts are put in front of it, and loops are
-//! unrolled. If the environment variable `HSAD_DUMP_WGSL` names a folder, which is created, each compiled kernel also
-//! writes its WGSL there, as `<stage>-<hash of the text>.wgsl`, so that every variant of a stage has its own file. A
-//! failed write is only a warning in the log. Browsers write no files.
+//! unrolled; for lavapipe, `main` copies the uniforms. If the environment variable `HSAD_DUMP_WGSL` names a folder, which
+//! is created, each compiled kernel also writes its WGSL there, as `<stage>-<hash of the text>.wgsl`, so that every variant
+//! of a stage has its own file. A failed write is only a warning in the log. Browsers write no files.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod block_on;
@@ -16,6 +16,7 @@ mod dump;
 mod guard;
 mod handle;
 mod imports;
+mod inlinable;
 pub(crate) mod kernel;
 mod limits;
 mod readback;

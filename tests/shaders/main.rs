@@ -5,6 +5,7 @@ mod heads;
 mod translations;
 
 use std::{
+    collections::BTreeSet,
     iter,
     num::NonZero,
     panic::resume_unwind,
@@ -28,11 +29,14 @@ use naga::{
 type Validated = Result<(Module, ModuleInfo), String>;
 
 fn valid(stage: &Stage) -> Validated {
-    let text = stage.wgsl();
-    let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?;
+    valid_text(&stage.wgsl())
+}
+
+fn valid_text(text: &str) -> Validated {
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
-        .map_err(|error| error.emit_to_string(&text))?;
+        .map_err(|error| error.emit_to_string(text))?;
     Ok((module, info))
 }
 
@@ -218,6 +222,43 @@ fn every_shader_is_valid_and_binds_what_rust_binds() {
     for (stage, module) in modules() {
         let found = disagreements(stage, module);
         assert!(found.is_empty(), "{}: {}", stage.name, found.join("\n"));
+    }
+}
+
+/// The uniform buffers of a module that anything but a copy of the whole buffer reads.
+fn inlinable(module: &Module) -> Vec<String> {
+    let functions = module.entry_points.iter().map(|entry| &entry.function);
+    let expressions = functions.chain(module.functions.iter().map(|(_, function)| function));
+    let mut read = Vec::new();
+    for arena in expressions.map(|function| &function.expressions) {
+        for (_, expression) in arena.iter() {
+            let (naga::Expression::Access { base, .. } | naga::Expression::AccessIndex { base, .. }) = expression
+            else {
+                continue;
+            };
+            if let naga::Expression::GlobalVariable(variable) = arena[*base]
+                && module.global_variables[variable].space == AddressSpace::Uniform
+            {
+                read.extend(module.global_variables[variable].name.clone());
+            }
+        }
+    }
+    read
+}
+
+/// What lavapipe gets is valid, binds the same, and reads uniforms only to copy them: see `src/gpu/inlinable.rs`.
+#[test]
+fn no_uniform_is_inlinable_on_lavapipe() {
+    let mut seen = BTreeSet::new();
+    for (stage, plain) in modules().iter().filter(|(stage, _)| seen.insert(stage.name)) {
+        let (module, _) = valid_text(&stage.wgsl_without_inlinable_uniforms()).expect("a valid module");
+        let bound = module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()).count();
+        assert_eq!(bound, stage.bindings.len(), "{}", stage.name);
+        let has_uniforms = stage.bindings.iter().any(|binding| matches!(binding, Binding::Uniform(_)));
+        let is_seen = !inlinable(&checked(plain).0).is_empty();
+        assert_eq!(is_seen, has_uniforms, "{}", stage.name);
+        let left = inlinable(&module);
+        assert!(left.is_empty(), "{}: {left:?}", stage.name);
     }
 }
 
