@@ -8,11 +8,13 @@
 //   WORKGROUP_WIDTH    threads per workgroup along x
 //   WORKGROUP_HEIGHT   threads per workgroup along y
 //   ROWS               rows of pixels per thread
+//   HALO_WORDS         u32 of the padded plane on either side of a row of the picture
+//   HALO_ROWS          rows of the padded plane above the picture
 
 struct Params {
     width: u32,
     rows: u32,
-    // u32 per row of the padded plane, which begins four columns left of and two rows above the picture.
+    // u32 per row of the padded plane.
     stride: u32,
 }
 
@@ -59,15 +61,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if x >= params.width || first >= params.rows {
         return;
     }
+    // The first row of the window and the four pixels left of the thread's pixels.
+    let begin = (HALO_ROWS - 2u) * params.stride + HALO_WORDS - 1u + id.x;
     var window: array<Row, 5>;
     for (var j = 0; j < 4; j++) { // unroll
-        window[j + 1] = row_at((first + j) * params.stride + id.x);
+        window[j + 1] = row_at(begin + (first + j) * params.stride);
     }
     for (var y = first; y < min(first + ROWS, params.rows); y++) {
         for (var j = 0; j < 4; j++) { // unroll
             window[j] = window[j + 1];
         }
-        window[4] = row_at((y + 4u) * params.stride + id.x);
+        window[4] = row_at(begin + (y + 4u) * params.stride);
         let words = transformed(window);
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < params.width {

@@ -1,5 +1,6 @@
 // Matching cost of each pixel and disparity, 8 bits each: the Hamming distance of the census transforms, the difference
-// of the lumas and the difference of their horizontal gradients, each weighted, the two differences truncated.
+// of the lumas and the difference of their horizontal gradients, each weighted, the two differences truncated. Where the
+// reference view has weak texture, the Hamming distance of the wide census transforms takes the place of the lumas.
 //
 // One thread owns eight pixels and visits the disparities, four per step. A step needs eleven pixels of the other view
 // and their two neighbours; four of these are new. A partner outside the picture is replaced by the nearest pixel of
@@ -18,6 +19,9 @@
 //   DIFFERENCE_LIMIT    truncation of the difference of lumas, in grey levels
 //   GRADIENT_WEIGHT     weight of the difference of gradients, in 2^-WEIGHT_BITS
 //   GRADIENT_LIMIT      truncation of the difference of gradients, in grey levels
+//   WEAK_TEXTURE        1: pixels of weak texture have a cost of their own
+//   WEAK_CENSUS_WEIGHT  weight of the Hamming distance there, per bit, in 2^-WEIGHT_BITS
+//   WIDE_CENSUS_WEIGHT  weight of the Hamming distance of the wide census transforms there, likewise
 //   WEIGHT_BITS         fractional bits of the weights
 //   MAX_COST            largest cost
 
@@ -29,10 +33,13 @@ struct Params {
     min_disparity: i32,
     // u32 per pixel of the volume: costs of four disparities packed per u32, the smallest disparity in the lowest byte.
     words: u32,
+    // Index in `reference` and `other` where the wide census transforms begin.
+    wide_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// One u32 per pixel of the reference view, one u32 per pixel of the other view: census bits above 8 bits of luma.
+// One u32 per pixel of the reference view, one u32 per pixel of the other view: census bits above 8 bits of luma. If
+// WEAK_TEXTURE, as many u32 from `wide_offset` on: wide census bits above 8 bits that are 1 where texture is weak.
 @group(0) @binding(1) var<storage, read> reference: array<u32>;
 @group(0) @binding(2) var<storage, read> other: array<u32>;
 @group(0) @binding(3) var<storage, read_write> volume: array<u32>;
@@ -46,14 +53,46 @@ fn luma(word: u32) -> i32 {
     return i32(word & 255u);
 }
 
+// Weights of the parts of four pixels' costs that depend on their texture.
+struct Weights {
+    census: vec4<u32>,
+    wide_census: vec4<u32>,
+    difference: vec4<u32>,
+}
+
+// Weights of four pixels of the reference view with the wide census transforms `wide`.
+fn weights_of(wide: vec4<u32>) -> Weights {
+    let is_weak = (wide & vec4<u32>(1u)) != vec4<u32>(0u);
+    return Weights(
+        select(vec4<u32>(CENSUS_WEIGHT), vec4<u32>(WEAK_CENSUS_WEIGHT), is_weak),
+        select(vec4<u32>(0u), vec4<u32>(WIDE_CENSUS_WEIGHT), is_weak),
+        select(vec4<u32>(DIFFERENCE_WEIGHT), vec4<u32>(0u), is_weak),
+    );
+}
+
+// The bits of four census transforms that differ.
+fn hamming(a: vec4<u32>, b: vec4<u32>) -> vec4<u32> {
+    return countOneBits((a ^ b) >> vec4<u32>(8u));
+}
+
 // Costs of four pixels, from census and luma of the pixels `a` and their partners `b`, and from the gradients of both.
-fn cost(a: vec4<u32>, b: vec4<u32>, gradient_a: vec4<i32>, gradient_b: vec4<i32>) -> vec4<u32> {
-    let hamming = countOneBits((a ^ b) >> vec4<u32>(8u));
+// If WEAK_TEXTURE, `wide` are the Hamming distances of their wide census transforms.
+fn cost(
+    a: vec4<u32>,
+    b: vec4<u32>,
+    gradient_a: vec4<i32>,
+    gradient_b: vec4<i32>,
+    wide: vec4<u32>,
+    weights: Weights,
+) -> vec4<u32> {
     let difference = vec4<u32>(abs(vec4<i32>(a & vec4<u32>(255u)) - vec4<i32>(b & vec4<u32>(255u))));
     let gradient = vec4<u32>(abs(gradient_a - gradient_b));
-    let sum = CENSUS_WEIGHT * hamming
-        + DIFFERENCE_WEIGHT * min(difference, vec4<u32>(DIFFERENCE_LIMIT))
+    var sum = weights.census * hamming(a, b)
+        + weights.difference * min(difference, vec4<u32>(DIFFERENCE_LIMIT))
         + GRADIENT_WEIGHT * min(gradient, vec4<u32>(GRADIENT_LIMIT));
+    if WEAK_TEXTURE != 0 {
+        sum += weights.wide_census * wide;
+    }
     return min(sum >> vec4<u32>(WEIGHT_BITS), vec4<u32>(MAX_COST));
 }
 
@@ -79,26 +118,47 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             luma(a_row[4 * q + 5]) - luma(a_row[4 * q + 3]),
         );
     }
+    var wide_a: array<vec4<u32>, 2>;
+    var weights: array<Weights, 2>;
+    for (var q = 0; q < 2; q++) { // unroll
+        if WEAK_TEXTURE != 0 {
+            for (var t = 0; t < 4; t++) { // unroll
+                wide_a[q][t] = reference[params.wide_offset + row + inside(x + 4 * q + t)];
+            }
+        }
+        weights[q] = weights_of(wide_a[q]);
+    }
     // Consecutive pixels of the other view: the eleven partners of a step and one neighbour on either side. Before the
     // loop the nine pixels are loaded that the first step shares with a step before it.
     let begin = x + DIRECTION * params.min_disparity - FRONT;
     var b: array<u32, 13>;
+    var wide_b: array<u32, 13>;
     for (var i = 0; i < 9; i++) { // unroll
-        b[i + KEPT] = other[row + inside(begin + i + KEPT - DIRECTION * 4)];
+        let pixel = row + inside(begin + i + KEPT - DIRECTION * 4);
+        b[i + KEPT] = other[pixel];
+        if WEAK_TEXTURE != 0 {
+            wide_b[i + KEPT] = other[params.wide_offset + pixel];
+        }
     }
     for (var step = 0u; step < params.words; step++) {
         let first = begin + DIRECTION * 4 * i32(step);
         if DIRECTION < 0 {
             for (var i = 0; i < 9; i++) { // unroll
                 b[12 - i] = b[8 - i];
+                wide_b[12 - i] = wide_b[8 - i];
             }
         } else {
             for (var i = 0; i < 9; i++) { // unroll
                 b[i] = b[i + 4];
+                wide_b[i] = wide_b[i + 4];
             }
         }
         for (var i = 0; i < 4; i++) { // unroll
-            b[NEW + i] = other[row + inside(first + NEW + i)];
+            let pixel = row + inside(first + NEW + i);
+            b[NEW + i] = other[pixel];
+            if WEAK_TEXTURE != 0 {
+                wide_b[NEW + i] = other[params.wide_offset + pixel];
+            }
         }
         var gradient_b: array<i32, 11>;
         for (var i = 0; i < 11; i++) { // unroll
@@ -122,6 +182,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k + 2],
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k + 3],
                     ),
+                    hamming(
+                        wide_a[q],
+                        vec4<u32>(
+                            wide_b[FRONT + 4 * q + DIRECTION * k],
+                            wide_b[FRONT + 4 * q + DIRECTION * k + 1],
+                            wide_b[FRONT + 4 * q + DIRECTION * k + 2],
+                            wide_b[FRONT + 4 * q + DIRECTION * k + 3],
+                        ),
+                    ),
+                    weights[q],
                 );
                 words |= costs << vec4<u32>(8u * k);
             }

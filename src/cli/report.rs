@@ -3,7 +3,10 @@
 use hsad::{
     Backend,
     config::{Config, Method},
-    dense::{Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search},
+    dense::{
+        Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search,
+        WeakTexture,
+    },
     disparity::{DisparityRange, SCALE, coverage},
     image::Plane,
     io::{Calibration, load::Stretch},
@@ -181,6 +184,9 @@ fn aggregation_of(aggregation: &Aggregation) -> Value {
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),
+        "weak_texture": cost.weak.map(|WeakTexture { spread, census, wide_census }| {
+            json!({ "spread": spread, "census_weight": census, "wide_census_weight": wide_census })
+        }),
         "p1": penalty(|penalties| penalties.p1),
         "p2": penalty(|penalties| penalties.p2),
         "least_p2": penalty(|penalties| penalties.least_p2),

@@ -7,7 +7,7 @@
 use crate::{
     cpu,
     dense::{
-        Aggregation, Brightness, CostAggregation, CrossCheck, Dense, DenseConfig, DenseParameters, Interpolation,
+        Aggregation, Brightness, Cost, CostAggregation, CrossCheck, Dense, DenseConfig, DenseParameters, Interpolation,
         Refinement, View,
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -32,7 +32,11 @@ const AGREEMENT: f32 = 1.25 * SCALE as f32;
 
 /// Semi-global matching, with a second search for the left-right consistency check and without any filling.
 const PARAMETERS: DenseParameters = DenseParameters {
-    aggregation: Aggregation::Costs(CostAggregation { cross_check: CrossCheck::Searched, ..CostAggregation::TUNED }),
+    aggregation: Aggregation::Costs(CostAggregation {
+        cost: Cost { weak: None, ..CostAggregation::TUNED.cost },
+        cross_check: CrossCheck::Searched,
+        ..CostAggregation::TUNED
+    }),
     interpolation: Interpolation::Equiangular,
     uniqueness: 1,
     consistency: Some(SCALE.cast_unsigned()),

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    block_match, box_mean, cell_ranges, census, claim, consistency, cost, fill, half_consistency, halve, path,
+    Transforms, block_match, box_mean, cell_ranges, claim, consistency, cost, fill, half_consistency, halve, path,
     path_winners, residual, select, support, weighted_median, winners,
 };
 use crate::{
@@ -106,12 +106,12 @@ fn all_paths(
     config: &DenseConfig,
     aggregation: &CostAggregation,
 ) -> Vec<Vec<u8>> {
-    let (left, right) = (census(left), census(right));
-    let (reference, other) = if view == View::Left { (&left, &right) } else { (&right, &left) };
-    let costs = cost([reference, other], view, &aggregation.cost, config.range);
+    let (reference, other) = if view == View::Left { (left, right) } else { (right, left) };
+    let [reference, other] = [reference, other].map(|luma| Transforms::new(luma, &aggregation.cost));
+    let costs = cost([&reference, &other], view, &aggregation.cost, config.range);
     let costs = box_mean(&costs, left.size(), aggregation.window);
     let Some(SemiGlobal { penalties, paths }) = &aggregation.semi_global else {
         return vec![costs];
     };
-    paths.directions().par_iter().map(|&direction| path(reference, &costs, penalties, direction)).collect()
+    paths.directions().par_iter().map(|&direction| path(&reference.census, &costs, penalties, direction)).collect()
 }

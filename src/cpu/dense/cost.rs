@@ -2,32 +2,58 @@
 
 use rayon::prelude::*;
 
+use super::{census, wide_census};
 use crate::{
     dense::{Cost, MAX_COST, View, WEIGHT_BITS},
     disparity::DisparityRange,
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
 };
 
-/// The matching costs of each pixel of `reference`, padded to a multiple of four disparities. Both views come from
-/// the stage `census`; a pixel without a partner is compared with the nearest pixel of the row.
-pub fn cost([reference, other]: [&Plane<u32>; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
-    let Size { width, height } = reference.size();
+/// The census transforms of a view.
+#[derive(Clone, Debug)]
+pub struct Transforms {
+    /// From the stage `census`.
+    pub census: Plane<u32>,
+    /// From the stage `wide_census`, if weak texture has a cost of its own.
+    pub wide: Option<Plane<u32>>,
+}
+
+impl Transforms {
+    /// The census transforms that `cost` needs.
+    pub fn new(luma: &Luma, cost: &Cost) -> Self {
+        Self { census: census(luma), wide: cost.weak.map(|weak| wide_census(luma, weak.spread)) }
+    }
+}
+
+/// The matching costs of each pixel of `reference`, padded to a multiple of four disparities; a pixel without a partner
+/// is compared with the nearest pixel of the row. Texture counts as weak where both views have wide census transforms.
+pub fn cost([reference, other]: [&Transforms; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
+    let Size { width, height } = reference.census.size();
     let at = |plane: &Plane<u32>, x: i64, y: u32| plane.get_clamped(x, i64::from(y));
     let luma = |word: u32| i64::from(word & 255);
     let gradient = |plane: &Plane<u32>, x: i64, y: u32| luma(at(plane, x + 1, y)) - luma(at(plane, x - 1, y));
+    let hamming = |a: u32, b: u32| ((a ^ b) >> 8).count_ones();
+    let weak_texture = cost.weak.zip(reference.wide.as_ref()).zip(other.wide.as_ref());
     let row = |y: u32| {
         (0..i64::from(width)).flat_map(move |x| {
-            let (a, slope) = (at(reference, x, y), gradient(reference, x, y));
+            let (a, slope) = (at(&reference.census, x, y), gradient(&reference.census, x, y));
+            let weak = weak_texture.filter(|((_, wide), _)| at(wide, x, y) & 255 != 0);
             (0..range.count.next_multiple_of(4)).map(move |index| {
                 let disparity = i64::from(range.min) + i64::from(index);
                 let partner = if view == View::Left { x - disparity } else { x + disparity };
-                let b = at(other, partner, y);
-                let hamming = ((a ^ b) >> 8).count_ones();
-                let difference = luma(a).abs_diff(luma(b)) as u32;
-                let change = slope.abs_diff(gradient(other, partner, y)) as u32;
-                let sum = cost.census * hamming
-                    + cost.difference.weight * difference.min(cost.difference.limit)
-                    + cost.gradient.weight * change.min(cost.gradient.limit);
+                let b = at(&other.census, partner, y);
+                let distance = hamming(a, b);
+                let change = slope.abs_diff(gradient(&other.census, partner, y)) as u32;
+                let texture = match weak {
+                    Some(((weak, reference), other)) => {
+                        weak.census * distance + weak.wide_census * hamming(at(reference, x, y), at(other, partner, y))
+                    }
+                    None => {
+                        let difference = luma(a).abs_diff(luma(b)) as u32;
+                        cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
+                    }
+                };
+                let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);
                 (sum >> WEIGHT_BITS).min(MAX_COST) as u8
             })
         })

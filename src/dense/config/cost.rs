@@ -15,7 +15,7 @@ pub struct Difference {
     pub limit: u32,
 }
 
-/// The matching cost of a pixel and its partner: the sum of three parts, rounded down and at most 127.
+/// The matching cost of a pixel and its partner: the sum of its parts, rounded down and at most 127.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Weight of each of the 24 bits in which the 5x5 census transforms differ, in 1/16, 0 to 4096.
@@ -25,4 +25,21 @@ pub struct Cost {
     /// Truncated difference of the horizontal gradients of luma; a gradient is the difference of the two neighbours in
     /// the row.
     pub gradient: Difference,
+    /// The cost of pixels of the reference view with weak texture; `None`: as that of other pixels.
+    pub weak: Option<WeakTexture>,
+}
+
+/// The matching cost where the reference view has weak texture: census, wide census and the gradient as elsewhere, without
+/// luma, which says more about brightness there than about disparity.
+///
+/// The wide census compares the sum of the 3x3 lumas around a pixel with those around 5x5 pixels at a distance of two
+/// columns and two rows. Texture is weak where these 25 sums hardly differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WeakTexture {
+    /// Largest difference of the sums of weak texture, 0 to 2295 (9 x 255).
+    pub spread: u32,
+    /// Weight of each of the 24 bits in which the census transforms differ, in 1/16, 0 to 4096.
+    pub census: u32,
+    /// Weight of each of the 24 bits in which the wide census transforms differ, in 1/16, 0 to 4096.
+    pub wide_census: u32,
 }

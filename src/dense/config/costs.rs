@@ -1,6 +1,6 @@
 //! Matching by census, luma and gradient costs.
 
-use super::{Cost, Difference, Direction, Paths, Penalties};
+use super::{Cost, Difference, Direction, Paths, Penalties, WeakTexture};
 use crate::error::{Result, check, check_range};
 
 /// The largest side of a cost-averaging window, in pixels.
@@ -51,6 +51,7 @@ impl CostAggregation {
             census: 20,
             difference: Difference { weight: 4, limit: 24 },
             gradient: Difference { weight: 12, limit: 16 },
+            weak: Some(WeakTexture { spread: 130, census: 10, wide_census: 6 }),
         },
         window: 1,
         semi_global: Some(SemiGlobal::TUNED),
@@ -68,7 +69,7 @@ impl CostAggregation {
             self.window,
             format!("it must be odd and 1 to {MAX_WINDOW}"),
         )?;
-        let Cost { census, difference, gradient } = self.cost;
+        let Cost { census, difference, gradient, weak } = self.cost;
         for (name, value) in [
             ("the weight of the census", census),
             ("the weight of the difference", difference.weight),
@@ -77,6 +78,11 @@ impl CostAggregation {
             ("the limit of the gradient", gradient.limit),
         ] {
             check_range(name, value, 0..=1 << 12)?;
+        }
+        if let Some(WeakTexture { spread, census, wide_census }) = weak {
+            check_range("the spread of weak texture", spread, 0..=9 * 255)?;
+            check_range("the weight of the census of weak texture", census, 0..=1 << 12)?;
+            check_range("the weight of the wide census", wide_census, 0..=1 << 12)?;
         }
         self.semi_global.map_or(Ok(()), |semi_global| semi_global.penalties.validate())
     }

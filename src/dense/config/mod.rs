@@ -10,7 +10,7 @@ mod refinement;
 mod view;
 
 pub use brightness::Brightness;
-pub use cost::{Cost, Difference, MAX_COST, WEIGHT_BITS};
+pub use cost::{Cost, Difference, MAX_COST, WEIGHT_BITS, WeakTexture};
 pub use costs::{CostAggregation, CrossCheck, SemiGlobal};
 pub use interpolation::Interpolation;
 pub use paths::{Direction, Paths};

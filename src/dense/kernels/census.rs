@@ -7,6 +7,9 @@ use crate::{
 };
 
 const WORKGROUP: [u32; 2] = [16, 4];
+/// Words of four pixels on either side of a row, and rows above and below the picture, as far as the wide census looks.
+const HALO_WORDS: u32 = 2;
+const HALO_ROWS: u32 = 5;
 
 shader_struct! {
     struct Params {
@@ -34,6 +37,8 @@ impl Census {
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("ROWS", rows.into()),
+                ("HALO_WORDS", HALO_WORDS.into()),
+                ("HALO_ROWS", HALO_ROWS.into()),
             ],
         }
     }
@@ -44,22 +49,23 @@ impl Census {
         Self { kernel: Kernel::new(gpu, &Self::stage(rows)), rows }
     }
 
-    /// The padding that the kernel needs of rows `first_row` to `first_row + rows` of a picture of `size`, from the
-    /// buffer's first word. Rows outside the picture repeat its edge.
+    /// The padding that this kernel and [`super::WideCensus`] need of rows `first_row` to `first_row + rows` of a picture
+    /// of `size`, from the buffer's first word. Rows outside the picture repeat its edge.
     pub fn padding(Size { width, height }: Size, first_row: i32, rows: u32) -> PadParams {
         PadParams {
             width,
             height,
-            first_word: -1,
-            first_row: first_row - 2,
-            rows: rows + 4,
+            first_word: -HALO_WORDS.cast_signed(),
+            first_row: first_row - HALO_ROWS.cast_signed(),
+            rows: rows + 2 * HALO_ROWS,
             stride: Self::stride(width),
             offset: 0,
         }
     }
 
-    fn stride(width: u32) -> u32 {
-        width.div_ceil(4) + 2
+    /// Words per row of the padding.
+    pub(super) fn stride(width: u32) -> u32 {
+        width.div_ceil(4) + 2 * HALO_WORDS
     }
 
     /// Transforms the rows in `padded`, laid out as [`Self::padding`] says, to one `u32` per pixel: the 24 census bits

@@ -2,7 +2,7 @@
 
 use super::volume_band::VolumeBand;
 use crate::{
-    dense::config::{Cost, MAX_COST, View, WEIGHT_BITS},
+    dense::config::{Cost, MAX_COST, View, WEIGHT_BITS, WeakTexture},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
@@ -15,6 +15,7 @@ shader_struct! {
         first_row: u32,
         min_disparity: i32,
         words: u32,
+        wide_offset: u32,
     }
 }
 
@@ -30,6 +31,8 @@ impl CostVolume {
             View::Left => (-1, 4, 0, 0),
             View::Right => (1, 1, 4, 9),
         };
+        // Without a cost of its own, weak texture costs as much as any other.
+        let weak = cost.weak.unwrap_or(WeakTexture { spread: 0, census: cost.census, wide_census: 0 });
         Stage {
             name: "cost",
             source: include_str!("../../../shaders/dense/cost.wgsl"),
@@ -46,6 +49,9 @@ impl CostVolume {
                 ("DIFFERENCE_LIMIT", cost.difference.limit.into()),
                 ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
                 ("GRADIENT_LIMIT", cost.gradient.limit.into()),
+                ("WEAK_TEXTURE", cost.weak.is_some().into()),
+                ("WEAK_CENSUS_WEIGHT", weak.census.into()),
+                ("WIDE_CENSUS_WEIGHT", weak.wide_census.into()),
                 ("WEIGHT_BITS", WEIGHT_BITS.into()),
                 ("MAX_COST", MAX_COST.into()),
             ],
@@ -58,11 +64,12 @@ impl CostVolume {
     }
 
     /// Writes the cost volume of `band`: the pixels of `reference` against those of `other`, both from
-    /// [`super::Census`].
+    /// [`super::Census`], and, for a cost of weak texture, from [`super::WideCensus`] from word `wide_offset` on.
     pub fn prepare(
         &self,
         band: &VolumeBand,
         [reference, other]: [&wgpu::Buffer; 2],
+        wide_offset: u32,
         volume: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params {
@@ -71,6 +78,7 @@ impl CostVolume {
             first_row: band.first_row,
             min_disparity: band.range.min,
             words: band.words(),
+            wide_offset,
         };
         let groups = [band.width.div_ceil(8 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[reference, other, volume], groups)

@@ -22,6 +22,7 @@ mod selection;
 mod support;
 mod volume_band;
 mod weighted_median;
+mod wide_census;
 
 pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
@@ -46,9 +47,10 @@ pub use selection::ResultKind;
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
+pub use wide_census::WideCensus;
 
 use super::config::{
-    Aggregation, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
+    Aggregation, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View, WeakTexture,
 };
 use crate::gpu::Stage;
 
@@ -77,8 +79,11 @@ pub fn stages() -> Vec<Stage> {
         BlockMatch::stage(&parameters, View::Left, ResultKind::Matches, Tile::HARDWARE)
     }));
     let part = Difference { weight: 1, limit: 1 };
-    let cost = Cost { census: 1, difference: part, gradient: part };
-    stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+    let cost = Cost { census: 1, difference: part, gradient: part, weak: None };
+    let weak = WeakTexture { spread: 1, census: 1, wide_census: 1 };
+    for cost in [cost, Cost { weak: Some(weak), ..cost }] {
+        stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+    }
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.push(Path::stage(&penalties, 2));
@@ -99,7 +104,7 @@ pub fn stages() -> Vec<Stage> {
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
-        stages.extend([Census::stage(rows), Support::stage(5, rows)]);
+        stages.extend([Census::stage(rows), WideCensus::stage(1, rows), Support::stage(5, rows)]);
         stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
     }
     stages

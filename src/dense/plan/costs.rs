@@ -17,7 +17,7 @@ use crate::{
         config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
             BoxMean, Census, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer,
-            MapLayout, Pad, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
+            MapLayout, Pad, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand, WideCensus,
         },
         word_copy::{CopyTarget, WordCopy},
     },
@@ -176,7 +176,10 @@ struct Workspace {
     pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
     pad: Pad,
     transform: Census,
+    /// The kernel of the wide census, for a cost of weak texture.
+    transform_widely: Option<WideCensus>,
     padded: wgpu::Buffer,
+    /// The census transforms of each view, and behind them the wide ones, if there are any.
     census: [wgpu::Buffer; 2],
     /// Matching costs of the band and its halo rows; after averaging, of the band only.
     costs: wgpu::Buffer,
@@ -200,7 +203,9 @@ impl Workspace {
         let cost_words = bands.row_words() * u64::from((bands.rows + 2 * bands.radius).min(height));
         let transformed_rows = bands.rows + 2 * bands.halo();
         let padding = Census::padding(bands.size, 0, transformed_rows);
-        let transformed = u64::from(width) * u64::from(transformed_rows);
+        let transform_widely = costs.cost.weak.map(|weak| WideCensus::new(gpu, weak.spread));
+        let transforms = if transform_widely.is_some() { 2 } else { 1 };
+        let transformed = transforms * u64::from(width) * u64::from(transformed_rows);
         let box_mean = match costs.window {
             1 => None,
             side => Some((BoxMean::new(gpu, side), plan.buffer("means of costs", cost_words)?)),
@@ -210,6 +215,7 @@ impl Workspace {
             pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
             pad: Pad::new(gpu),
             transform: Census::new(gpu),
+            transform_widely,
             padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
             census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
             costs: plan.buffer("costs", cost_words)?,
@@ -229,7 +235,16 @@ impl Workspace {
             let padding = Census::padding(size, first_row, rows);
             plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
             plan.run(self.transform.prepare(Size::new(size.width, rows), &self.padded, census));
+            if let Some(transform) = &self.transform_widely {
+                let size = Size::new(size.width, rows);
+                plan.run(transform.prepare(size, &self.padded, census, self.wide_offset()));
+            }
         }
+    }
+
+    /// The word of a census buffer where the wide census transforms begin: behind those of a whole band and its halo.
+    fn wide_offset(&self) -> u32 {
+        self.bands.size.width * (self.bands.rows + 2 * self.bands.halo())
     }
 
     /// The buffers of a path of a view.
@@ -297,7 +312,8 @@ impl Side {
         let above = bands.radius.min(first_row);
         let below = bands.radius.min(bands.size.height - first_row - band.rows);
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
-        plan.run(self.cost.prepare(&with_halo, workspace.census_of(self.view), &workspace.costs));
+        let (census, wide_offset) = (workspace.census_of(self.view), workspace.wide_offset());
+        plan.run(self.cost.prepare(&with_halo, census, wide_offset, &workspace.costs));
         if let Some((box_mean, means)) = &workspace.box_mean {
             let band_rows = above..above + band.rows;
             for pass in box_mean.prepare(&with_halo, band_rows, &workspace.costs, means) {
@@ -401,13 +417,13 @@ fn band_rows_within(
 ) -> Result<u32> {
     let limit = limits.bytes;
     let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
-    // Census transforms, one `u32` per pixel, are at most as large as costs of as many rows.
-    let around = 2 * (u64::from(radius) + 1);
-    let needed = row * (3 * paths).max(1 + around);
+    // Census transforms, two `u32` per pixel at most, have a halo one row wider than that of the costs.
+    let (around, transformed_row) = (2 * (u64::from(radius) + 1), row.max(8 * u64::from(width)));
+    let needed = (row * 3 * paths).max(transformed_row * (1 + around));
     // With few disparities, a row of the map with its keys can exceed a row of the volumes.
     let map = 4 * (MapLayout { width, rows: 1 }.words() + u64::from(width));
     let within_paths = (limit / (row * paths.max(1))).saturating_sub(2);
-    let within_costs = (limit / row).saturating_sub(around);
+    let within_costs = (limit / transformed_row).saturating_sub(around);
     let rows = within_paths.min(within_costs).min(limit / map);
     if rows == 0 {
         return Err(Error::TooLarge {

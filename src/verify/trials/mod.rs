@@ -10,6 +10,7 @@ mod rectify;
 pub use dense::{
     BlockMatchTrial, BoxMeanTrial, CellRangesTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial,
     HalveTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial, ResidualTrial, SelectTrial, SupportTrial,
+    WideCensusTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,

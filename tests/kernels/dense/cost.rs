@@ -1,10 +1,10 @@
 //! The matching cost.
 
 use hsad::{
-    dense::{Cost, Difference, View},
+    dense::{Cost, Difference, View, WeakTexture},
     disparity::DisparityRange,
     image::{Plane, Size},
-    internals::cpu::dense::census,
+    internals::cpu::dense::Transforms,
     verify::{Values, trials::CostTrial},
 };
 
@@ -14,12 +14,14 @@ const COST: Cost = Cost {
     census: 40,
     difference: Difference { weight: 16, limit: 24 },
     gradient: Difference { weight: 8, limit: 40 },
+    weak: None,
 };
+const WEAK: WeakTexture = WeakTexture { spread: 300, census: 20, wide_census: 12 };
 
 fn compare(Size { width, height }: Size, view: View, cost: &Cost, (min, count): (i32, u32)) {
     let range = DisparityRange::new(min, count).unwrap();
-    let views = [1, 2].map(|seed| census(&picture((width, height), seed)));
-    let what = format!("{width}x{height} {view:?} {count} from {min}");
+    let views = [1, 2].map(|seed| Transforms::new(&picture((width, height), seed), cost));
+    let what = format!("{width}x{height} {view:?} {cost:?} {count} from {min}");
     let whole = CostTrial { views, view, cost: *cost, range, rows: 0..height };
     assert_twin(&what, &whole);
     if height > 2 {
@@ -32,15 +34,22 @@ fn the_twin_costs_the_same() {
     for size in SIZES {
         for view in [View::Left, View::Right] {
             compare(size, view, &COST, (0, 17));
+            compare(size, view, &Cost { weak: Some(WEAK), ..COST }, (0, 17));
         }
     }
     for range in [(0, 1), (-20, 41), (5, 3), (-500, 12), (90, 100)] {
         for view in [View::Left, View::Right] {
             compare(Size::new(97, 5), view, &COST, range);
+            compare(Size::new(97, 5), view, &Cost { weak: Some(WEAK), ..COST }, range);
         }
     }
     let none = Difference { weight: 0, limit: 0 };
-    for cost in [Cost { census: 255, ..COST }, Cost { difference: none, gradient: none, ..COST }] {
+    let all_weak = WeakTexture { spread: 2295, census: 0, wide_census: 255 };
+    for cost in [
+        Cost { census: 255, ..COST },
+        Cost { difference: none, gradient: none, ..COST },
+        Cost { weak: Some(all_weak), ..COST },
+    ] {
         compare(Size::new(97, 5), View::Left, &cost, (0, 17));
     }
 }
@@ -51,7 +60,26 @@ fn by_hand() {
     let a = Plane::new((3, 1), vec![50, 0b111 << 8 | 100, 60]).unwrap();
     let b = Plane::new((3, 1), vec![50, 70, 70]).unwrap();
     let range = DisparityRange::new(0, 1).unwrap();
-    let trial = CostTrial { views: [a, b], view: View::Left, cost: COST, range, rows: 0..1 };
+    let views = [a, b].map(|census| Transforms { census, wide: None });
+    let trial = CostTrial { views, view: View::Left, cost: COST, range, rows: 0..1 };
     let [Values::U8(costs)] = &leaves(&trial)[..] else { panic!("four costs a word") };
     assert_eq!(costs[4], 36);
+}
+
+#[test]
+fn of_weak_texture_by_hand() {
+    // As above, with five bits of the wide census that differ. The last pixel of the reference is not weak: what the other
+    // view says does not count.
+    let wide_a = Plane::new((3, 1), vec![1, 0b11111 << 8 | 1, 0b11111 << 8]).unwrap();
+    let wide_b = Plane::new((3, 1), vec![1, 0, 1]).unwrap();
+    let a = Plane::new((3, 1), vec![50, 0b111 << 8 | 100, 60]).unwrap();
+    let b = Plane::new((3, 1), vec![50, 70, 70]).unwrap();
+    let views = [(a, wide_a), (b, wide_b)].map(|(census, wide)| Transforms { census, wide: Some(wide) });
+    let range = DisparityRange::new(0, 1).unwrap();
+    let cost = Cost { weak: Some(WEAK), ..COST };
+    let [Values::U8(costs)] = &leaves(&CostTrial { views, view: View::Left, cost, range, rows: 0..1 })[..] else {
+        panic!("four costs a word")
+    };
+    // Weak: (20 * 3 + 12 * 5 + 8 * 10) / 16 = 12.5. Not weak: luma by 10, gradients -40 and 0: (16 * 10 + 8 * 40) / 16.
+    assert_eq!((costs[4], costs[8]), (12, 30));
 }

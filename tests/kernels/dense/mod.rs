@@ -17,3 +17,4 @@ mod residual;
 mod select;
 mod support;
 mod weighted_median;
+mod wide_census;

@@ -2,14 +2,18 @@
 
 mod blocks;
 mod cells;
+mod costs;
 mod maps;
 mod paths;
+mod words;
 
 pub use blocks::{BlockMatchTrial, PadTrial};
 pub use cells::{CellRangesTrial, HalveTrial};
+pub use costs::{BoxMeanTrial, CensusTrial, CostTrial, WideCensusTrial};
 pub use maps::{ConsistencyTrial, FillTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
-pub use paths::{BoxMeanTrial, CensusTrial, ClaimTrial, CostTrial, PathTrial, SelectTrial};
+pub use paths::{ClaimTrial, PathTrial, SelectTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const SUBJECTS: [&[Subject]; 4] = [blocks::SUBJECTS, cells::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];
+pub(super) const SUBJECTS: [&[Subject]; 5] =
+    [blocks::SUBJECTS, cells::SUBJECTS, costs::SUBJECTS, paths::SUBJECTS, maps::SUBJECTS];

@@ -1,18 +1,20 @@
-//! Semi-global matching: census, matching cost, averaging, paths, selection, and claims.
+//! Semi-global matching: paths, selection, and claims.
 
-use super::blocks::signed;
+use super::{
+    blocks::signed,
+    words::{bytes, words},
+};
 use crate::{
-    cpu::dense::{box_mean, census, claim, cost, pad, path, path_winners, select},
+    cpu::dense::{claim, path, path_winners, select},
     dense::{
-        Brightness, Cost, DenseConfig, Difference, Direction, Interpolation, Penalties, View,
+        DenseConfig, Direction, Interpolation, Penalties, View,
         kernels::{
-            BoxMean, Census, Claim, CostVolume, LineBuffers, MapBuffer, MapLayout, Path, PathVolumes, ResultKind,
-            Select, Selection, VolumeBand,
+            Claim, LineBuffers, MapBuffer, MapLayout, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
         },
     },
     disparity::{DisparityRange, NONE, SCALE},
     error::Result,
-    image::{Luma, Plane, Size},
+    image::{Plane, Size},
     luma::pack,
     verify::{
         dice::smooth_noise,
@@ -21,159 +23,10 @@ use crate::{
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
-    Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
-    Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
-    Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
     Subject::kernel("path", |size, dice| Box::new(PathTrial::draw(size, dice))),
     Subject::kernel("select", |size, dice| Box::new(SelectTrial::draw(size, dice))),
     Subject::kernel("claim", |size, dice| Box::new(ClaimTrial::draw(size, dice))),
 ];
-
-/// Packs four 8-bit costs per `u32`.
-fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.as_chunks().0.iter().map(|&four| u32::from_le_bytes(four)).collect()
-}
-
-fn bytes(words: &[u32]) -> Vec<u8> {
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
-}
-
-/// A picture for the census transform.
-#[derive(Clone, Debug)]
-pub struct CensusTrial(pub Luma);
-
-impl CensusTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self(dice.picture(size))
-    }
-}
-
-impl Trial for CensusTrial {
-    fn parameters(&self) -> String {
-        String::new()
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("picture", self.0.data().to_vec())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let size = self.0.size();
-        let plane = pad(&self.0, &Census::padding(size, 0, size.height), Brightness::SAME);
-        let transformed = bench.output(size.width * size.height)?;
-        let kernel = Census::new(bench.gpu);
-        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("census", census(&self.0).into_data())])
-    }
-}
-
-/// Costs to be averaged.
-#[derive(Clone, Debug)]
-pub struct BoxMeanTrial {
-    /// Size of the picture.
-    pub size: Size,
-    /// Costs of each pixel and disparity, padded to whole words per pixel.
-    pub costs: Vec<u8>,
-    /// Number of disparities.
-    pub disparities: u32,
-    /// Side of the window, in pixels.
-    pub side: u32,
-}
-
-impl BoxMeanTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let disparities = dice.below(33) + 1;
-        let row = size.width * disparities.next_multiple_of(4);
-        let costs = dice.picture((row, size.height)).into_data();
-        Self { size, costs, disparities, side: dice.pick(&[1, 3, 5, 7, 9, 31]) }
-    }
-}
-
-impl Trial for BoxMeanTrial {
-    fn parameters(&self) -> String {
-        format!("{} disparities, side {}", self.disparities, self.side)
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("costs", self.costs.clone())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, Size { width, height: rows }) = (bench.gpu, self.size);
-        let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
-        let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
-        let dispatches = BoxMean::new(gpu, self.side).prepare(&band, 0..rows, &costs, &means);
-        bench.run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
-        Ok(vec![Array::exact("means", bytes(&bench.download::<u32>(&costs)?))])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("means", box_mean(&self.costs, self.size, self.side))])
-    }
-}
-
-/// Two census transforms whose pixels are compared.
-#[derive(Clone, Debug)]
-pub struct CostTrial {
-    /// Census transforms of the reference and of the other view, from [`census`].
-    pub views: [Plane<u32>; 2],
-    /// The reference view.
-    pub view: View,
-    /// The matching cost.
-    pub cost: Cost,
-    /// The disparities.
-    pub range: DisparityRange,
-    /// The rows whose costs are computed.
-    pub rows: std::ops::Range<u32>,
-}
-
-impl CostTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let mut part = || Difference { weight: dice.below(40), limit: dice.below(60) };
-        let (difference, gradient) = (part(), part());
-        let cost = Cost { census: dice.pick(&[0, 20, 40, 255]), difference, gradient };
-        let (view, mut range) = (dice.view(), dice.range(70));
-        range.min += dice.pick(&[0, 0, 9, -500, 90]);
-        let first = dice.below(size.height.min(4));
-        let views = dice.pair(size).map(|view| census(&view));
-        Self { views, view, cost, range, rows: first..size.height - dice.below(size.height - first) }
-    }
-}
-
-impl Trial for CostTrial {
-    fn parameters(&self) -> String {
-        format!("{:?} {:?} {:?} rows {:?}", self.view, self.cost, self.range, self.rows)
-    }
-
-    fn input(&self) -> Vec<Array> {
-        let [reference, other] = self.views.each_ref().map(|view| view.data().to_vec());
-        vec![Array::exact("reference", reference), Array::exact("other", other)]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let Self { views: [reference, other], range, rows, .. } = self;
-        let band =
-            VolumeBand { width: reference.width(), first_row: rows.start, rows: rows.len() as u32, range: *range };
-        let volume = bench.output(band.row_words() * band.rows)?;
-        let views = [&bench.upload(reference.data())?, &bench.upload(other.data())?];
-        let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
-        let dispatch = kernel.prepare(&band, views, &volume);
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        let Self { views: [reference, other], range, rows, .. } = self;
-        let costs = cost([reference, other], self.view, &self.cost, *range);
-        let row = costs.len() / reference.height() as usize;
-        Ok(vec![Array::exact("costs", costs[rows.start as usize * row..rows.end as usize * row].to_vec())])
-    }
-}
 
 fn penalties(dice: &mut Dice) -> Penalties {
     let p2 = 1 + dice.below(128);

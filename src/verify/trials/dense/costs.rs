@@ -1,0 +1,213 @@
+//! Matching costs: census transforms, the cost of each pixel and disparity, averaging.
+
+use super::words::{bytes, words};
+use crate::{
+    cpu::dense::{Transforms, box_mean, census, cost, pad, wide_census},
+    dense::{
+        Brightness, Cost, Difference, View, WeakTexture,
+        kernels::{BoxMean, Census, CostVolume, VolumeBand, WideCensus},
+    },
+    disparity::DisparityRange,
+    error::Result,
+    image::{Luma, Size},
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
+    Subject::kernel("wide_census", |size, dice| Box::new(WideCensusTrial::draw(size, dice))),
+    Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
+    Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
+];
+
+/// A picture for the census transform.
+#[derive(Clone, Debug)]
+pub struct CensusTrial(pub Luma);
+
+impl CensusTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self(dice.picture(size))
+    }
+}
+
+impl Trial for CensusTrial {
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.0.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.0.size();
+        let plane = pad(&self.0, &Census::padding(size, 0, size.height), Brightness::SAME);
+        let transformed = bench.output(size.width * size.height)?;
+        let kernel = Census::new(bench.gpu);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("census", census(&self.0).into_data())])
+    }
+}
+
+/// A picture for the wide census transform.
+#[derive(Clone, Debug)]
+pub struct WideCensusTrial {
+    /// The picture.
+    pub picture: Luma,
+    /// Largest difference of the sums of weak texture.
+    pub spread: u32,
+    /// Word where the transforms begin.
+    pub offset: u32,
+}
+
+impl WideCensusTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { picture: dice.picture(size), spread: dice.pick(&[0, 130, 700, 2295]), offset: dice.below(9) }
+    }
+}
+
+impl Trial for WideCensusTrial {
+    fn parameters(&self) -> String {
+        format!("spread {}, from word {}", self.spread, self.offset)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("picture", self.picture.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.picture.size();
+        let plane = pad(&self.picture, &Census::padding(size, 0, size.height), Brightness::SAME);
+        let transformed = bench.output(self.offset + size.width * size.height)?;
+        let kernel = WideCensus::new(bench.gpu, self.spread);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed, self.offset);
+        bench.run(|encoder| dispatch.record(encoder));
+        let words = bench.download::<u32>(&transformed)?;
+        Ok(vec![Array::exact("wide census", words[self.offset as usize..].to_vec())])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("wide census", wide_census(&self.picture, self.spread).into_data())])
+    }
+}
+
+/// Costs to be averaged.
+#[derive(Clone, Debug)]
+pub struct BoxMeanTrial {
+    /// Size of the picture.
+    pub size: Size,
+    /// Costs of each pixel and disparity, padded to whole words per pixel.
+    pub costs: Vec<u8>,
+    /// Number of disparities.
+    pub disparities: u32,
+    /// Side of the window, in pixels.
+    pub side: u32,
+}
+
+impl BoxMeanTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let disparities = dice.below(33) + 1;
+        let row = size.width * disparities.next_multiple_of(4);
+        let costs = dice.picture((row, size.height)).into_data();
+        Self { size, costs, disparities, side: dice.pick(&[1, 3, 5, 7, 9, 31]) }
+    }
+}
+
+impl Trial for BoxMeanTrial {
+    fn parameters(&self) -> String {
+        format!("{} disparities, side {}", self.disparities, self.side)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("costs", self.costs.clone())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let (gpu, Size { width, height: rows }) = (bench.gpu, self.size);
+        let band = VolumeBand { width, first_row: 0, rows, range: DisparityRange { min: 0, count: self.disparities } };
+        let (costs, means) = (bench.upload(&words(&self.costs))?, bench.output(band.row_words() * rows)?);
+        let dispatches = BoxMean::new(gpu, self.side).prepare(&band, 0..rows, &costs, &means);
+        bench.run(|encoder| dispatches.iter().for_each(|dispatch| dispatch.record(encoder)));
+        Ok(vec![Array::exact("means", bytes(&bench.download::<u32>(&costs)?))])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("means", box_mean(&self.costs, self.size, self.side))])
+    }
+}
+
+/// Two census transforms whose pixels are compared.
+#[derive(Clone, Debug)]
+pub struct CostTrial {
+    /// Census transforms of the reference and of the other view.
+    pub views: [Transforms; 2],
+    /// The reference view.
+    pub view: View,
+    /// The matching cost.
+    pub cost: Cost,
+    /// The disparities.
+    pub range: DisparityRange,
+    /// The rows whose costs are computed.
+    pub rows: std::ops::Range<u32>,
+}
+
+impl CostTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let mut part = || Difference { weight: dice.below(40), limit: dice.below(60) };
+        let (difference, gradient) = (part(), part());
+        let census_weight = dice.pick(&[0, 20, 40, 255]);
+        let (view, mut range) = (dice.view(), dice.range(70));
+        range.min += dice.pick(&[0, 0, 9, -500, 90]);
+        let first = dice.below(size.height.min(4));
+        let pair = dice.pair(size);
+        let rows = first..size.height - dice.below(size.height - first);
+        let weak = dice.coin().then(|| WeakTexture {
+            spread: dice.pick(&[60, 200, 700]),
+            census: dice.pick(&[0, 10, 255]),
+            wide_census: dice.pick(&[6, 40, 255]),
+        });
+        let cost = Cost { census: census_weight, difference, gradient, weak };
+        Self { views: pair.map(|luma| Transforms::new(&luma, &cost)), view, cost, range, rows }
+    }
+}
+
+impl Trial for CostTrial {
+    fn parameters(&self) -> String {
+        format!("{:?} {:?} {:?} rows {:?}", self.view, self.cost, self.range, self.rows)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        let [reference, other] = self.views.each_ref().map(transforms);
+        vec![Array::exact("reference", reference), Array::exact("other", other)]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Self { views: [reference, other], range, rows, .. } = self;
+        let Size { width, height } = reference.census.size();
+        let band = VolumeBand { width, first_row: rows.start, rows: rows.len() as u32, range: *range };
+        let volume = bench.output(band.row_words() * band.rows)?;
+        let views = [&bench.upload(&transforms(reference))?, &bench.upload(&transforms(other))?];
+        let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
+        let dispatch = kernel.prepare(&band, views, width * height, &volume);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let Self { views: [reference, other], range, rows, .. } = self;
+        let costs = cost([reference, other], self.view, &self.cost, *range);
+        let row = costs.len() / reference.census.height() as usize;
+        Ok(vec![Array::exact("costs", costs[rows.start as usize * row..rows.end as usize * row].to_vec())])
+    }
+}
+
+/// The census transforms of a view, and behind them the wide ones.
+fn transforms(view: &Transforms) -> Vec<u32> {
+    let wide = view.wide.as_ref().map_or(&[][..], |wide| wide.data());
+    [view.census.data(), wide].concat()
+}
