@@ -44,9 +44,8 @@ impl<'b> Pair<'b> {
             Backend::Cpu => Ok(Self { backend, left: left.luma(), right: right.luma(), device: None }),
             Backend::Gpu(gpu) => {
                 check_limits(gpu)?;
-                let kernel = guarded(gpu, "the picture", || Ok(RgbaToLuma::new(gpu))).await?;
-                let (left_buffer, left) = luma_on(gpu, &kernel, left).await?;
-                let (right_buffer, right) = luma_on(gpu, &kernel, right).await?;
+                let (left_buffer, left) = luma_on(gpu, left).await?;
+                let (right_buffer, right) = luma_on(gpu, right).await?;
                 let device = Some(OnDevice { gpu, luma: [left_buffer, right_buffer] });
                 Ok(Self { backend, left, right, device })
             }
@@ -150,11 +149,12 @@ impl<'b> Pair<'b> {
 
 /// Converts a picture to luma, on the device and on the host. Large pictures are uploaded in bands of rows, since
 /// colours take four times the memory of luma.
-async fn luma_on(gpu: &Gpu, kernel: &RgbaToLuma, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
+async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
     let Size { width, height } = picture.size();
     let row_bytes = 4 * u64::from(width);
     let rows = (gpu.device.limits().max_storage_buffer_binding_size / row_bytes).clamp(1, height.into()) as u32;
     let (luma, readback) = guarded(gpu, "the picture", || {
+        let kernel = RgbaToLuma::new(gpu);
         let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
         let bands =
             (0..height).step_by(rows as usize).zip(picture.rgba().chunks((row_bytes * u64::from(rows)) as usize));

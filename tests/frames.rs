@@ -91,3 +91,22 @@ fn no_detection_compiles_at_widths_that_are_powers_of_two() {
     }
     assert!(grown.is_empty(), "width and kB: {grown:?}");
 }
+
+/// Sizes and ranges change as in a program that runs for days: what is dropped is freed.
+#[test]
+fn matchers_that_are_dropped_leave_nothing_behind() {
+    let (_alone, gpu) = (alone(), open());
+    let mut index = 0;
+    let mut build = || {
+        index += 1;
+        let (size, count) = ((40 + index % 5, 24 + index % 7), 8 * (1 + index % 3));
+        let range = DisparityRange::new(-(index as i32 % 4), count).expect("a range");
+        for preset in [Preset::Balanced, Preset::Paper] {
+            let matcher = Matcher::new(&gpu, size, &preset.dense_config(range)).expect("a matcher");
+            matcher.run().expect("a map");
+        }
+        block_on(Detector::new(&gpu, size, &FeatureConfig::default())).expect("a detector");
+    };
+    let added = growth(100, &mut build);
+    assert!(added <= LIMIT, "{added} kB");
+}

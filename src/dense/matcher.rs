@@ -1,6 +1,6 @@
 //! The matcher of one pair size: kernels, buffers and their plan.
 
-use std::{sync::OnceLock, time::Duration};
+use std::time::Duration;
 
 use super::{
     config::{Aggregation, Brightness, DenseConfig, View},
@@ -21,7 +21,7 @@ use crate::{
         storage_buffer, try_recording,
     },
     image::{Luma, Plane, Size},
-    luma::{Input, Source, check_size, kernels::luma_texture::LumaTexture, pack, packed_bytes},
+    luma::{Input, Source, check_size, pack, packed_bytes},
 };
 
 /// A disparity map of the reference view, and its confidences.
@@ -49,8 +49,8 @@ impl Dense {
 /// or buffers once; there may be one set per frame in flight. [`Self::record`] records into an encoder per frame: it submits
 /// nothing, maps nothing, writes no buffer through the queue and creates nothing on the device.
 ///
-/// The disparity range and all parameters are constants of the kernels: a change needs another matcher. Only the brightness
-/// of the right view can change: [`Self::set_brightness`].
+/// The disparity range and all parameters are fixed: a change needs another matcher, which compiles only the kernels that
+/// no other matcher of the same [`Gpu`] has. Only the brightness of the right view can change: [`Self::set_brightness`].
 ///
 /// Pairs that exceed the device's buffer limits are matched in bands of rows. The result does not depend on where bands are
 /// cut.
@@ -61,13 +61,10 @@ pub struct Matcher {
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
     plan: Plan,
-    /// Compiled for the first input texture.
-    luma_texture: OnceLock<LumaTexture>,
-    map_textures: [OnceLock<MapTexture>; 2],
 }
 
 impl Matcher {
-    /// Compiles the kernels and allocates all memory for pairs of `size`.
+    /// Compiles the kernels that `gpu` does not have yet, and allocates all memory for pairs of `size`.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a value of `config` or a `size` outside its range, [`Error::TooLarge`] for a row that exceeds
@@ -132,8 +129,7 @@ impl Matcher {
                 Aggregation::Sad { search, .. } => blocks::plan(gpu, size, config, *search, views, limits),
                 Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, views, limits),
             }?;
-            let gpu = gpu.clone();
-            Ok(Self { gpu, size, luma, plan, luma_texture: OnceLock::new(), map_textures: Default::default() })
+            Ok(Self { gpu: gpu.clone(), size, luma, plan })
         })
         .await
     }
@@ -168,8 +164,7 @@ impl Matcher {
     /// # Errors
     /// See [`Matcher::inputs`].
     pub async fn inputs_async(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
-        let input =
-            |name, source, luma| Input::with_kernel(&self.gpu, name, self.size, source, luma, &self.luma_texture);
+        let input = |name, source, luma| Input::named(&self.gpu, name, self.size, source, luma);
         for (name, source) in [("the left view", &left), ("the right view", &right)] {
             if let Source::Luma(buffer) = source
                 && self.luma.contains(*buffer)
@@ -246,9 +241,8 @@ impl Matcher {
             });
         };
         check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
-        let stored = &self.map_textures[texel as usize];
-        let (kernel, dispatches) = guarded(&self.gpu, name, || {
-            let kernel = stored.get().cloned().unwrap_or_else(|| MapTexture::new(&self.gpu, texel));
+        guarded(&self.gpu, name, || {
+            let kernel = MapTexture::new(&self.gpu, texel);
             let width = self.size.width;
             let dispatch = |copy: &WordCopy| {
                 let row = |word: u64| (word / u64::from(width)) as u32;
@@ -256,14 +250,10 @@ impl Matcher {
                 let rows = MapRows { width, rows, first_word: copy.from_word as u32, first_row };
                 kernel.prepare(rows, &copy.from, view)
             };
-            let dispatches = self.plan.copies_of_disparities().map(dispatch).collect();
-            Ok((kernel, dispatches))
+            Ok(self.plan.copies_of_disparities().map(dispatch).collect())
         })
         .await
-        .map_err(|error| refused(name, error))?;
-        // A kernel that failed validation is not kept.
-        stored.get_or_init(|| kernel);
-        Ok(dispatches)
+        .map_err(|error| refused(name, error))
     }
 
     /// Replaces [`DenseConfig::brightness`] for everything submitted after this call. No effect on a lost device.

@@ -1,6 +1,11 @@
 //! Error scopes: errors of the device as an [`Error`] instead of a call of the application's handler.
 
-use super::Gpu;
+use std::sync::Arc;
+
+#[cfg(not(target_arch = "wasm32"))]
+use rayon::prelude::*;
+
+use super::{Gpu, pipeline::Pipeline, pipelines::collect};
 use crate::error::{Error, Result};
 
 /// Whether the device is lost, which wgpu does not report by itself: nothing can be created on it any more.
@@ -17,12 +22,15 @@ fn is_lost(_: &wgpu::Device) -> bool {
     false
 }
 
-/// Runs `build`, which creates resources on the device, and turns errors of the device into an [`Error`] instead of a
-/// call of the application's error handler.
+/// Runs `build`, which creates resources on the device, compiles the kernels that `build` is the first to ask for, and
+/// turns errors of the device into an [`Error`] instead of a call of the application's error handler. The kernels are kept
+/// for other builds if there was no error.
 pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let ((built, lost), reports) =
-        scoped(&gpu.device, || (refusing_other_instances(what, build), is_lost(&gpu.device)));
-    let mut errors = Vec::new();
+    let ((built, new, mut errors, lost), reports) = scoped(&gpu.device, || {
+        let (built, new) = collect(|| refusing_other_instances(what, build));
+        let errors = if built.is_ok() { compile(gpu, &new) } else { Vec::new() };
+        (built, new, errors, is_lost(&gpu.device))
+    });
     for error in reports {
         errors.extend(error.await);
     }
@@ -35,8 +43,29 @@ pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Re
     }
     match errors.into_iter().next() {
         Some(error) => Err(Error::Unsupported(format!("{what}: {}", innermost(&error)))),
-        None => built,
+        None => built.inspect(|_| gpu.pipelines.keep(new)),
     }
+}
+
+/// Compiles `pipelines` side by side, and returns the errors of the device.
+#[cfg(not(target_arch = "wasm32"))]
+fn compile(gpu: &Gpu, pipelines: &[Arc<Pipeline>]) -> Vec<wgpu::Error> {
+    // Error scopes belong to threads, and their reports are ready at once.
+    let errors_of = |pipeline: &Arc<Pipeline>| {
+        let (_, reports) = scoped(&gpu.device, || _ = pipeline.compiled(gpu));
+        reports.into_iter().filter_map(super::block_on).collect::<Vec<_>>()
+    };
+    pipelines.par_iter().with_max_len(1).flat_map_iter(errors_of).collect()
+}
+
+/// Compiles `pipelines`; errors go to the scopes of the caller. In a browser there is one thread, and the browser
+/// compiles on others.
+#[cfg(target_arch = "wasm32")]
+fn compile(gpu: &Gpu, pipelines: &[Arc<Pipeline>]) -> Vec<wgpu::Error> {
+    for pipeline in pipelines {
+        pipeline.compiled(gpu);
+    }
+    Vec::new()
 }
 
 /// The cause of a device's error: wgpu wraps it in the names of the calls that led there.

@@ -1,10 +1,18 @@
 //! The handle of a device.
 
-use super::device::{DeviceChoice, adapters, find};
+use std::sync::Arc;
+
+use super::{
+    device::{DeviceChoice, adapters, find},
+    pipelines::Pipelines,
+};
 use crate::error::{Error, Result};
 
 /// A device, its queue, and optionally the application's pipeline cache. Everything that computes on a device is
 /// created with a `Gpu`.
+///
+/// A `Gpu` and its clones keep the last 64 kernels that were compiled with any of them: whatever is built later compiles
+/// only what it alone needs.
 ///
 /// An application with its own device wraps its handles, which are cheap to clone:
 ///
@@ -23,19 +31,21 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The pipeline cache for kernels, of the same device.
     pub cache: Option<wgpu::PipelineCache>,
+    /// Compiled kernels, shared by clones.
+    pub(super) pipelines: Arc<Pipelines>,
 }
 
 impl Gpu {
     /// Wraps a device and its own queue. With the queue of another device nothing works, and wgpu reports that only to
     /// the device's handler of uncaptured errors.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        Self { device, queue, cache: None }
+        Self { device, queue, cache: None, pipelines: Arc::default() }
     }
 
-    /// Adds the application's pipeline cache.
+    /// Adds the application's pipeline cache. The kernels compiled so far are left to the clones without this cache.
     #[must_use]
     pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
-        Self { cache: Some(cache), ..self }
+        Self { cache: Some(cache), ..Self::new(self.device, self.queue) }
     }
 
     /// Opens the chosen adapter, with its own limits for buffer sizes and the downlevel defaults for all others.

@@ -1,10 +1,8 @@
-//! A compute pipeline per stage, and its dispatches.
+//! The kernel of a stage, and its dispatches.
 
-use super::{
-    Gpu,
-    buffers::uniform_buffer,
-    stage::{Binding, Stage},
-};
+use std::sync::Arc;
+
+use super::{Gpu, buffers::uniform_buffer, pipeline::Pipeline, pipelines::pipeline_of, stage::Stage};
 
 /// A resource that can be bound: a whole buffer, or a texture view.
 pub(crate) trait Bindable {
@@ -23,72 +21,18 @@ impl Bindable for wgpu::TextureView {
     }
 }
 
-/// The compute pipeline of a stage, on one device.
+/// A stage on one device.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     gpu: Gpu,
-    name: &'static str,
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    pipeline: Arc<Pipeline>,
 }
 
 impl Kernel {
-    /// Compiles `stage`, whose entry point is `main`.
+    /// The kernel of `stage`, whose entry point is `main`. The compiled one, if the device has it; else a new one, which
+    /// [`super::guarded`] compiles.
     pub(crate) fn new(gpu: &Gpu, stage: &Stage) -> Self {
-        let device = &gpu.device;
-        let label = Some(stage.name);
-        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-        let view_dimension = wgpu::TextureViewDimension::D2;
-        let texture = |sample_type| wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
-        let entries: Vec<_> = (0..)
-            .zip(stage.bindings)
-            .map(|(binding, kind)| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: match kind {
-                    Binding::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
-                    Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-                    Binding::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-                    Binding::Words => wgpu::BindingType::StorageTexture {
-                        access: wgpu::StorageTextureAccess::ReadOnly,
-                        format: wgpu::TextureFormat::R32Uint,
-                        view_dimension,
-                    },
-                    Binding::Picture => texture(wgpu::TextureSampleType::Float { filterable: false }),
-                    Binding::Map(format) => wgpu::BindingType::StorageTexture {
-                        access: wgpu::StorageTextureAccess::WriteOnly,
-                        format: *format,
-                        view_dimension,
-                    },
-                },
-                count: None,
-            })
-            .collect();
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-        let text = if gpu.is_lavapipe() { stage.wgsl_without_inlinable_uniforms() } else { stage.wgsl() };
-        #[cfg(not(target_arch = "wasm32"))]
-        super::dump::dump(stage.name, &text);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label,
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                zero_initialize_workgroup_memory: false,
-                ..Default::default()
-            },
-            cache: gpu.cache.as_ref(),
-        });
-        Self { gpu: gpu.clone(), name: stage.name, layout, pipeline }
+        Self { gpu: gpu.clone(), pipeline: pipeline_of(gpu, stage) }
     }
 
     /// Prepares a dispatch of `groups` workgroups along x, y and z. Binds a uniform buffer of `params`, unless that is
@@ -114,16 +58,20 @@ impl Kernel {
     }
 
     fn bind<P: bytemuck::NoUninit>(&self, params: &P, bound: &[&dyn Bindable], groups: Groups) -> Dispatch {
-        let uniform = (size_of::<P>() > 0).then(|| uniform_buffer(&self.gpu, self.name, params));
+        let uniform = (size_of::<P>() > 0).then(|| uniform_buffer(&self.gpu, self.name(), params));
         let resources = uniform.iter().map(Bindable::resource).chain(bound.iter().map(|bound| bound.resource()));
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
         let bind_group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.name),
-            layout: &self.layout,
+            label: Some(self.name()),
+            layout: &self.pipeline.layout,
             entries: &entries,
         });
         Dispatch { kernel: self.clone(), bind_group, groups }
+    }
+
+    fn name(&self) -> &'static str {
+        self.pipeline.stage.name
     }
 }
 
@@ -146,7 +94,7 @@ enum Groups {
 impl Dispatch {
     /// The kernel's name.
     pub(crate) fn name(&self) -> &'static str {
-        self.kernel.name
+        self.kernel.name()
     }
 
     /// Records the dispatch, in a compute pass of its own.
@@ -160,9 +108,9 @@ impl Dispatch {
         encoder: &mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        let label = Some(self.kernel.name);
+        let label = Some(self.name());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-        pass.set_pipeline(&self.kernel.pipeline);
+        pass.set_pipeline(self.kernel.pipeline.compiled(&self.kernel.gpu));
         pass.set_bind_group(0, &self.bind_group, &[]);
         match &self.groups {
             Groups::Known([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),

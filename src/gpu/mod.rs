@@ -19,6 +19,8 @@ mod imports;
 mod inlinable;
 pub(crate) mod kernel;
 mod limits;
+mod pipeline;
+mod pipelines;
 mod readback;
 mod resources;
 pub(crate) mod shader_struct;

@@ -20,7 +20,7 @@ pub enum Binding {
 }
 
 /// Source, bindings and constants of a stage: enough to compile its kernel, and to check it without a GPU.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stage {
     /// Name of the stage, shared by its shader, its Rust file, its CPU twin and its test.
     pub name: &'static str,

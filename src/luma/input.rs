@@ -1,7 +1,5 @@
 //! The conversion of an application's texture or buffer to packed luma.
 
-use std::sync::OnceLock;
-
 use super::{
     kernels::luma_texture::{LumaTexture, TexelFormat},
     packed::{check_packed, packed_bytes},
@@ -47,17 +45,16 @@ impl Input {
         let size = size.into();
         check_packed(luma, size)?;
         check_limits(gpu)?;
-        Self::with_kernel(gpu, "the picture", size, source, luma, &OnceLock::new()).await
+        Self::named(gpu, "the picture", size, source, luma).await
     }
 
-    /// [`Self::new`] for a picture called `name` in errors, with a kernel that is compiled at most once.
-    pub(crate) async fn with_kernel(
+    /// [`Self::new`] for a picture called `name` in errors.
+    pub(crate) async fn named(
         gpu: &Gpu,
         name: &'static str,
         size: Size,
         source: Source<'_>,
         luma: &wgpu::Buffer,
-        kernel: &OnceLock<LumaTexture>,
     ) -> Result<Self> {
         let (view, format) = match source {
             Source::Luma(from) => {
@@ -85,15 +82,9 @@ impl Input {
             });
         };
         check_texture(name, view.texture(), size, wgpu::TextureUsages::TEXTURE_BINDING)?;
-        let (compiled, dispatch) = guarded(gpu, name, || {
-            let compiled = kernel.get().cloned().unwrap_or_else(|| LumaTexture::new(gpu));
-            let dispatch = compiled.prepare(size, texel, view, luma);
-            Ok((compiled, dispatch))
-        })
-        .await
-        .map_err(|error| refused(name, error))?;
-        // A kernel that failed validation is not kept.
-        kernel.get_or_init(|| compiled);
+        let dispatch = guarded(gpu, name, || Ok(LumaTexture::new(gpu).prepare(size, texel, view, luma)))
+            .await
+            .map_err(|error| refused(name, error))?;
         Self(Conversion::Run(dispatch)).tried(gpu, name).await
     }
 

@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod application;
+mod compilation;
 mod errors;
 mod results;
 mod sharing;

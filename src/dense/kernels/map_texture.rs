@@ -57,7 +57,7 @@ pub struct MapRows {
 }
 
 /// The copying kernel, for one kind of texel.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct MapTexture(Kernel);
 
 impl MapTexture {

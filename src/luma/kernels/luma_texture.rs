@@ -59,7 +59,7 @@ pub fn stage() -> Stage {
 }
 
 /// The kernel that converts a texture to packed luma.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LumaTexture(Kernel);
 
 impl LumaTexture {
