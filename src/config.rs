@@ -149,9 +149,14 @@ impl Preset {
         }
     }
 
-    /// The configuration of a [`crate::Matcher`]: dense matching in `range`, without a change of brightness.
+    /// The configuration of a [`crate::Matcher`]: dense matching in `range`, without a change of brightness; costs are
+    /// searched over the whole range.
     pub fn dense_config(self, range: DisparityRange) -> DenseConfig {
-        self.config().dense(&self.dense_parameters(), range, Brightness::SAME)
+        let mut parameters = self.dense_parameters();
+        if let Aggregation::Costs(costs) = &mut parameters.aggregation {
+            costs.search = Search::Whole;
+        }
+        self.config().dense(&parameters, range, Brightness::SAME)
     }
 
     /// Parameters of dense matching.

@@ -32,6 +32,7 @@ pub mod dense {
     pub use crate::dense::{
         config::{Direction, MAX_COST, WEIGHT_BITS},
         kernels::*,
+        pyramid::{CellRange, CellTable, SIDE},
     };
 }
 

@@ -3,7 +3,7 @@
 use crate::{
     backend::Backend,
     cpu,
-    dense::{Dense, DenseConfig, Matcher},
+    dense::{Dense, DenseConfig, compute_uploaded},
     error::{Error, Result, check},
     features::{Detector, Feature, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
@@ -138,10 +138,13 @@ impl<'b> Pair<'b> {
     /// # Errors
     /// See [`crate::dense::compute`].
     pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
+        self.dense_with_progress(config, |_| ()).await
+    }
+
+    /// [`Self::dense`] with calls of `progress` with the share of the work that a device has done, 0 to 1.
+    pub(crate) async fn dense_with_progress(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
         match &self.device {
-            Some(OnDevice { gpu, luma }) => {
-                Matcher::with_luma(gpu, self.size(), config, luma.clone()).await?.run_async().await
-            }
+            Some(OnDevice { gpu, luma }) => compute_uploaded(gpu, self.size(), config, luma.clone(), progress).await,
             None => cpu::dense::compute(&self.left, &self.right, config),
         }
     }

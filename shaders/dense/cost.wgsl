@@ -5,6 +5,9 @@
 // One thread owns eight pixels and visits the disparities, four per step. A step needs eleven pixels of the other view
 // and their two neighbours; four of these are new. A partner outside the picture is replaced by the nearest pixel of
 // its row.
+//
+// The shader is built for two layouts of the volume, in its own file in shared/, which has the words of a pixel:
+// whole_layout.wgsl and cell_layout.wgsl.
 
 // Constants:
 //   WORKGROUP_WIDTH     threads per workgroup along x
@@ -31,8 +34,13 @@ struct Params {
     rows: u32,
     first_row: u32,
     min_disparity: i32,
-    // u32 per pixel of the volume: costs of four disparities packed per u32, the smallest disparity in the lowest byte.
-    words: u32,
+    // The volume: costs of four disparities packed per u32, the smallest disparity in the lowest byte. With one range for
+    // all pixels, u32 per pixel; with ranges of cells, the row of the picture where the band begins, and see
+    // shared/cell_layout.wgsl.
+    pixel_words: u32,
+    top: u32,
+    columns: u32,
+    cells: u32,
     // Index in `reference` and `other` where the wide census transforms begin.
     wide_offset: u32,
 }
@@ -130,7 +138,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     // Consecutive pixels of the other view: the eleven partners of a step and one neighbour on either side. Before the
     // loop the nine pixels are loaded that the first step shares with a step before it.
-    let begin = x + DIRECTION * params.min_disparity - FRONT;
+    let span = span_at(u32(x), params.top + id.y);
+    let begin = x + DIRECTION * (params.min_disparity + 4 * i32(span.first)) - FRONT;
     var b: array<u32, 13>;
     var wide_b: array<u32, 13>;
     for (var i = 0; i < 9; i++) { // unroll
@@ -140,7 +149,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             wide_b[i + KEPT] = other[params.wide_offset + pixel];
         }
     }
-    for (var step = 0u; step < params.words; step++) {
+    for (var step = 0u; step < span.count; step++) {
         let first = begin + DIRECTION * 4 * i32(step);
         if DIRECTION < 0 {
             for (var i = 0; i < 9; i++) { // unroll
@@ -165,7 +174,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             gradient_b[i] = luma(b[i + 2]) - luma(b[i]);
         }
         for (var q = 0; q < 2; q++) { // unroll
-            var words = vec4<u32>(0u);
+            var costs_of = vec4<u32>(0u);
             for (var k = 0; k < 4; k++) { // unroll
                 let costs = cost(
                     a[q],
@@ -193,12 +202,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                     ),
                     weights[q],
                 );
-                words |= costs << vec4<u32>(8u * k);
+                costs_of |= costs << vec4<u32>(8u * k);
             }
             for (var t = 0; t < 4; t++) { // unroll
                 let column = u32(x) + 4u * q + t;
                 if column < params.width {
-                    volume[(id.y * params.width + column) * params.words + step] = words[t];
+                    volume[span.start + (4u * q + t) * span.count + step] = costs_of[t];
                 }
             }
         }

@@ -4,9 +4,7 @@
 //     L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + P1, L(q, d + 1) + P1, M + P2) - M,  M = min L(q, .)
 //
 // where q is the pixel before p. Hirschmueller: 'Stereo processing by semiglobal matching and mutual information', PAMI
-// 30(2), 2008, equations 12 and 13. P2 is smaller where the luma changes, rounded down:
-//
-//     P2(p, q) = max(LEAST_P2, P2 K / (K + |luma(p) - luma(q)|)),  K = P2_SCALE
+// 30(2), 2008, equations 12 and 13. P2 depends on the luma: see path_step.wgsl.
 //
 // One thread owns one line and keeps the path costs of the last pixel, all disparities, in registers. A diagonal line
 // that leaves the picture at one side starts anew at the other side.
@@ -14,42 +12,13 @@
 // The module has `params` with `width`, `rows`, `first_row`, `path_start`, `goes_on`, `dx` and `dy`, and the buffers
 // `reference`, `costs` and `paths`: see path.wgsl.
 
-#import quotient
+#import path_step
 
 // Constants:
-//   WORDS      u32 per pixel of a volume, four disparities packed per u32
-//   P1         penalty of a change of disparity by one
-//   P2         penalty of a larger change, at equal lumas
-//   LEAST_P2   penalty of a larger change, at least
-//   P2_SCALE   change of luma at which P2 is halved, in grey levels
-
-// Sentinel above any path cost, of disparities outside the range.
-const UNREACHABLE = 0x10000u;
+//   WORDS   u32 per pixel of a volume, four disparities packed per u32
 
 // Path costs of a pixel, four disparities per vector, between two vectors of sentinels.
 alias PathCosts = array<vec4<u32>, WORDS + 2>;
-
-fn unpack(word: u32) -> vec4<u32> {
-    return (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
-}
-
-fn pack(costs: vec4<u32>) -> u32 {
-    return costs.x | (costs.y << 8u) | (costs.z << 16u) | (costs.w << 24u);
-}
-
-// Path costs of four disparities of the next pixel. `quad` holds the path costs of these disparities at the last pixel,
-// `quad_before` and `quad_after` those of the next smaller and the next larger four; `jump` is M + P2.
-fn advance(
-    quad_before: vec4<u32>,
-    quad: vec4<u32>,
-    quad_after: vec4<u32>,
-    jump: u32,
-    cost: vec4<u32>,
-) -> vec4<u32> {
-    let below = vec4<u32>(quad_before.w, quad.xyz);
-    let above = vec4<u32>(quad.yzw, quad_after.x);
-    return cost + min(min(quad, min(below, above) + P1), vec4<u32>(jump));
-}
 
 // M: the least path cost of a pixel.
 fn min_cost(path: PathCosts) -> u32 {
@@ -116,8 +85,7 @@ fn luma_at(line: Line) -> u32 {
 
 // Path costs of the line's pixel, of luma `luma`, packed: equation 13.
 fn path_costs(line: Line, luma: u32) -> array<u32, WORDS> {
-    let change = u32(abs(i32(luma) - i32(line.luma)));
-    let p2 = max(LEAST_P2, quotient(P2 * P2_SCALE, P2_SCALE + change));
+    let p2 = penalty(luma, line.luma);
     // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
     let mask = select(0xffffffffu, 0u, line.starts);
     let minimum = min_cost(line.path) & mask;

@@ -6,6 +6,7 @@ use anyhow::Result;
 use hsad::{
     Backend,
     config::Config,
+    gpu::block_on,
     io::{Calibration, Picture, load::Stretch},
     pipeline::{self, Outcome},
 };
@@ -50,7 +51,13 @@ impl Job {
         let backend = options.open()?;
         let progress = Progress::new(options.quiet);
         let views = (&self.left, &self.right);
-        let outcome = pipeline::run(&backend, views, &self.config, |step| progress.step(step))?;
+        let outcome = block_on(pipeline::run_with_progress(
+            &backend,
+            views,
+            &self.config,
+            |step| progress.step(step),
+            |share| progress.share(share),
+        ))?;
         let mut warnings = doubts::warnings(views, &self.config, &outcome);
         let mut not_trusted = NotTrusted::new(&outcome);
         if self.config.force {

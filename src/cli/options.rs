@@ -129,8 +129,9 @@ pub struct MatchOptions {
     /// 31 [default: 1]
     #[arg(long, value_name = "PX", conflicts_with = "window")]
     cost_window: Option<u32>,
-    /// Compare blocks at every disparity of the range, in both views [default of fast: coarse to fine, near the
-    /// disparities of a map of half the size, with the left-right consistency check at half the size]
+    /// Compare at every disparity of the range [default of fast: coarse to fine, near the disparities of a map of half
+    /// the size, with the left-right consistency check at half the size; of balanced and quality, in pictures at
+    /// least 1600 px wide: over a pyramid, near the disparities of the level above]
     #[arg(long)]
     whole_range: bool,
     /// Smallest disparity in pixels, -1048576 to 1048576: with --disparities the start of the range
@@ -275,6 +276,9 @@ impl MatchOptions {
                 if let Some(PathCount(paths)) = paths {
                     let paths = |semi_global| paths.map(|paths| SemiGlobal { paths, ..semi_global });
                     costs.semi_global = costs.semi_global.and_then(paths);
+                }
+                if whole_range {
+                    costs.search = Search::Whole;
                 }
                 if search_both_views {
                     costs.cross_check = CrossCheck::Searched;

@@ -4,8 +4,8 @@ use hsad::{
     Backend,
     config::{Config, Method},
     dense::{
-        Aggregation, CostAggregation, CrossCheck, DenseParameters, Difference, Penalties, Refinement, Search,
-        WeakTexture,
+        Aggregation, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference, Penalties, Pyramid,
+        Refinement, Search, WeakTexture,
     },
     disparity::{DisparityRange, SCALE, coverage},
     image::Plane,
@@ -39,6 +39,7 @@ impl CompletedJob {
             "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
             "seeds": outcome.seeding.seeds.len(),
             "range": searched(outcome),
+            "levels": levels(&job.config, outcome),
             "rectification": rectification(&outcome.seeding.rectification),
             "brightness": outcome.seeding.brightness.as_ref().map(brightness),
             "equalised": {
@@ -111,9 +112,10 @@ fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
         Aggregation::Sad { side, .. } => Some(side),
         Aggregation::Costs(_) => None,
     };
-    let search = match aggregation {
-        Aggregation::Sad { search: Search::CoarseToFine, .. } => "coarse to fine",
-        Aggregation::Sad { search: Search::Whole, .. } | Aggregation::Costs(_) => "whole",
+    let (Aggregation::Sad { search, .. } | Aggregation::Costs(CostAggregation { search, .. })) = aggregation;
+    let search = match search {
+        Search::CoarseToFine => "coarse to fine",
+        Search::Whole => "whole",
     };
     let max_lr_difference = consistency.map(|difference| f64::from(difference) / f64::from(SCALE));
     let refinement = refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| {
@@ -172,7 +174,7 @@ fn part(Difference { weight, limit }: Difference) -> Value {
 }
 
 fn aggregation_of(aggregation: &Aggregation) -> Value {
-    let Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check }) = aggregation else {
+    let Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check, .. }) = aggregation else {
         return "window".into();
     };
     // Without paths no penalty is applied: null.
@@ -219,6 +221,13 @@ pub fn searched(Outcome { range, range_source, at_ends: [at_min, at_max], .. }: 
     value["at_min"] = number(*at_min);
     value["at_max"] = number(*at_max);
     value
+}
+
+/// Number of levels of the pyramid by which the pair was matched; 1 without a pyramid.
+fn levels(config: &Config, outcome: &Outcome) -> usize {
+    let Method::Hsad(parameters) = config.method else { return 1 };
+    let searched = DenseConfig { reference: config.reference, parameters, ..DenseConfig::new(outcome.range) };
+    Pyramid::of(&searched, outcome.dense.disparity.size()).map_or(1, |pyramid| pyramid.levels().len())
 }
 
 /// The shares of both views that do not show the scene: transparent, masked, without data, or a constant border.

@@ -77,6 +77,11 @@ impl Progress {
         self.0.suspend(print)
     }
 
+    /// Shows the share of the dense step that is done, 0 to 1.
+    pub fn share(&self, share: f32) {
+        self.begin(format!("matching every pixel, {:.0} %", 100.0 * share));
+    }
+
     /// Shows the pipeline step that begins.
     pub fn step(&self, step: Step) {
         self.begin(match step {

@@ -6,8 +6,10 @@ use super::{
     config::{Aggregation, Brightness, DenseConfig, View},
     inputs::Inputs,
     kernels::{MapRows, MapTexel, MapTexture},
+    levels,
     outputs::{Destination, Disparities, Outputs},
     plan::{BandLimits, Plan, blocks, costs},
+    pyramid::Pyramid,
     readback::MapReadback,
     word_copy::WordCopy,
 };
@@ -15,13 +17,13 @@ use super::{
 use crate::gpu::block_on;
 use crate::{
     disparity::DisparityMap,
-    error::{Error, Result, check_range},
+    error::{Error, Result, check, check_range},
     gpu::{
         Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded, refused,
         storage_buffer, try_recording,
     },
     image::{Luma, Plane, Size},
-    luma::{Input, Source, check_size, pack, packed_bytes},
+    luma::{Input, Source, check_size, packed_bytes, upload},
 };
 
 /// A disparity map of the reference view, and its confidences.
@@ -52,6 +54,9 @@ impl Dense {
 /// The disparity range and all parameters are fixed: a change needs another matcher, which compiles only the kernels that
 /// no other matcher of the same [`Gpu`] has. Only the brightness of the right view can change: [`Self::set_brightness`].
 ///
+/// A matcher searches the whole range, or coarse to fine by SAD: what a level of a [`Pyramid`] searches depends on the result
+/// of the level above, so that pyramids are matched by [`compute`] alone.
+///
 /// Pairs that exceed the device's buffer limits are matched in bands of rows. The result does not depend on where bands are
 /// cut.
 #[derive(Debug)]
@@ -67,7 +72,7 @@ impl Matcher {
     /// Compiles the kernels that `gpu` does not have yet, and allocates all memory for pairs of `size`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a value of `config` or a `size` outside its range, [`Error::TooLarge`] for a row that exceeds
+    /// [`Error::Parameter`] for a value of `config` or a `size` outside its range, and where [`Pyramid::of`] has levels; [`Error::TooLarge`] for a row that exceeds
     /// the buffer limits, [`Error::Unsupported`] for a limit that the device lacks, [`Error::OutOfMemory`],
     /// [`Error::DeviceLost`].
     #[cfg(not(target_arch = "wasm32"))]
@@ -96,16 +101,6 @@ impl Matcher {
         Self::build(gpu, size.into(), config, None, band_rows).await
     }
 
-    /// [`Self::new`] with packed luma that is on the device already.
-    pub(crate) async fn with_luma(
-        gpu: &Gpu,
-        size: Size,
-        config: &DenseConfig,
-        luma: [wgpu::Buffer; 2],
-    ) -> Result<Self> {
-        Self::build(gpu, size, config, Some(luma), u32::MAX).await
-    }
-
     async fn build(
         gpu: &Gpu,
         size: Size,
@@ -116,6 +111,12 @@ impl Matcher {
         config.validate()?;
         check_size(size)?;
         check_range("band_rows", band_rows, 1..=u32::MAX)?;
+        check(
+            Pyramid::of(config, size).is_none(),
+            "the search",
+            "coarse to fine over a pyramid",
+            "a matcher records before coarse levels have a result: Search::Whole, or dense::compute",
+        )?;
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
             let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
@@ -304,6 +305,13 @@ impl Matcher {
         self.run_timed(None).await
     }
 
+    /// [`Self::run`], submitted part by part, with calls of `progress`.
+    async fn run_by_parts(&self, progress: impl FnMut(f32)) -> Result<Dense> {
+        let mut readback = self.readback().await?;
+        self.plan.run_by_parts(readback.outputs(), progress).await?;
+        readback.read().await
+    }
+
     /// [`Self::run`] with the duration of each of the first 2,048 kernels by the device's clock, in order of execution;
     /// copies and clears are not timed.
     ///
@@ -348,7 +356,7 @@ impl Matcher {
     }
 }
 
-/// Matches one pair on `gpu`.
+/// Matches one pair on `gpu`, over a [`Pyramid`] where `config` asks for one.
 ///
 /// # Errors
 /// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
@@ -356,9 +364,38 @@ pub async fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig)
     if left.size() != right.size() {
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
-    let matcher = Matcher::new_async(gpu, left.size(), config).await?;
-    for (view, buffer) in [left, right].into_iter().zip(matcher.luma()) {
-        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&pack(view)));
+    check_size(left.size())?;
+    check_limits(gpu)?;
+    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
+    compute_uploaded(gpu, left.size(), config, luma, |_| ()).await
+}
+
+/// [`compute`] for packed luma that is on the device, with calls of `progress` with the share of the work that is done, 0
+/// to 1, where the work has parts.
+pub(crate) async fn compute_uploaded(
+    gpu: &Gpu,
+    size: Size,
+    config: &DenseConfig,
+    luma: [wgpu::Buffer; 2],
+    progress: impl FnMut(f32),
+) -> Result<Dense> {
+    config.validate()?;
+    if let Some(pyramid) = Pyramid::of(config, size) {
+        check_limits(gpu)?;
+        return levels::compute(gpu, luma, config, &pyramid, u32::MAX, progress).await;
     }
-    matcher.run_async().await
+    Matcher::build(gpu, size, config, Some(luma), u32::MAX).await?.run_by_parts(progress).await
+}
+
+/// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.
+#[cfg(feature = "verify")]
+pub(crate) async fn compute_over(
+    gpu: &Gpu,
+    [left, right]: [&Luma; 2],
+    config: &DenseConfig,
+    pyramid: &Pyramid,
+    band_rows: u32,
+) -> Result<Dense> {
+    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
+    levels::compute(gpu, luma, config, pyramid, band_rows, |_| ()).await
 }

@@ -10,9 +10,11 @@
 pub(crate) mod config;
 mod inputs;
 pub(crate) mod kernels;
+mod levels;
 mod matcher;
 mod outputs;
 mod plan;
+pub(crate) mod pyramid;
 mod readback;
 mod word_copy;
 
@@ -22,6 +24,10 @@ pub use config::{
 };
 pub(crate) use config::{Direction, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;
+#[cfg(feature = "verify")]
+pub(crate) use matcher::compute_over;
+pub(crate) use matcher::compute_uploaded;
 pub use matcher::{Dense, Matcher, compute};
 pub use outputs::{Destination, Outputs};
+pub use pyramid::Pyramid;
 pub use readback::MapReadback;

@@ -12,6 +12,7 @@ macro_rules! parts {
 
 const PARTS: &[(&str, &str)] = parts![
     "brightness",
+    "cell_layout",
     "consistent",
     "haar",
     "keypoint",
@@ -19,8 +20,10 @@ const PARTS: &[(&str, &str)] = parts![
     "luma_words",
     "map_fixed_point",
     "map_pixels",
+    "path_step",
     "quotient",
     "selection",
+    "whole_layout",
     "words",
 ];
 

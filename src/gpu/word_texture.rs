@@ -59,6 +59,17 @@ impl WordTexture {
         Ok(Self { texture, view })
     }
 
+    /// Writes `words` at the beginning of the texture, before everything that is submitted later.
+    pub(crate) fn write(&self, gpu: &Gpu, mut words: Vec<u32>) {
+        words.resize(in_rows(words.len() as u64) as usize, 0);
+        gpu.queue.write_texture(
+            self.texture.as_image_copy(),
+            bytemuck::cast_slice(&words),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * ROW), rows_per_image: None },
+            wgpu::Extent3d { width: ROW, height: words.len() as u32 / ROW, depth_or_array_layers: 1 },
+        );
+    }
+
     /// Records the copy of the first words of `buffer`, which must hold as many whole rows, to the texture.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * ROW), rows_per_image: None };

@@ -105,9 +105,24 @@ pub fn run(
 /// See [`run`].
 pub async fn run_async(
     backend: &Backend,
+    views: (&Picture, &Picture),
+    config: &Config,
+    begin: impl FnMut(Step),
+) -> Result<Outcome> {
+    run_with_progress(backend, views, config, begin, |_| ()).await
+}
+
+/// [`run_async`] with calls of `progress` with the share of [`Step::Dense`] that a device has done, 0 to 1: several per
+/// second on a slow device, and from 0 again for each search over a wider range.
+///
+/// # Errors
+/// See [`run`].
+pub async fn run_with_progress(
+    backend: &Backend,
     (left, right): (&Picture, &Picture),
     config: &Config,
     mut begin: impl FnMut(Step),
+    progress: impl FnMut(f32),
 ) -> Result<Outcome> {
     let mut times = Vec::new();
     let mut begun = None;
@@ -158,7 +173,7 @@ pub async fn run_async(
     enter(Some(Step::Dense));
     let views = views.drowned().await?;
     let search = Search { views: &views, pictures: [left, right], map: map.as_ref(), config, brightness };
-    let Found { range, dense, at_ends } = search.widening(range, range_source).await?;
+    let Found { range, dense, at_ends } = search.widening(range, range_source, progress).await?;
     let dense = without_ends(dense, range, range_source.ends_at_zero());
     let trust = trust(&dense, config, &seeding);
     let dense = in_proportion(dense, trust);

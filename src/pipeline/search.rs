@@ -39,26 +39,32 @@ pub(super) struct Found {
 
 impl Search<'_, '_> {
     /// Searches `range`, and wider ranges while the map touches an end of a range that was found.
-    pub async fn widening(&self, mut range: DisparityRange, source: RangeSource) -> Result<Found> {
+    /// Calls `progress` with the share of a search that is done, 0 to 1.
+    pub async fn widening(
+        &self,
+        mut range: DisparityRange,
+        source: RangeSource,
+        mut progress: impl FnMut(f32),
+    ) -> Result<Found> {
         let width = self.views.size().width;
         for _ in 1..SEARCHES {
-            let found = self.once(range).await?;
+            let found = self.once(range, &mut progress).await?;
             match widened(found.range, source, found.at_ends, self.config.least, width) {
                 Some(wider) => range = wider,
                 None => return Ok(found),
             }
         }
-        self.once(range).await
+        self.once(range, &mut progress).await
     }
 
-    async fn once(&self, range: DisparityRange) -> Result<Found> {
+    async fn once(&self, range: DisparityRange, progress: impl FnMut(f32)) -> Result<Found> {
         let Self { views, config, brightness, .. } = *self;
         let width = views.size().width;
         let (range, dense) = match &config.method {
             Method::Hsad(parameters) => {
                 let task = config.dense(parameters, range, brightness);
                 let range = task.searched(width)?;
-                (range, views.dense(&DenseConfig { range, ..task }).await?)
+                (range, views.dense(&DenseConfig { range, ..task }, progress).await?)
             }
             Method::Kamencay(parameters) => {
                 let task = config.kamencay(parameters, range, brightness);

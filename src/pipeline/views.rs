@@ -99,17 +99,18 @@ impl<'b> Views<'b> {
         ]
     }
 
-    /// Matches the pair: a disparity and a confidence for each pixel of the reference view that both views show.
+    /// Matches the pair: a disparity and a confidence for each pixel of the reference view that both views show. Calls
+    /// `progress` with the share of the work that a device has done, 0 to 1.
     ///
     /// Unseen pixels must not take part in the refinement, which fills holes from their neighbours. The twins refine a masked
     /// pair; their results are the device's.
-    pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
+    pub async fn dense(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
         let masked = self.masks.iter().any(Option::is_some);
         let Some(refinement) = config.parameters.refinement.filter(|_| masked) else {
-            return self.pair.dense(config).await;
+            return self.pair.dense_with_progress(config, progress).await;
         };
         let parameters = DenseParameters { refinement: None, ..config.parameters };
-        let raw = self.pair.dense(&DenseConfig { parameters, ..config.clone() }).await?;
+        let raw = self.pair.dense_with_progress(&DenseConfig { parameters, ..config.clone() }, progress).await?;
         let (left, right) = self.pair.views();
         let seen = self.seen(raw, config.reference);
         Ok(cpu::dense::refined([left, right], &seen, &refinement, config))

@@ -8,7 +8,7 @@ use crate::{
     cpu,
     dense::{
         Aggregation, Brightness, Cost, CostAggregation, CrossCheck, Dense, DenseConfig, DenseParameters, Interpolation,
-        Refinement, View,
+        Refinement, Search, View,
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     error::Result,
@@ -35,6 +35,7 @@ const PARAMETERS: DenseParameters = DenseParameters {
     aggregation: Aggregation::Costs(CostAggregation {
         cost: Cost { weak: None, ..CostAggregation::TUNED.cost },
         cross_check: CrossCheck::Searched,
+        search: Search::Whole,
         ..CostAggregation::TUNED
     }),
     interpolation: Interpolation::Equiangular,

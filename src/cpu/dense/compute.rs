@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::{
     Transforms, block_match, box_mean, cell_ranges, claim, consistency, cost, fill, half_consistency, halve, path,
-    path_winners, residual, select, support, weighted_median, winners,
+    path_winners, pyramid, residual, select, support, weighted_median, winners,
 };
 use crate::{
     dense::{
-        Aggregation, CostAggregation, CrossCheck, Dense, DenseConfig, Refinement, Search, SemiGlobal, View,
+        Aggregation, CostAggregation, CrossCheck, Dense, DenseConfig, Pyramid, Refinement, Search, SemiGlobal, View,
         kernels::halved_config,
     },
     disparity::{NONE, SCALE},
@@ -25,23 +25,35 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
         return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
     }
     config.validate()?;
+    compute_over(left, right, config, Pyramid::of(config, left.size()).as_ref())
+}
+
+/// [`compute`] over the levels of a pyramid, if there is one.
+///
+/// # Errors
+/// [`Error::Parameter`] if no pixel has a partner.
+pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Option<&Pyramid>) -> Result<Dense> {
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
     let unchanged = [left, right];
     let right = &right.map(|&luma| config.brightness.apply(luma));
     let view = config.reference;
     let mut dense;
     let other_disparities;
-    match &config.parameters.aggregation {
-        Aggregation::Sad { search: Search::Whole, .. } => {
+    match (&config.parameters.aggregation, levels) {
+        (Aggregation::Sad { search: Search::Whole, .. }, _) => {
             dense = block_match(left, right, view, &config, None);
             other_disparities =
                 config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
         }
-        Aggregation::Sad { search: Search::CoarseToFine, .. } => {
+        (Aggregation::Sad { search: Search::CoarseToFine, .. }, _) => {
             dense = coarse_to_fine([left, right], unchanged, &config);
             other_disparities = None;
         }
-        Aggregation::Costs(costs) => {
+        (Aggregation::Costs(costs), Some(levels)) => {
+            dense = pyramid(unchanged, &config, costs, levels);
+            other_disparities = None;
+        }
+        (Aggregation::Costs(costs), None) => {
             let paths = all_paths(left, right, view, &config, costs);
             dense = select(&paths, left.size(), &config);
             other_disparities = config.parameters.consistency.map(|_| match costs.cross_check {

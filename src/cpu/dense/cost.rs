@@ -1,5 +1,7 @@
 //! The matching cost of each pixel and disparity, from the definition.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{census, wide_census};
@@ -27,36 +29,46 @@ impl Transforms {
 
 /// The matching costs of each pixel of `reference`, padded to a multiple of four disparities; a pixel without a partner
 /// is compared with the nearest pixel of the row. Texture counts as weak where both views have wide census transforms.
-pub fn cost([reference, other]: [&Transforms; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
-    let Size { width, height } = reference.census.size();
-    let at = |plane: &Plane<u32>, x: i64, y: u32| plane.get_clamped(x, i64::from(y));
+pub fn cost(views: [&Transforms; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
+    let Size { width, height } = views[0].census.size();
+    let disparities = 0..range.count.next_multiple_of(4);
+    let pixel = |x: u32, y: u32| costs_of_pixel(views, view, cost, (x, y), range.min, disparities.clone());
+    (0..height).into_par_iter().flat_map_iter(|y| (0..width).flat_map(move |x| pixel(x, y))).collect()
+}
+
+/// The matching costs of pixel (`x`, `y`) at `disparities` from `min` px on.
+pub(super) fn costs_of_pixel<'a>(
+    [reference, other]: [&'a Transforms; 2],
+    view: View,
+    cost: &'a Cost,
+    (x, y): (u32, u32),
+    min: i32,
+    disparities: Range<u32>,
+) -> impl Iterator<Item = u8> + use<'a> {
+    let x = i64::from(x);
+    let at = move |plane: &Plane<u32>, x: i64| plane.get_clamped(x, i64::from(y));
     let luma = |word: u32| i64::from(word & 255);
-    let gradient = |plane: &Plane<u32>, x: i64, y: u32| luma(at(plane, x + 1, y)) - luma(at(plane, x - 1, y));
+    let gradient = move |plane: &Plane<u32>, x: i64| luma(at(plane, x + 1)) - luma(at(plane, x - 1));
     let hamming = |a: u32, b: u32| ((a ^ b) >> 8).count_ones();
+    let (a, slope) = (at(&reference.census, x), gradient(&reference.census, x));
     let weak_texture = cost.weak.zip(reference.wide.as_ref()).zip(other.wide.as_ref());
-    let row = |y: u32| {
-        (0..i64::from(width)).flat_map(move |x| {
-            let (a, slope) = (at(&reference.census, x, y), gradient(&reference.census, x, y));
-            let weak = weak_texture.filter(|((_, wide), _)| at(wide, x, y) & 255 != 0);
-            (0..range.count.next_multiple_of(4)).map(move |index| {
-                let disparity = i64::from(range.min) + i64::from(index);
-                let partner = if view == View::Left { x - disparity } else { x + disparity };
-                let b = at(&other.census, partner, y);
-                let distance = hamming(a, b);
-                let change = slope.abs_diff(gradient(&other.census, partner, y)) as u32;
-                let texture = match weak {
-                    Some(((weak, reference), other)) => {
-                        weak.census * distance + weak.wide_census * hamming(at(reference, x, y), at(other, partner, y))
-                    }
-                    None => {
-                        let difference = luma(a).abs_diff(luma(b)) as u32;
-                        cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
-                    }
-                };
-                let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);
-                (sum >> WEIGHT_BITS).min(MAX_COST) as u8
-            })
-        })
-    };
-    (0..height).into_par_iter().flat_map_iter(row).collect()
+    let weak = weak_texture.filter(|((_, wide), _)| at(wide, x) & 255 != 0);
+    disparities.map(move |index| {
+        let disparity = i64::from(min) + i64::from(index);
+        let partner = if view == View::Left { x - disparity } else { x + disparity };
+        let b = at(&other.census, partner);
+        let distance = hamming(a, b);
+        let change = slope.abs_diff(gradient(&other.census, partner)) as u32;
+        let texture = match weak {
+            Some(((weak, reference), other)) => {
+                weak.census * distance + weak.wide_census * hamming(at(reference, x), at(other, partner))
+            }
+            None => {
+                let difference = luma(a).abs_diff(luma(b)) as u32;
+                cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
+            }
+        };
+        let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);
+        (sum >> WEIGHT_BITS).min(MAX_COST) as u8
+    })
 }

@@ -1,6 +1,6 @@
 //! Matching by census, luma and gradient costs.
 
-use super::{Cost, Difference, Direction, Paths, Penalties, WeakTexture};
+use super::{Cost, Difference, Direction, Paths, Penalties, Search, WeakTexture};
 use crate::error::{Result, check, check_range};
 
 /// The largest side of a cost-averaging window, in pixels.
@@ -18,6 +18,9 @@ pub struct CostAggregation {
     pub semi_global: Option<SemiGlobal>,
     /// The source of the other view's disparities in the left-right consistency check.
     pub cross_check: CrossCheck,
+    /// The disparities at which a pixel is compared. [`Search::CoarseToFine`] has effect on large pictures only: see
+    /// [`crate::dense::Pyramid`].
+    pub search: Search,
 }
 
 /// Semi-global matching (Hirschmueller, PAMI 2008).
@@ -56,6 +59,7 @@ impl CostAggregation {
         window: 1,
         semi_global: Some(SemiGlobal::TUNED),
         cross_check: CrossCheck::Claimed,
+        search: Search::CoarseToFine,
     };
 
     /// Checks that costs and penalties fit in cost volumes of 8 bits.

@@ -15,6 +15,7 @@ pub use costs::{CostAggregation, CrossCheck, SemiGlobal};
 pub use interpolation::Interpolation;
 pub use paths::{Direction, Paths};
 pub use penalties::Penalties;
+pub(crate) use refinement::Filters;
 pub use refinement::{Median, Refinement};
 pub use view::View;
 
@@ -35,9 +36,13 @@ const CENSUS_SIDE: u32 = 5;
 pub enum Search {
     /// The whole range.
     Whole,
-    /// Per cell of 16x16 pixels, the disparities that a half-size map shows in and around the cell, with a margin of 2;
-    /// the whole range if less than 10 % of them have a disparity. Objects too thin or too small for the half-size map can be lost. The
-    /// other view is searched at half the size only.
+    /// Per cell of the picture, the disparities that a map of half the size shows in and around the cell. Objects too thin
+    /// or too small for the half-size map can be lost.
+    ///
+    /// Block matching by SAD: cells of 16x16 pixels, a margin of 2; the whole range if less than 10 % of the pixels there
+    /// have a disparity. The other view is searched at half the size only.
+    ///
+    /// Costs: see [`crate::dense::Pyramid`].
     CoarseToFine,
 }
 

@@ -30,6 +30,30 @@ pub struct Refinement {
     pub medians_after: u32,
 }
 
+/// The filters of a refinement, in order: support, medians, filling, more medians.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Filters {
+    /// See [`Refinement::support`].
+    pub(crate) support: u32,
+    /// The medians before filling.
+    pub(crate) before: Vec<Median>,
+    /// Whether holes are filled.
+    pub(crate) fill: bool,
+    /// The medians after filling.
+    pub(crate) after: Vec<Median>,
+}
+
+impl From<&Refinement> for Filters {
+    fn from(refinement: &Refinement) -> Self {
+        Self {
+            support: refinement.support,
+            before: refinement.before().collect(),
+            fill: refinement.fill,
+            after: refinement.after().collect(),
+        }
+    }
+}
+
 impl Refinement {
     /// Checks that all values lie in their ranges.
     pub(super) fn validate(&self) -> Result<()> {

@@ -97,7 +97,7 @@ pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> Dens
 }
 
 /// The disparities of a half-size pair that correspond to `range`.
-fn halved(range: DisparityRange) -> DisparityRange {
+pub(crate) fn halved(range: DisparityRange) -> DisparityRange {
     let min = range.min.div_euclid(2);
     DisparityRange { min, count: (-(-range.last()).div_euclid(2) - min + 1) as u32 }
 }

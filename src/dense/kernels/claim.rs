@@ -45,14 +45,21 @@ impl Claim {
     /// Lets the pixels of `band` of `view`, whose keys follow `matches`, claim their partners in `claims`, which must
     /// be cleared to 0 before.
     pub fn prepare(&self, band: &VolumeBand, view: View, matches: MapBuffer<'_>, claims: &wgpu::Buffer) -> Dispatch {
-        let params = Params {
-            width: band.width,
-            rows: band.rows,
-            min_disparity: band.range.min,
-            direction: view.direction(),
-            key_offset: matches.layout.key_offset(),
-        };
-        let groups = [band.width.div_ceil(WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
+        self.prepare_rows(band.rows, band.range.min, view, matches, claims)
+    }
+
+    /// The same for the first `rows` rows of `matches`, with the disparity `min_disparity` of index 0, in pixels.
+    pub(in crate::dense) fn prepare_rows(
+        &self,
+        rows: u32,
+        min_disparity: i32,
+        view: View,
+        matches: MapBuffer<'_>,
+        claims: &wgpu::Buffer,
+    ) -> Dispatch {
+        let (width, key_offset) = (matches.layout.width, matches.layout.key_offset());
+        let params = Params { width, rows, min_disparity, direction: view.direction(), key_offset };
+        let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[matches.buffer, claims], groups)
     }
 }

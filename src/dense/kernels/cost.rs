@@ -9,14 +9,52 @@ use crate::{
 const WORKGROUP: [u32; 2] = [8, 8];
 
 shader_struct! {
-    struct Params {
-        width: u32,
-        rows: u32,
-        first_row: u32,
-        min_disparity: i32,
-        words: u32,
-        wide_offset: u32,
+    /// Uniforms of both cost kernels.
+    pub(super) struct Params {
+        pub(super) width: u32,
+        pub(super) rows: u32,
+        pub(super) first_row: u32,
+        pub(super) min_disparity: i32,
+        pub(super) pixel_words: u32,
+        pub(super) top: u32,
+        pub(super) columns: u32,
+        pub(super) cells: u32,
+        pub(super) wide_offset: u32,
     }
+}
+
+/// Constants of both cost kernels.
+pub(super) fn cost_constants(cost: &Cost, view: View) -> Vec<(&'static str, i64)> {
+    // Each step appends pixels: in front when searching to the left, behind when searching to the right.
+    let (direction, front, kept, new) = match view {
+        View::Left => (-1, 4, 0, 0),
+        View::Right => (1, 1, 4, 9),
+    };
+    // Without a cost of its own, weak texture costs as much as any other.
+    let weak = cost.weak.unwrap_or(WeakTexture { spread: 0, census: cost.census, wide_census: 0 });
+    vec![
+        ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
+        ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+        ("DIRECTION", direction),
+        ("FRONT", front),
+        ("KEPT", kept),
+        ("NEW", new),
+        ("CENSUS_WEIGHT", cost.census.into()),
+        ("DIFFERENCE_WEIGHT", cost.difference.weight.into()),
+        ("DIFFERENCE_LIMIT", cost.difference.limit.into()),
+        ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
+        ("GRADIENT_LIMIT", cost.gradient.limit.into()),
+        ("WEAK_TEXTURE", cost.weak.is_some().into()),
+        ("WEAK_CENSUS_WEIGHT", weak.census.into()),
+        ("WIDE_CENSUS_WEIGHT", weak.wide_census.into()),
+        ("WEIGHT_BITS", WEIGHT_BITS.into()),
+        ("MAX_COST", MAX_COST.into()),
+    ]
+}
+
+/// Workgroups of both cost kernels: a thread has eight pixels of a row.
+pub(super) fn groups(width: u32, rows: u32) -> [u32; 3] {
+    [width.div_ceil(8 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1]
 }
 
 /// The matching-cost kernel, for one view as the reference.
@@ -26,35 +64,11 @@ pub struct CostVolume(Kernel);
 impl CostVolume {
     /// Source, bindings and constants of the kernel.
     pub fn stage(cost: &Cost, view: View) -> Stage {
-        // Each step appends pixels: in front when searching to the left, behind when searching to the right.
-        let (direction, front, kept, new) = match view {
-            View::Left => (-1, 4, 0, 0),
-            View::Right => (1, 1, 4, 9),
-        };
-        // Without a cost of its own, weak texture costs as much as any other.
-        let weak = cost.weak.unwrap_or(WeakTexture { spread: 0, census: cost.census, wide_census: 0 });
         Stage {
             name: "cost",
-            source: include_str!("../../../shaders/dense/cost.wgsl"),
+            source: concat!("#import whole_layout\n", include_str!("../../../shaders/dense/cost.wgsl")),
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
-            constants: vec![
-                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-                ("DIRECTION", direction),
-                ("FRONT", front),
-                ("KEPT", kept),
-                ("NEW", new),
-                ("CENSUS_WEIGHT", cost.census.into()),
-                ("DIFFERENCE_WEIGHT", cost.difference.weight.into()),
-                ("DIFFERENCE_LIMIT", cost.difference.limit.into()),
-                ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
-                ("GRADIENT_LIMIT", cost.gradient.limit.into()),
-                ("WEAK_TEXTURE", cost.weak.is_some().into()),
-                ("WEAK_CENSUS_WEIGHT", weak.census.into()),
-                ("WIDE_CENSUS_WEIGHT", weak.wide_census.into()),
-                ("WEIGHT_BITS", WEIGHT_BITS.into()),
-                ("MAX_COST", MAX_COST.into()),
-            ],
+            constants: cost_constants(cost, view),
         }
     }
 
@@ -77,10 +91,10 @@ impl CostVolume {
             rows: band.rows,
             first_row: band.first_row,
             min_disparity: band.range.min,
-            words: band.words(),
+            pixel_words: band.words(),
             wide_offset,
+            ..bytemuck::Zeroable::zeroed()
         };
-        let groups = [band.width.div_ceil(8 * WORKGROUP[0]), band.rows.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(&params, &[reference, other, volume], groups)
+        self.0.dispatch(&params, &[reference, other, volume], groups(band.width, band.rows))
     }
 }

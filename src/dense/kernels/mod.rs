@@ -2,7 +2,11 @@
 
 mod block_match;
 mod box_mean;
+mod cell_cost;
+mod cell_layout;
+mod cell_path;
 mod cell_ranges;
+mod cell_select;
 mod cells;
 mod census;
 mod claim;
@@ -26,9 +30,14 @@ mod wide_census;
 
 pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
+pub use cell_cost::CellCost;
+pub(in crate::dense) use cell_layout::row_words;
+pub use cell_layout::{CellLayout, LevelBand};
+pub use cell_path::CellPath;
 pub use cell_ranges::{BLOCK, CellRanges, LEAST, MARGIN};
+pub use cell_select::CellSelect;
 pub use cells::{CELL, CellBand, Ranges};
-pub(crate) use cells::{HALF_GRAIN, REACH, halved_config};
+pub(crate) use cells::{HALF_GRAIN, REACH, halved, halved_config};
 pub use census::Census;
 pub use claim::Claim;
 pub use consistency::{CheckedAgainst, Consistency};
@@ -82,11 +91,16 @@ pub fn stages() -> Vec<Stage> {
     let cost = Cost { census: 1, difference: part, gradient: part, weak: None };
     let weak = WeakTexture { spread: 1, census: 1, wide_census: 1 };
     for cost in [cost, Cost { weak: Some(weak), ..cost }] {
-        stages.extend([View::Left, View::Right].map(|view| CostVolume::stage(&cost, view)));
+        stages.extend(View::ALL.map(|view| CostVolume::stage(&cost, view)));
+        stages.extend(View::ALL.map(|view| CellCost::stage(&cost, view)));
     }
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
-    stages.push(Path::stage(&penalties, 2));
+    stages.extend([Path::stage(&penalties, 2), CellPath::stage(&penalties)]);
+    stages.extend([true, false].map(|keys| {
+        let interpolation = Interpolation::Equiangular;
+        CellSelect::stage(Selection { stored: 4, interpolation, kind: ResultKind::Matches, keys, uniqueness: 0 })
+    }));
     // Without stored paths and penalties the text contains neither.
     for (penalties, stored) in [(penalties, 3), (Penalties::NONE, 0)] {
         for interpolation in Interpolation::ALL {

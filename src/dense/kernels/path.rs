@@ -55,9 +55,14 @@ impl Params {
 
 /// Constants of both path kernels.
 pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static str, i64)> {
-    vec![
-        ("WORKGROUP", WORKGROUP.into()),
-        ("WORDS", words.into()),
+    let mut constants = vec![("WORKGROUP", WORKGROUP.into()), ("WORDS", words.into())];
+    constants.extend(penalty_constants(penalties));
+    constants
+}
+
+/// Constants of `shaders/shared/path_step.wgsl`.
+pub(super) fn penalty_constants(penalties: &Penalties) -> [(&'static str, i64); 4] {
+    [
         ("P1", penalties.p1.into()),
         ("P2", penalties.p2.into()),
         ("LEAST_P2", penalties.least_p2.into()),

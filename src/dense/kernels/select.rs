@@ -15,7 +15,7 @@ use crate::{
 /// Inputs and outputs of the selection.
 #[derive(Clone, Copy, Debug)]
 pub struct Selection {
-    /// Number of stored paths; the kernel follows one more itself.
+    /// Number of stored paths; [`Select`] follows one more itself.
     pub stored: u32,
     /// Sub-pixel interpolation.
     pub interpolation: Interpolation,

@@ -78,7 +78,7 @@ pub(in crate::dense) fn plan(
     if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
         let views = ComparedViews { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
-        plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
+        plan_refinement(gpu, &mut plan, &refinement.into(), Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }

@@ -11,13 +11,14 @@
 use super::{
     BandLimits, Plan,
     refine::{Unrefined, plan_refinement},
+    transform::Transform,
 };
 use crate::{
     dense::{
         config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
-            BoxMean, Census, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer,
-            MapLayout, Pad, Path, PathVolumes, ResultKind, Select, Selection, VolumeBand, WideCensus,
+            BoxMean, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout,
+            Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
         },
         word_copy::{CopyTarget, WordCopy},
     },
@@ -100,10 +101,11 @@ pub(in crate::dense) fn plan(
             plan.run(consistency.prepare(matches, band.rows, config.reference, *max_difference, other_disparities));
         }
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
+        plan.checkpoint();
     }
     if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
         let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
-        plan_refinement(gpu, &mut plan, refinement, Unrefined { map, size, range, views }, limits)?;
+        plan_refinement(gpu, &mut plan, &refinement.into(), Unrefined { map, size, range, views }, limits)?;
     }
     Ok(plan)
 }
@@ -172,15 +174,7 @@ impl Bands {
 /// Pictures, kernels, and the memory for census transforms and volumes of a band, shared by both views.
 struct Workspace {
     bands: Bands,
-    /// Packed luma and change of brightness, of the left and of the right view.
-    pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
-    pad: Pad,
-    transform: Census,
-    /// The kernel of the wide census, for a cost of weak texture.
-    transform_widely: Option<WideCensus>,
-    padded: wgpu::Buffer,
-    /// The census transforms of each view, and behind them the wide ones, if there are any.
-    census: [wgpu::Buffer; 2],
+    transform: Transform,
     /// Matching costs of the band and its halo rows; after averaging, of the band only.
     costs: wgpu::Buffer,
     /// The averaging kernel, and memory for costs averaged along rows only.
@@ -197,27 +191,18 @@ impl Workspace {
         plan: &mut Plan,
         bands: Bands,
         costs: &CostAggregation,
-        [left, right]: [&wgpu::Buffer; 2],
+        luma: [&wgpu::Buffer; 2],
     ) -> Result<Self> {
-        let Size { width, height } = bands.size;
+        let height = bands.size.height;
         let cost_words = bands.row_words() * u64::from((bands.rows + 2 * bands.radius).min(height));
         let transformed_rows = bands.rows + 2 * bands.halo();
-        let padding = Census::padding(bands.size, 0, transformed_rows);
-        let transform_widely = costs.cost.weak.map(|weak| WideCensus::new(gpu, weak.spread));
-        let transforms = if transform_widely.is_some() { 2 } else { 1 };
-        let transformed = transforms * u64::from(width) * u64::from(transformed_rows);
         let box_mean = match costs.window {
             1 => None,
             side => Some((BoxMean::new(gpu, side), plan.buffer("means of costs", cost_words)?)),
         };
         let penalties = costs.followed_with();
         Ok(Self {
-            pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
-            pad: Pad::new(gpu),
-            transform: Census::new(gpu),
-            transform_widely,
-            padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
-            census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
+            transform: Transform::new(gpu, plan, &costs.cost, (bands.size, transformed_rows), luma)?,
             costs: plan.buffer("costs", cost_words)?,
             box_mean,
             paths: plan.buffer("paths", bands.path_words() * bands.directions.len() as u64)?,
@@ -228,38 +213,15 @@ impl Workspace {
 
     /// Plans the census transforms of band `index` and its halo, for both views.
     fn transform(&self, plan: &mut Plan, index: usize) {
-        let (size, halo) = (self.bands.size, self.bands.halo());
-        let rows = self.bands.band(index).rows + 2 * halo;
+        let halo = self.bands.halo();
         let first_row = self.bands.first_row(index).cast_signed() - halo.cast_signed();
-        for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
-            let padding = Census::padding(size, first_row, rows);
-            plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
-            plan.run(self.transform.prepare(Size::new(size.width, rows), &self.padded, census));
-            if let Some(transform) = &self.transform_widely {
-                let size = Size::new(size.width, rows);
-                plan.run(transform.prepare(size, &self.padded, census, self.wide_offset()));
-            }
-        }
-    }
-
-    /// The word of a census buffer where the wide census transforms begin: behind those of a whole band and its halo.
-    fn wide_offset(&self) -> u32 {
-        self.bands.size.width * (self.bands.rows + 2 * self.bands.halo())
+        self.transform.plan(plan, first_row, self.bands.band(index).rows + 2 * halo);
     }
 
     /// The buffers of a path of a view.
     fn lines(&self, view: View) -> LineBuffers<'_> {
-        let [reference, _] = self.census_of(view);
+        let [reference, _] = self.transform.of(view);
         LineBuffers { reference, costs: &self.costs, paths: &self.paths }
-    }
-
-    /// The census transforms of `view`, then of the other view.
-    fn census_of(&self, view: View) -> [&wgpu::Buffer; 2] {
-        let [left, right] = &self.census;
-        match view {
-            View::Left => [left, right],
-            View::Right => [right, left],
-        }
     }
 }
 
@@ -312,8 +274,8 @@ impl Side {
         let above = bands.radius.min(first_row);
         let below = bands.radius.min(bands.size.height - first_row - band.rows);
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
-        let (census, wide_offset) = (workspace.census_of(self.view), workspace.wide_offset());
-        plan.run(self.cost.prepare(&with_halo, census, wide_offset, &workspace.costs));
+        let (views, wide_offset) = (workspace.transform.of(self.view), workspace.transform.wide_offset());
+        plan.run(self.cost.prepare(&with_halo, views, wide_offset, &workspace.costs));
         if let Some((box_mean, means)) = &workspace.box_mean {
             let band_rows = above..above + band.rows;
             for pass in box_mean.prepare(&with_halo, band_rows, &workspace.costs, means) {

@@ -3,8 +3,12 @@
 pub(super) mod blocks;
 mod coarse_to_fine;
 pub(super) mod costs;
+mod level;
 mod other_winners;
 mod refine;
+mod transform;
+
+pub(super) use level::{LevelKernels, LevelTask};
 
 use super::{
     config::{Brightness, DenseConfig, View},
@@ -14,7 +18,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Dispatch, Gpu, Stopwatch, WordTexture, in_rows, storage_buffer, store, uniform_buffer},
+    gpu::{Dispatch, Gpu, Readback, Stopwatch, WordTexture, guarded, in_rows, storage_buffer, store, uniform_buffer},
     image::Size,
 };
 
@@ -38,6 +42,8 @@ pub(super) enum Step {
     ToTexture(wgpu::Buffer, WordTexture),
     /// Clears a whole buffer to 0.
     Clear(wgpu::Buffer),
+    /// The end of a part that can be submitted by itself.
+    Checkpoint,
 }
 
 /// The disparities and confidences of a whole view, laid out as the caller gets them. The buffers are only copied,
@@ -105,6 +111,11 @@ impl Plan {
         self.steps.push(Step::Clear(buffer.clone()));
     }
 
+    /// Ends a part of the plan, between which progress is seen.
+    pub(super) fn checkpoint(&mut self) {
+        self.steps.push(Step::Checkpoint);
+    }
+
     pub(super) fn copy(&mut self, copy: WordCopy) {
         self.steps.push(Step::Copy(copy));
     }
@@ -160,8 +171,38 @@ impl Plan {
 
     /// Records all steps, and the timestamps of the kernels if there is a `stopwatch`.
     pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs, stopwatch: Option<&Stopwatch>) {
+        Self::record_steps(&self.steps, encoder, outputs, stopwatch);
+    }
+
+    /// Submits the plan part by part, each when the one before is done, and calls `progress` with the share of the parts
+    /// that are done, 0 to 1. Disparities go to a buffer.
+    pub(super) async fn run_by_parts(&self, outputs: &Outputs, mut progress: impl FnMut(f32)) -> Result<()> {
+        let is_checkpoint = |step: &Step| matches!(step, Step::Checkpoint);
+        let done = Readback::new(&self.gpu, "a part is done", 4);
+        let parts: Vec<_> = self.steps.split(is_checkpoint).filter(|steps| !steps.is_empty()).collect();
+        for (number, steps) in (1..).zip(&parts) {
+            guarded(&self.gpu, "dense matching", || {
+                let mut encoder = self.gpu.encoder("dense");
+                Self::record_steps(steps, &mut encoder, outputs, None);
+                done.record(&mut encoder, &outputs.matcher);
+                self.gpu.queue.submit([encoder.finish()]);
+                Ok(())
+            })
+            .await?;
+            done.read::<u32>(1).await?;
+            progress(number as f32 / parts.len() as f32);
+        }
+        Ok(())
+    }
+
+    fn record_steps(
+        steps: &[Step],
+        encoder: &mut wgpu::CommandEncoder,
+        outputs: &Outputs,
+        stopwatch: Option<&Stopwatch>,
+    ) {
         let (mut kernel, mut output) = (0, 0);
-        for step in &self.steps {
+        for step in steps {
             match step {
                 Step::Run(dispatch) => {
                     dispatch.record_timed(encoder, stopwatch.and_then(|stopwatch| stopwatch.writes(kernel)));
@@ -169,6 +210,7 @@ impl Plan {
                 }
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
                 Step::Clear(buffer) => encoder.clear_buffer(buffer, 0, None),
+                Step::Checkpoint => {}
                 Step::Copy(copy) => match &copy.to {
                     CopyTarget::Buffer(buffer) => copy.record(encoder, buffer),
                     CopyTarget::Disparities => {

@@ -6,7 +6,7 @@
 use super::{BandLimits, Plan, WholeMap};
 use crate::{
     dense::{
-        config::{Median, Refinement, View},
+        config::{Filters, Median, View},
         kernels::{ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, WeightedMedian},
         word_copy::{CopyTarget, WordCopy},
     },
@@ -32,9 +32,9 @@ pub(super) struct Unrefined<'a> {
 struct Medians(Vec<(Median, WeightedMedian)>);
 
 impl Medians {
-    fn new(gpu: &Gpu, refinement: &Refinement) -> Self {
+    fn new(gpu: &Gpu, filters: &Filters) -> Self {
         let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
-        for median in refinement.before().chain(refinement.after()) {
+        for &median in filters.before.iter().chain(&filters.after) {
             if kernels.iter().all(|(known, _)| *known != median) {
                 kernels.push((median, WeightedMedian::new(gpu, median)));
             }
@@ -55,25 +55,25 @@ impl Medians {
 pub(super) fn plan_refinement(
     gpu: &Gpu,
     plan: &mut Plan,
-    refinement: &Refinement,
+    filters: &Filters,
     Unrefined { map, size: Size { width, height }, range, views }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
-    let halo = SUPPORT_RADIUS + refinement.before().chain(refinement.after()).map(|median| median.radius).sum::<u32>();
+    let halo = SUPPORT_RADIUS + filters.before.iter().chain(&filters.after).map(|median| median.radius).sum::<u32>();
     let rows = window_rows(gpu, Size { width, height }, halo, limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
     let pixels = u64::from(largest.pixels());
     let words = largest.words().max(in_rows(pixels));
     let unrefined = plan.buffer("disparities to refine", words)?;
     let supported = plan.buffer("supported disparities", words)?;
-    let with_holes = match refinement.fill {
+    let with_holes = match filters.fill {
         true => Some(plan.word_texture("disparities with holes", pixels)?),
         false => None,
     };
     let filtered = plan.buffer("filtered disparities", pixels)?;
     let residuals = plan.buffer("residuals", u64::from(width.div_ceil(4)) * u64::from(largest.rows))?;
-    let (residual, support, fill) = (Residual::new(gpu), Support::new(gpu, refinement.support), Fill::new(gpu));
-    let medians = Medians::new(gpu, refinement);
+    let (residual, support, fill) = (Residual::new(gpu), Support::new(gpu, filters.support), Fill::new(gpu));
+    let medians = Medians::new(gpu, filters);
     let [left, right] = views.luma;
     let luma = if views.reference == View::Left { left } else { right };
 
@@ -97,7 +97,7 @@ pub(super) fn plan_refinement(
         let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
             medians.get(median).prepare(size, (luma, top), [disparities, before], to)
         };
-        for median in refinement.before() {
+        for &median in &filters.before {
             plan.run(filter(median, [maps[0], maps[0], maps[1]]));
             maps.swap(0, 1);
         }
@@ -107,7 +107,7 @@ pub(super) fn plan_refinement(
             // Later filters read the map with holes to recognise filled pixels.
             maps.swap(0, 1);
         }
-        for median in refinement.after() {
+        for &median in &filters.after {
             plan.run(filter(median, maps));
             maps.swap(0, 2);
         }
@@ -121,6 +121,7 @@ pub(super) fn plan_refinement(
             let (to_word, words) = (row_words * u64::from(first_row), row_words * u64::from(result_rows));
             plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
         }
+        plan.checkpoint();
     }
     Ok(())
 }

@@ -8,9 +8,9 @@ mod pipelines;
 mod rectify;
 
 pub use dense::{
-    BlockMatchTrial, BoxMeanTrial, CellRangesTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial,
-    HalveTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial, ResidualTrial, SelectTrial, SupportTrial,
-    WideCensusTrial,
+    BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial, CellSelectTrial, CensusTrial,
+    ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial,
+    ResidualTrial, SelectTrial, SupportTrial, WideCensusTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,
@@ -18,7 +18,7 @@ pub use features::{
 };
 pub use kamencay::{BeliefCostTrial, BeliefReduceTrial, BeliefSelectTrial, BeliefTrial, KamencayTrial, MeanShiftTrial};
 pub use luma::{LumaTextureTrial, LumaTrial};
-pub use pipelines::DenseTrial;
+pub use pipelines::{DenseTrial, PyramidTrial};
 pub use rectify::WarpTrial;
 
 use super::trial::Subject;

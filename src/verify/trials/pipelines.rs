@@ -2,8 +2,8 @@
 
 use crate::{
     config::Preset,
-    cpu::dense::compute,
-    dense::{Brightness, Dense, DenseConfig, Matcher},
+    cpu::dense::{self as twins, compute},
+    dense::{Brightness, Dense, DenseConfig, Matcher, Pyramid, compute_over},
     disparity::DisparityRange,
     error::Result,
     gpu::block_on,
@@ -19,6 +19,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::pipeline("fast", |size, dice| Box::new(DenseTrial::of_preset(Preset::Fast, size, dice))),
     Subject::pipeline("balanced", |size, dice| Box::new(DenseTrial::of_preset(Preset::Balanced, size, dice))),
     Subject::pipeline("quality", |size, dice| Box::new(DenseTrial::of_preset(Preset::Quality, size, dice))),
+    Subject::pipeline("pyramid", |size, dice| Box::new(PyramidTrial::draw(size, dice))),
     Subject::pipeline("paper", |size, dice| Box::new(DenseTrial::of_preset(Preset::Paper, size, dice))),
 ];
 
@@ -94,5 +95,46 @@ impl Trial for DenseTrial {
 
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(Self::arrays(compute(&self.left, &self.right, &self.config)?))
+    }
+}
+
+/// A pair to be matched over a pyramid.
+#[derive(Clone, Debug)]
+pub struct PyramidTrial {
+    /// The pair.
+    pub dense: DenseTrial,
+    /// The levels.
+    pub pyramid: Pyramid,
+}
+
+impl PyramidTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let preset = dice.pick(&[Preset::Balanced, Preset::Quality]);
+        let dense = DenseTrial::of_preset(preset, size, dice);
+        // Verified by the CPU: the range has a disparity that gives a pixel a partner.
+        let range = dense.config.searched(size.width).unwrap_or(dense.config.range);
+        let pyramid = Pyramid::down_to(dice.pick(&[20, 60]), size, range);
+        Self { dense, pyramid }
+    }
+}
+
+impl Trial for PyramidTrial {
+    fn parameters(&self) -> String {
+        format!("{} levels, {}", self.pyramid.levels().len(), self.dense.parameters())
+    }
+
+    fn input(&self) -> Vec<Array> {
+        self.dense.input()
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Self { dense: DenseTrial { left, right, config, band_rows }, pyramid } = self;
+        let dense = block_on(compute_over(bench.gpu, [left, right], config, pyramid, *band_rows))?;
+        Ok(DenseTrial::arrays(dense))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let Self { dense: DenseTrial { left, right, config, .. }, pyramid } = self;
+        Ok(DenseTrial::arrays(twins::compute_over(left, right, config, Some(pyramid))?))
     }
 }

@@ -43,7 +43,8 @@ fn costs(reference: View, window: u32, paths: Option<Paths>, cross_check: CrossC
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     let semi_global = paths.map(|paths| SemiGlobal { penalties, paths });
     config(reference).with(|parameters| {
-        parameters.aggregation = Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check });
+        parameters.aggregation =
+            Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check, search: Search::Whole });
         parameters.refinement =
             Some(Refinement { support: 9, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 });
     })

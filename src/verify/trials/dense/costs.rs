@@ -166,11 +166,7 @@ impl CostTrial {
         let first = dice.below(size.height.min(4));
         let pair = dice.pair(size);
         let rows = first..size.height - dice.below(size.height - first);
-        let weak = dice.coin().then(|| WeakTexture {
-            spread: dice.pick(&[60, 200, 700]),
-            census: dice.pick(&[0, 10, 255]),
-            wide_census: dice.pick(&[6, 40, 255]),
-        });
+        let weak = weak_texture(dice);
         let cost = Cost { census: census_weight, difference, gradient, weak };
         Self { views: pair.map(|luma| Transforms::new(&luma, &cost)), view, cost, range, rows }
     }
@@ -206,8 +202,16 @@ impl Trial for CostTrial {
     }
 }
 
+pub(super) fn weak_texture(dice: &mut Dice) -> Option<WeakTexture> {
+    dice.coin().then(|| WeakTexture {
+        spread: dice.pick(&[60, 200, 700]),
+        census: dice.pick(&[0, 10, 255]),
+        wide_census: dice.pick(&[6, 40, 255]),
+    })
+}
+
 /// The census transforms of a view, and behind them the wide ones.
-fn transforms(view: &Transforms) -> Vec<u32> {
+pub(super) fn transforms(view: &Transforms) -> Vec<u32> {
     let wide = view.wide.as_ref().map_or(&[][..], |wide| wide.data());
     [view.census.data(), wide].concat()
 }

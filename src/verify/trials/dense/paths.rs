@@ -28,7 +28,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("claim", |size, dice| Box::new(ClaimTrial::draw(size, dice))),
 ];
 
-fn penalties(dice: &mut Dice) -> Penalties {
+pub(super) fn penalties(dice: &mut Dice) -> Penalties {
     let p2 = 1 + dice.below(128);
     let least_p2 = 1 + dice.below(p2);
     Penalties { p1: dice.below(least_p2 + 1), p2, least_p2, p2_scale: dice.pick(&[1, 8, 16, 255]) }
