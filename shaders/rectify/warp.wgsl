@@ -7,7 +7,6 @@
 //   WORKGROUP_WIDTH    threads per workgroup along x
 //   WORKGROUP_HEIGHT   threads per workgroup along y
 //   SUBPIXEL_BITS      bits after the point of positions and weights
-//   SPACING_BITS       log2 of the distance of nodes, in pixels
 //   NONE               coordinates of a node without a position
 
 struct Params {
@@ -18,25 +17,27 @@ struct Params {
     source_height: i32,
     // Nodes per row.
     columns: u32,
+    // log2 of the distance of nodes, in pixels.
+    spacing_bits: u32,
 }
 
 const ONE = 1 << SUBPIXEL_BITS;
-const SPACING = 1 << SPACING_BITS;
 
 @group(0) @binding(0) var<uniform> params: Params;
 // Source and warped picture, four pixels packed per u32, rows of ceil(width / 4) u32; bytes beyond the width are 0.
 @group(0) @binding(1) var<storage, read> source: array<u32>;
-// Positions in the source at every SPACING-th pixel along x and y.
+// Positions in the source at every 2^spacing_bits-th pixel along x and y.
 @group(0) @binding(2) var<storage, read> nodes: array<vec2<i32>>;
 @group(0) @binding(3) var<storage, read_write> warped: array<u32>;
 
-// (a (SPACING - t) + b t) / SPACING, rounded to the nearest, halves up. The difference fits in 32 bits, its product with
-// t may not.
+// (a (S - t) + b t) / S with S = 2^spacing_bits, rounded to the nearest, halves up. The difference fits in 32 bits, its
+// product with t may not.
 fn between(a: vec2<i32>, b: vec2<i32>, t: i32) -> vec2<i32> {
     let difference = b - a;
-    let bits = vec2<u32>(SPACING_BITS);
-    let rest = difference & vec2<i32>(SPACING - 1);
-    return a + (difference >> bits) * t + ((rest * t + SPACING / 2) >> bits);
+    let spacing = 1 << params.spacing_bits;
+    let bits = vec2<u32>(params.spacing_bits);
+    let rest = difference & vec2<i32>(spacing - 1);
+    return a + (difference >> bits) * t + ((rest * t + spacing / 2) >> bits);
 }
 
 fn outer_weight(near: i32, far: i32) -> i32 {
@@ -76,13 +77,13 @@ fn interpolated(position: vec2<i32>) -> u32 {
 }
 
 fn luma_at(x: u32, y: u32) -> u32 {
-    let node = (y >> SPACING_BITS) * params.columns + (x >> SPACING_BITS);
+    let node = (y >> params.spacing_bits) * params.columns + (x >> params.spacing_bits);
     let below = node + params.columns;
     let corners = array<vec2<i32>, 4>(nodes[node], nodes[node + 1u], nodes[below], nodes[below + 1u]);
     if any(vec4<i32>(corners[0].x, corners[1].x, corners[2].x, corners[3].x) == vec4<i32>(NONE)) {
         return 0u;
     }
-    let t = vec2<i32>(vec2<u32>(x, y)) & vec2<i32>(SPACING - 1);
+    let t = vec2<i32>(vec2<u32>(x, y)) & vec2<i32>((1 << params.spacing_bits) - 1);
     return interpolated(between(between(corners[0], corners[2], t.y), between(corners[1], corners[3], t.y), t.x));
 }
 

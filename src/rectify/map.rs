@@ -11,8 +11,12 @@ use crate::{
     luma::{MAX_SIDE, check_size},
 };
 
-/// log2 of the distance of the map's nodes, in pixels.
-pub(crate) const SPACING_BITS: u32 = 4;
+/// log2 of the largest and of the smallest distance of the map's nodes, in pixels.
+const SPACING_BITS: u32 = 4;
+const LEAST_SPACING_BITS: u32 = 1;
+
+/// Largest number of nodes, 64 MiB, for which a smaller distance is chosen: half of what every device binds.
+const MAX_NODES: u64 = 1 << 23;
 
 /// Coordinates of a node without a position.
 pub(crate) const NONE: i32 = i32::MIN;
@@ -21,19 +25,20 @@ pub(crate) const NONE: i32 = i32::MIN;
 /// coordinates in 1/2048 px fit in 32 bits.
 const ACCEPTED: Range<f64> = -0.5 * MAX_SIDE as f64..1.5 * MAX_SIDE as f64 - 1.0;
 
-const SPACING: u32 = 1 << SPACING_BITS;
 const ONE: i32 = 1 << SUBPIXEL_BITS;
 
 /// For each pixel of a picture the position in a source that the pixel shows.
 ///
 /// Positions are stored at nodes, one per 16 pixels along x and y, rounded to 1/2048 px, and interpolated bilinearly
 /// between nodes in integers. An affine map is held to within 1.5/2048 px. A map whose second derivatives are at most `f`,
-/// in 1/px, deviates by another `64 f` px at most.
+/// in 1/px, deviates by another `64 f` px at most; [`Self::within`] puts nodes closer where that is too much.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WarpMap {
     size: Size,
     source_size: Size,
-    /// Positions at pixels `(16 i, 16 j)`, in 1/2048 px; the last column and the last row lie beyond the edge.
+    /// log2 of the distance of nodes, in pixels.
+    spacing_bits: u32,
+    /// Positions at pixels `2^spacing_bits (i, j)`, in 1/2048 px; the last column and the last row lie beyond the edge.
     nodes: Plane<IVec2>,
 }
 
@@ -52,14 +57,62 @@ impl WarpMap {
         source_size: impl Into<Size>,
         source_of: impl Fn(DVec2) -> DVec2,
     ) -> Result<Self> {
+        Self::with_spacing(SPACING_BITS, size, source_size, &source_of)
+    }
+
+    /// As [`Self::new`], with nodes as close as needed for positions to within `tolerance`, in pixels: one per 16, 8, 4 or 2
+    /// pixels along x and y.
+    ///
+    /// Deviations are measured halfway between nodes, where those of bilinear interpolation are largest. Two pixels, and 2^23
+    /// nodes, are the end: [`Self::deviation`] tells what is left.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn within(
+        tolerance: f64,
+        size: impl Into<Size>,
+        source_size: impl Into<Size>,
+        source_of: impl Fn(DVec2) -> DVec2,
+    ) -> Result<Self> {
+        let (size, source_size) = (size.into(), source_size.into());
+        let mut map = Self::with_spacing(SPACING_BITS, size, source_size, &source_of)?;
+        for bits in (LEAST_SPACING_BITS..SPACING_BITS).rev() {
+            if node_grid(size, bits).pixels() > MAX_NODES || map.deviation(&source_of) <= tolerance {
+                break;
+            }
+            map = Self::with_spacing(bits, size, source_size, &source_of)?;
+        }
+        Ok(map)
+    }
+
+    /// A map with one node per `2^spacing_bits` pixels along x and y.
+    pub(crate) fn with_spacing(
+        spacing_bits: u32,
+        size: impl Into<Size>,
+        source_size: impl Into<Size>,
+        source_of: &impl Fn(DVec2) -> DVec2,
+    ) -> Result<Self> {
         let (size, source_size) = (size.into(), source_size.into());
         check_size(size)?;
         check_size(source_size)?;
-        let count = |side: u32| (side - 1) / SPACING + 2;
-        let nodes = Plane::from_fn((count(size.width), count(size.height)), |i, j| {
-            quantised(source_of(DVec2::new((SPACING * i).into(), (SPACING * j).into())))
+        let nodes = Plane::from_fn(node_grid(size, spacing_bits), |i, j| {
+            quantised(source_of((DVec2::new(i.into(), j.into())) * f64::from(1 << spacing_bits)))
         });
-        Ok(Self { size, source_size, nodes })
+        Ok(Self { size, source_size, spacing_bits, nodes })
+    }
+
+    /// The largest deviation from `source_of`, in pixels, halfway between nodes, of positions inside the source.
+    pub fn deviation(&self, source_of: impl Fn(DVec2) -> DVec2) -> f64 {
+        let half = 1 << (self.spacing_bits - 1);
+        let Size { width, height } = self.size;
+        let places = (0..height).step_by(half).flat_map(|y| (0..width).step_by(half).map(move |x| (x, y)));
+        let off = |(x, y): (u32, u32)| {
+            let position = self.inside_at(x, y)?.as_dvec2() / f64::from(ONE);
+            let off = position - source_of(DVec2::new(x.into(), y.into()));
+            // Where `source_of` has no position, its neighbours have: the end of a lens.
+            off.is_finite().then(|| off.length())
+        };
+        places.filter_map(off).fold(0.0, f64::max)
     }
 
     /// Width and height of the warped picture, in pixels.
@@ -70,6 +123,11 @@ impl WarpMap {
     /// Width and height of the source, in pixels.
     pub fn source_size(&self) -> Size {
         self.source_size
+    }
+
+    /// log2 of the distance of nodes, in pixels.
+    pub(crate) fn spacing_bits(&self) -> u32 {
+        self.spacing_bits
     }
 
     /// Nodes per row.
@@ -90,13 +148,15 @@ impl WarpMap {
     pub fn source_at(&self, x: u32, y: u32) -> Option<IVec2> {
         let Size { width, height } = self.size;
         assert!(x < width && y < height, "pixel ({x}, {y}) of {}", self.size);
-        let (i, j) = (x / SPACING, y / SPACING);
+        let bits = self.spacing_bits;
+        let (i, j) = (x >> bits, y >> bits);
+        let [across, down] = [x, y].map(|coordinate| coordinate & ((1 << bits) - 1));
         let corners @ [a, b, c, d] =
             [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].map(|(i, j)| self.nodes.get(i, j));
         if corners.iter().any(|node| node.x == NONE) {
             return None;
         }
-        Some(between(between(a, c, y % SPACING), between(b, d, y % SPACING), x % SPACING))
+        Some(between(between(a, c, down, bits), between(b, d, down, bits), across, bits))
     }
 
     /// Which pixels show the source: 255 where the position lies inside, -0.5 <= p < side - 0.5 along x and y; otherwise 0.
@@ -138,10 +198,16 @@ fn quantised(position: DVec2) -> IVec2 {
     (position * f64::from(ONE) + 0.5).floor().as_ivec2()
 }
 
-/// Interpolates linearly, `t` of 16 parts from `a` to `b`, rounded to the nearest, halves up.
-fn between(a: IVec2, b: IVec2, t: u32) -> IVec2 {
-    let (spacing, t) = (i64::from(SPACING), i64::from(t));
-    ((a.as_i64vec2() * (spacing - t) + b.as_i64vec2() * t + spacing / 2) >> SPACING_BITS).as_ivec2()
+/// Columns and rows of nodes: the last of each lies beyond the edge of the picture.
+fn node_grid(size: Size, spacing_bits: u32) -> Size {
+    let count = |side: u32| ((side - 1) >> spacing_bits) + 2;
+    Size::new(count(size.width), count(size.height))
+}
+
+/// Interpolates linearly, `t` of `2^bits` parts from `a` to `b`, rounded to the nearest, halves up.
+fn between(a: IVec2, b: IVec2, t: u32, bits: u32) -> IVec2 {
+    let (parts, t) = (1_i64 << bits, i64::from(t));
+    ((a.as_i64vec2() * (parts - t) + b.as_i64vec2() * t + parts / 2) >> bits).as_ivec2()
 }
 
 /// Columns or rows of the pixels that take part in the interpolation at a coordinate.
@@ -182,6 +248,27 @@ mod tests {
             let off = map.source_at(x, y).unwrap().as_dvec2() - 2048.0 * of(DVec2::new(x.into(), y.into()));
             assert!(off.abs().max_element() <= 1.5, "({x}, {y}): {off}");
         }
+    }
+
+    #[test]
+    fn nodes_come_closer_until_the_map_is_within_a_tolerance() {
+        // Second derivatives of 1/100 px: bilinear interpolation over 16 px deviates by 16^2 / 8 / 100 = 0.32 px.
+        let of = |p: DVec2| DVec2::new(p.x + p.x * p.x / 200.0, p.y);
+        let map = |tolerance: f64| WarpMap::within(tolerance, (70, 40), (200, 40), of).unwrap();
+        // Each half of the distance is a quarter of the deviation, and roundings are to 1/2048 px.
+        for (tolerance, bits, deviation) in
+            [(0.33, 4, 0.32), (0.31, 3, 0.08), (0.03, 2, 0.02), (0.015, 1, 0.005), (1e-9, 1, 0.005)]
+        {
+            let map = map(tolerance);
+            assert_eq!(map.spacing_bits(), bits, "{tolerance}");
+            assert!((map.deviation(of) - deviation).abs() <= 1.5 / 2048.0, "{tolerance}: {}", map.deviation(of));
+            for (x, y) in (0..40).flat_map(|y| (0..70).map(move |x| (x, y))) {
+                let position = map.source_at(x, y).unwrap().as_dvec2() / 2048.0;
+                let off = (position - of(DVec2::new(x.into(), y.into()))).length();
+                assert!(off <= deviation + 1.5 / 2048.0, "({x}, {y}): {off}");
+            }
+        }
+        assert_eq!(map(1.0), WarpMap::new((70, 40), (200, 40), of).unwrap());
     }
 
     #[test]

@@ -19,6 +19,6 @@ pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
 pub(crate) use frame::Correspondence;
 pub use map::WarpMap;
-pub(crate) use map::{NONE, SPACING_BITS};
+pub(crate) use map::NONE;
 pub use rows::{RowKind, RowModel};
 pub(crate) use warp::warp;

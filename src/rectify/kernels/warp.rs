@@ -3,7 +3,7 @@
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
     image::Size,
-    rectify::{NONE, SPACING_BITS, SUBPIXEL_BITS, WarpMap},
+    rectify::{NONE, SUBPIXEL_BITS, WarpMap},
 };
 
 const WORKGROUP: [u32; 2] = [16, 8];
@@ -15,6 +15,7 @@ shader_struct! {
         source_width: i32,
         source_height: i32,
         columns: u32,
+        spacing_bits: u32,
     }
 }
 
@@ -33,7 +34,6 @@ impl Warp {
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("SUBPIXEL_BITS", SUBPIXEL_BITS.into()),
-                ("SPACING_BITS", SPACING_BITS.into()),
                 ("NONE", NONE.into()),
             ],
         }
@@ -60,6 +60,7 @@ impl Warp {
             source_width: source_size.width as i32,
             source_height: source_size.height as i32,
             columns: map.columns(),
+            spacing_bits: map.spacing_bits(),
         };
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[source, nodes, warped], groups)

@@ -38,7 +38,8 @@ impl WarpTrial {
         let hole =
             DVec2::new((16 * dice.below(size.width / 16 + 2)).into(), (16 * dice.below(size.height / 16 + 2)).into());
         let has_hole = dice.below(3) == 0;
-        let map = WarpMap::new(size, source_size, |p| match p {
+        let spacing_bits = 1 + dice.below(4);
+        let map = WarpMap::with_spacing(spacing_bits, size, source_size, &|p| match p {
             p if has_hole && p == hole => DVec2::NAN,
             p if is_whole => p + shift.floor(),
             p => tilted(p),
@@ -53,7 +54,7 @@ fn ratio(a: u32, b: u32) -> f64 {
 
 impl Trial for WarpTrial {
     fn parameters(&self) -> String {
-        format!("{} from {}", self.map.size(), self.map.source_size())
+        format!("{} from {}, a node per {}", self.map.size(), self.map.source_size(), 1 << self.map.spacing_bits())
     }
 
     fn input(&self) -> Vec<Array> {

@@ -120,6 +120,18 @@ fn equals_the_twin_at_every_size() {
     }
 }
 
+/// A map that bends so much that its nodes lie 8, 4 and 2 px apart.
+#[test]
+fn equals_the_twin_with_nodes_at_every_distance() {
+    let source = picture((150, 70), 4);
+    let of = |p: DVec2| DVec2::new(p.x + p.x * p.x / 200.0, p.y - p.x * p.y / 300.0);
+    let maps = [0.1, 0.03, 0.001].map(|tolerance| WarpMap::within(tolerance, (70, 50), (150, 70), of).unwrap());
+    assert!(maps[0] != maps[1] && maps[1] != maps[2]);
+    for map in maps {
+        assert_twin("bent", &WarpTrial { map, source: source.clone() });
+    }
+}
+
 #[test]
 fn equals_the_twin_on_photographs() {
     for (name, picture) in photographs() {
