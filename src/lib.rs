@@ -119,6 +119,7 @@
 #![cfg_attr(not(feature = "verify"), allow(dead_code, unused_imports))]
 
 mod backend;
+pub mod calibration;
 pub mod config;
 mod cpu;
 pub mod dense;

@@ -1,10 +1,11 @@
 //! Rows of the right view: which row of the left view they correspond to, and resampling, so that corresponding points come
 //! to lie in the same row.
 //!
-//! A [`RowModel`] is fitted to matches. A [`WarpMap`] says for each pixel of a new picture which position of the source it
-//! shows; the kernel `warp` and its twin interpolate there. All arithmetic after the map's construction is in integers: the
-//! same bytes on every device.
+//! A [`RowModel`] is fitted to matches; a [`CalibratedRectification`] follows from a calibration. A [`WarpMap`] says for each
+//! pixel of a new picture which position of the source it shows; the kernel `warp` and its twin interpolate there. All
+//! arithmetic after the map's construction is in integers: the same bytes on every device.
 
+mod calibrated;
 mod catmull_rom;
 mod curve;
 pub(crate) mod fit;
@@ -15,10 +16,11 @@ mod map;
 mod rows;
 mod warp;
 
+pub use calibrated::{CalibratedRectification, RectifiedView};
 pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
 pub(crate) use frame::Correspondence;
-pub use map::WarpMap;
 pub(crate) use map::NONE;
+pub use map::WarpMap;
 pub use rows::{RowKind, RowModel};
 pub(crate) use warp::warp;

@@ -1,4 +1,4 @@
-//! Calibration of a rectified pair, depth from disparity, and Middlebury's file format.
+//! Middlebury's calibration of a rectified pair.
 //!
 //! `calib.txt` of the Middlebury 2014 data (Scharstein et al., 'High-resolution stereo datasets
 //! with subpixel-accurate ground truth', GCPR 2014):
@@ -14,50 +14,17 @@
 
 use std::{collections::HashMap, path::Path};
 
-use super::{malformed, read_whole};
 use crate::{
-    disparity::{self, DisparityMap},
+    calibration::Calibration,
     error::{Error, Result},
-    image::{Plane, Size},
+    image::Size,
+    io::{malformed, read_whole},
 };
 
 /// Longest calibration file that is read, in bytes: a few lines, with room for many comments.
 const MAX_BYTES: u64 = 1 << 16;
 
-/// The geometry of a rectified pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Calibration {
-    /// Focal length of both cameras, in pixels.
-    pub focal: f64,
-    /// Distance between the cameras, in metres.
-    pub baseline: f64,
-    /// Difference of the principal points' columns, right minus left (cx1 - cx0), in pixels: `disparity + doffs` is 0
-    /// at infinity.
-    pub doffs: f64,
-    /// Column of the principal point, in pixels: of the left camera, as in files, or of the right camera after
-    /// [`Self::seen_from_right`].
-    pub cx: f64,
-    /// Row of both principal points, in pixels.
-    pub cy: f64,
-    /// Width and height of the calibrated pictures, in pixels; `None` if unknown.
-    pub size: Option<Size>,
-}
-
 impl Calibration {
-    /// A calibration for pictures of `size` (width and height in pixels) with the principal point at their centre.
-    /// `focal` and `doffs` are in pixels, `baseline` in metres.
-    ///
-    /// # Errors
-    /// As [`Self::validate`].
-    pub fn centred(focal: f64, baseline: f64, doffs: f64, size: impl Into<Size>) -> Result<Self> {
-        let size = size.into();
-        let middle = |side: u32| (f64::from(side) - 1.0) / 2.0;
-        let calibration =
-            Self { focal, baseline, doffs, cx: middle(size.width), cy: middle(size.height), size: Some(size) };
-        calibration.validate()?;
-        Ok(calibration)
-    }
-
     /// Reads a Middlebury `calib.txt`, whose baseline is in millimetres.
     ///
     /// # Errors
@@ -96,60 +63,6 @@ impl Calibration {
         calibration.validate().map_err(|error| malformed(path, error.to_string()))?;
         Ok(calibration)
     }
-
-    /// Checks that all values are plausible for a pair of cameras.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] with the accepted range, for a value outside it.
-    pub fn validate(&self) -> Result<()> {
-        let check = |name, value: f64, ok: bool, rule: &str| {
-            if ok { Ok(()) } else { Err(Error::Parameter { name, value: value.to_string(), expected: rule.into() }) }
-        };
-        // A value above a thousand kilometres or a million pixels is a mistake; its depths would all be 0 or infinite.
-        let positive = |value: f64| (1e-6..=1e6).contains(&value);
-        let within = |value: f64| value.abs() <= 1e6;
-        check("the focal length", self.focal, positive(self.focal), "it must be 10^-6 to 10^6 pixels")?;
-        check("the baseline", self.baseline, positive(self.baseline), "it must be 10^-6 to 10^6 metres")?;
-        check("doffs", self.doffs, within(self.doffs), "it must be -10^6 to 10^6 pixels")?;
-        check("cx", self.cx, within(self.cx), "it must be -10^6 to 10^6 pixels")?;
-        check("cy", self.cy, within(self.cy), "it must be -10^6 to 10^6 pixels")
-    }
-
-    /// Checks that the calibration is for pictures of this size (width and height in pixels): scaled pictures have
-    /// another focal length.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] with both sizes, if they differ.
-    pub fn check_size(&self, size: impl Into<Size>) -> Result<()> {
-        let size = size.into();
-        match self.size {
-            Some(own) if own != size => Err(Error::Parameter {
-                name: "the calibration",
-                value: format!("for pictures of {own} pixels"),
-                expected: format!("these are {size}: use the calibration that belongs to the pictures"),
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    /// The calibration in the coordinates of the right camera, whose principal point lies `doffs` pixels further to the
-    /// right.
-    pub fn seen_from_right(self) -> Self {
-        Self { cx: self.cx + self.doffs, ..self }
-    }
-
-    /// Depth along the optical axis, in metres, for a disparity in pixels: `baseline * focal / (disparity + doffs)`;
-    /// `None` at infinity and beyond.
-    pub fn depth(&self, disparity: f64) -> Option<f64> {
-        let denominator = disparity + self.doffs;
-        (denominator > 0.0).then(|| self.baseline * self.focal / denominator)
-    }
-}
-
-/// Depth of each pixel of the map's view, in metres; +inf where there is no disparity or the depth is infinite.
-pub fn depth_map(map: &DisparityMap, calibration: &Calibration) -> Plane<f32> {
-    let depth = |&d: &i32| calibration.depth(f64::from(disparity::pixels(d)?));
-    map.map(|d| depth(d).map_or(f32::INFINITY, |z| z as f32))
 }
 
 /// Camera matrix `[f 0 cx; 0 f cy; 0 0 1]`, in pixels.
@@ -249,7 +162,6 @@ fn finite(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disparity::NONE;
 
     const MOTORCYCLE: &str = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]\n\
         cam1=[999.421 0 326.96; 0 999.421 252.932; 0 0 1]\ndoffs=32.778\nbaseline=193.001\nwidth=741\n\
@@ -268,18 +180,6 @@ mod tests {
         // cam1 has its principal point in column 326.96.
         assert!((calibration.seen_from_right().cx - 326.96).abs() < 1e-9);
         assert_eq!(parse(&MOTORCYCLE.replace('\n', "\r\n")).unwrap(), calibration);
-    }
-
-    #[test]
-    fn depth_by_hand() {
-        let calibration = Calibration::centred(1000.0, 0.2, 30.0, (3, 2)).unwrap();
-        assert_eq!((calibration.cx, calibration.cy), (1.0, 0.5));
-        // 0.2 m * 1000 px / (10 px + 30 px)
-        assert_eq!(calibration.depth(10.0), Some(5.0));
-        assert_eq!(calibration.depth(-30.0), None);
-        assert_eq!(calibration.depth(-31.0), None);
-        let map = DisparityMap::new((3, 1), vec![10 * 256, -30 * 256, NONE]).unwrap();
-        assert_eq!(depth_map(&map, &calibration).data(), [5.0, f32::INFINITY, f32::INFINITY]);
     }
 
     #[test]
@@ -311,22 +211,5 @@ mod tests {
             let error = parse(&MOTORCYCLE.replacen(from, to, 1)).unwrap_err().to_string();
             assert!(error.contains(expected), "'{error}' should contain '{expected}'");
         }
-    }
-
-    #[test]
-    fn numbers_are_validated() {
-        let error =
-            |focal, baseline, doffs| Calibration::centred(focal, baseline, doffs, (9, 9)).unwrap_err().to_string();
-        assert_eq!(error(0.0, 1.0, 0.0), "the focal length is 0, but it must be 10^-6 to 10^6 pixels");
-        assert_eq!(error(1.0, f64::NAN, 0.0), "the baseline is NaN, but it must be 10^-6 to 10^6 metres");
-        assert_eq!(error(1.0, 1.0, f64::INFINITY), "doffs is inf, but it must be -10^6 to 10^6 pixels");
-    }
-
-    #[test]
-    fn pictures_of_another_size_are_refused() {
-        let calibration = parse(MOTORCYCLE).unwrap();
-        assert!(calibration.check_size((741, 497)).is_ok());
-        let error = calibration.check_size((370, 248)).unwrap_err().to_string();
-        assert!(error.contains("741x497") && error.contains("370x248"), "{error}");
     }
 }

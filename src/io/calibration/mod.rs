@@ -1,0 +1,5 @@
+//! Calibration files.
+
+mod middlebury;
+
+pub use crate::calibration::{Calibration, depth_map};
