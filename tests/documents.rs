@@ -3,11 +3,12 @@
 use std::{fs, path::Path};
 
 /// Pages, and the folders whose files they name.
-const PAGES: [&str; 11] = [
+const PAGES: [&str; 12] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/ARCHITECTURE.md",
     "docs/benchmarks.md",
+    "docs/calibration.md",
     "docs/cli.md",
     "docs/embedding.md",
     "docs/evaluation.md",

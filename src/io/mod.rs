@@ -4,8 +4,8 @@
 //! error messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to
 //! [`MAX_PIXELS`] where a codec expands them.
 //!
-//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `files`. PFM, calibrations, PLY,
-//! tables, homographies and colour maps are always available.
+//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `files`; calibrations of other formats
+//! than Middlebury's need `calibrations`. PFM, PLY, tables, homographies and colour maps are always available.
 
 #[cfg(feature = "files")]
 #[doc(hidden)]
