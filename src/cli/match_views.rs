@@ -6,8 +6,9 @@ use clap::Args;
 use hsad::io::load::{LoadedPair, load_pair};
 
 use super::{
+    depth::DepthOptions,
     job::Job,
-    options::{DepthOptions, FeatureOptions, MatchOptions, RunOptions, UnseenOptions},
+    options::{FeatureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
     products, summary,
     terminal::{self, Progress},
@@ -60,14 +61,19 @@ impl Match {
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
         let mut output = Output::open(&self.output)?;
-        let LoadedPair { left, right, stretch, warnings } = load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        let LoadedPair { left, right, stretch, mut warnings } =
+            load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        let calibration = self.depth.calibration([&self.left, &self.right], left.size())?;
+        let calibration = calibration.map(|(calibration, notes)| {
+            warnings.extend(notes);
+            calibration
+        });
         // Told before the match, since they may be the reason why it fails.
         let told = warnings.len();
         if !self.run.quiet {
             warnings.iter().for_each(terminal::warning);
         }
 
-        let calibration = self.depth.calibration(left.size())?;
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
         let mut completed = Job { names, left, right, stretch, config, strongest, calibration }.run(&self.run)?;
         completed.warnings.splice(0..0, warnings);

@@ -2,6 +2,7 @@
 
 mod completions;
 mod demo;
+mod depth;
 mod devices;
 mod doubts;
 mod eval;

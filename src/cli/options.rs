@@ -18,8 +18,7 @@ use hsad::{
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
-    image::Size,
-    io::{Calibration, load::Unseen},
+    io::load::Unseen,
     kamencay::KamencayParameters,
     matching::MatchConfig,
     verify::self_test,
@@ -323,47 +322,6 @@ fn fixed_point(pixels: f32) -> Result<u32> {
         value: pixels.to_string(),
         expected: "it must be 0 to 256 px".into(),
     })
-}
-
-/// Geometry that turns disparities into depth.
-#[derive(Args)]
-#[command(next_help_heading = "Depth")]
-pub struct DepthOptions {
-    /// Calibration file of the pair, in the format of Middlebury's calib.txt
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["focal", "baseline", "doffs"])]
-    calib: Option<PathBuf>,
-    /// Focal length in pixels, 10^-6 to 10^6
-    #[arg(long, value_name = "PX", requires = "baseline", allow_negative_numbers = true)]
-    focal: Option<f64>,
-    /// Baseline, the distance between the cameras, in metres, 10^-6 to 10^6
-    #[arg(long, value_name = "METRES", requires = "focal", allow_negative_numbers = true)]
-    baseline: Option<f64>,
-    /// Difference of the principal points, cx1 - cx0, in pixels, -10^6 to 10^6 [default: 0]
-    #[arg(long, value_name = "PX", requires = "focal", allow_negative_numbers = true)]
-    doffs: Option<f64>,
-}
-
-impl DepthOptions {
-    /// The calibration for pictures of `size` (width and height in pixels); `None` without options for it.
-    ///
-    /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read or belongs to pictures of another size,
-    /// [`Error::Parameter`] for values outside their range.
-    pub fn calibration(&self, size: Size) -> Result<Option<Calibration>> {
-        let calibration = match (&self.calib, self.focal, self.baseline) {
-            (Some(path), ..) => {
-                let calibration = Calibration::read(path)?;
-                let misfit = |error: Error| Error::Format { path: path.clone(), reason: error.to_string() };
-                calibration.check_size(size).map_err(misfit)?;
-                calibration
-            }
-            (None, Some(focal), Some(baseline)) => {
-                Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), size)?
-            }
-            _ => return Ok(None),
-        };
-        Ok(Some(calibration))
-    }
 }
 
 /// Pixels that were not seen, besides transparent ones (alpha 0) and floats that are NaN or infinite.

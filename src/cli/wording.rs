@@ -26,6 +26,9 @@ pub fn in_options(error: &Error) -> String {
             Some((_, option)) => format!("{option} is {value}, but {expected}"),
             None => error.to_string(),
         },
+        Error::Format { .. } => {
+            error.to_string().replace("name the unit of length", "name the unit of length with --calib-unit")
+        }
         _ => error.to_string(),
     }
 }
@@ -64,6 +67,10 @@ mod tests {
             (wrong, &["GPU", "pad", "--device cpu", "hsad verify"]),
             (Error::TooManyFeatures { found: 9, room: 5 }, &["--max-features is 5", "9", "--threshold"]),
             (even("the window of costs"), &["--cost-window is 8, but it must be odd"]),
+            (
+                Error::Format { path: "rig.yml".into(), reason: "a baseline of 3: name the unit of length".into() },
+                &["rig.yml: a baseline of 3: name the unit of length with --calib-unit"],
+            ),
             (even("another"), &["another is 8, but it must be odd"]),
             (Error::NoAdapter, &[&Error::NoAdapter.to_string()]),
         ] {

@@ -99,7 +99,15 @@ fn calibrations_that_are_none() {
     let calib_text = calib.to_str().unwrap();
     pair_fails(&left, &right, &["--calib", calib_text], 1, "calib.txt");
     for (content, code, expected) in [
-        ("nonsense", 1, "line 1: 'nonsense' is not of the form key=value"),
+        (
+            "nonsense",
+            1,
+            "the file has no calibration that hsad knows: calibrations are read from Middlebury's calib.txt",
+        ),
+        ("left\ncam0=[9 0 1; 0 9 1; 0 0 1]\n", 1, "line 1: 'left' is not of the form key=value"),
+        ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=0\nbaseline=0.1\n", 1, "for metres write baseline=100"),
+        ("cam0=[9 0 1; 0 8 1; 0 0 1]\ndoffs=0\nbaseline=1\n", 1, "rectify the pair by the calibration first"),
+        ("9 0 1 0 9 1 0 0 1\n70\n", 1, "name the unit of length with --calib-unit (0.001 for millimetres)"),
         ("cam0=[1 2 3]\ndoffs=0\nbaseline=1\n", 1, "line 1: cam0"),
         ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=NaN\nbaseline=1\n", 1, "line 2: doffs is 'NaN'"),
         ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=0\nbaseline=1\nwidth=9\nheight=9\n", 1, "for pictures of 9x9 pixels"),

@@ -3,6 +3,7 @@
 #![cfg(feature = "cli")]
 
 mod bad_input;
+mod calibrations;
 mod common;
 mod completions;
 mod deep_pictures;
