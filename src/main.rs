@@ -6,6 +6,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+#[global_allocator]
+static ALLOCATOR: cli::out_of_memory::Allocator = cli::out_of_memory::Allocator;
+
 fn main() -> ExitCode {
     without_desktop();
     // Log records of the library and of wgpu are shown only if RUST_LOG asks for them, but for a dump that failed: a failure

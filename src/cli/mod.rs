@@ -11,12 +11,14 @@ mod job;
 mod man;
 mod match_views;
 mod options;
+pub mod out_of_memory;
 mod output;
 mod products;
 mod report;
 mod score;
 mod summary;
 pub mod terminal;
+mod threads;
 mod verify;
 mod wording;
 
@@ -59,6 +61,7 @@ impl Cli {
     /// Runs the subcommand.
     pub fn run(self) -> anyhow::Result<()> {
         output::clean_up_when_interrupted()?;
+        threads::start()?;
         match self.command {
             Command::Match(command) => command.run(),
             Command::Features(command) => command.run(),

@@ -20,34 +20,72 @@ fn created() -> MutexGuard<'static, Vec<PathBuf>> {
     CREATED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// The exit code that a shell reports for a program ended by SIGINT.
+const INTERRUPTED: i32 = 130;
+
 /// Installs the handler that removes temporary files and empty folders when the process is interrupted by Ctrl-C,
-/// SIGTERM or SIGHUP. The handler runs in a thread of its own, and the process ends without dropping anything.
+/// SIGTERM or SIGHUP. The handler runs in a thread of its own, and the process ends without dropping anything. Where no
+/// thread can be spawned, the handler runs in the thread that is interrupted.
 ///
 /// # Errors
 /// If the system refuses the handler.
 pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
     let ignored = ignored_signals();
-    ctrlc::set_handler(|| {
+    let handled = ctrlc::set_handler(|| {
         let created = created();
         atomic::abandon();
         remove_empty(&created);
-        exit_at_once();
-    })?;
+        exit_at_once(INTERRUPTED);
+    });
+    match handled {
+        Err(ctrlc::Error::System(_)) => without_thread(),
+        handled => handled?,
+    }
     keep_ignoring(&ignored);
     Ok(())
 }
 
-/// Exits with 130, the code that a shell reports for a program ended by SIGINT. Destructors of drivers are skipped:
-/// other threads still use what they would destroy.
-fn exit_at_once() -> ! {
+/// Ends the process and removes what [`clean_up_when_interrupted`] does, without waiting for any thread and without taking
+/// memory. A list that is in use stays as it is.
+pub fn abandon_at_once(code: i32) -> ! {
+    atomic::try_abandon();
+    if let Ok(created) = CREATED.try_lock() {
+        remove_empty(&created);
+    }
+    exit_at_once(code)
+}
+
+/// Exits. Destructors of drivers are skipped: other threads still use what they would destroy.
+fn exit_at_once(code: i32) -> ! {
     #[cfg(unix)]
     // SAFETY: `_exit` only ends the process.
     unsafe {
-        libc::_exit(130)
+        libc::_exit(code)
     }
     #[cfg(not(unix))]
-    std::process::exit(130)
+    std::process::exit(code)
 }
+
+/// The signals that interrupt.
+#[cfg(unix)]
+const SIGNALS: [libc::c_int; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
+
+/// Handles interruptions in the thread that they interrupt.
+#[cfg(unix)]
+fn without_thread() {
+    extern "C" fn handle(_: libc::c_int) {
+        abandon_at_once(INTERRUPTED)
+    }
+    for signal in SIGNALS {
+        // SAFETY: the handler takes no memory and no lock that is held, and does not return.
+        unsafe {
+            libc::signal(signal, handle as extern "C" fn(libc::c_int) as libc::sighandler_t);
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn without_thread() {}
 
 /// The signals that the parent process asked to ignore: nohup does, and a shell does for a background job.
 #[cfg(unix)]
@@ -59,7 +97,7 @@ fn ignored_signals() -> Vec<libc::c_int> {
             libc::sigaction(signal, std::ptr::null(), &mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
         }
     };
-    [libc::SIGINT, libc::SIGTERM, libc::SIGHUP].into_iter().filter(is_ignored).collect()
+    SIGNALS.into_iter().filter(is_ignored).collect()
 }
 
 #[cfg(unix)]

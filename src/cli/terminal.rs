@@ -4,6 +4,8 @@ use std::{
     borrow::Cow,
     fmt::Display,
     io::{self, Write},
+    sync::mpsc::{RecvTimeoutError, Sender, channel},
+    thread,
     time::Duration,
 };
 
@@ -48,8 +50,15 @@ pub fn print(text: &str) -> io::Result<()> {
     }
 }
 
+/// Time between two looks of the spinner.
+const TICK: Duration = Duration::from_millis(100);
+
 /// Progress line on stderr; nothing is shown if stderr is no terminal.
-pub struct Progress(ProgressBar);
+pub struct Progress {
+    bar: ProgressBar,
+    /// Ends the thread that turns the spinner when it is dropped; `None` without such a thread.
+    _ticker: Option<Sender<()>>,
+}
 
 impl Progress {
     /// Starts a progress line; with `quiet` nothing is shown.
@@ -58,23 +67,23 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}{msg} ({elapsed})") {
             bar.set_style(style);
         }
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self(bar)
+        let ticker = if bar.is_hidden() { None } else { ticker(&bar) };
+        Self { bar, _ticker: ticker }
     }
 
     /// Sets the piece of work, `number` out of `of`, that the following steps belong to.
     pub fn piece(&self, name: &str, number: usize, of: usize) {
-        self.0.set_prefix(format!("{} ({number} of {of}): ", one_line(name)));
+        self.bar.set_prefix(format!("{} ({number} of {of}): ", one_line(name)));
     }
 
     /// Shows the activity that begins.
     pub fn begin(&self, what: impl Into<Cow<'static, str>>) {
-        self.0.set_message(what);
+        self.bar.set_message(what);
     }
 
     /// Clears the progress line while `print` writes, so that the two do not overlap.
     pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
-        self.0.suspend(print)
+        self.bar.suspend(print)
     }
 
     /// Shows the share of the dense step that is done, 0 to 1.
@@ -93,9 +102,22 @@ impl Progress {
     }
 }
 
+/// Starts a thread that turns the spinner of `bar`, not indicatif's own, which panics where no thread can be spawned: there
+/// the line stands still between steps.
+fn ticker(bar: &ProgressBar) -> Option<Sender<()>> {
+    let (end, ended) = channel();
+    let bar = bar.clone();
+    let turn = move || {
+        while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+            bar.tick();
+        }
+    };
+    thread::Builder::new().name("progress".into()).spawn(turn).is_ok().then_some(end)
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 

@@ -90,11 +90,24 @@ static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// interrupted process that ends without dropping anything.
 pub fn abandon() {
     let temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
-    for path in temporaries.iter() {
+    remove(&temporaries);
+    mem::forget(temporaries);
+}
+
+/// Does what [`abandon`] does, unless a file is being made: for a thread that cannot wait, since it may be the one that makes
+/// it.
+pub fn try_abandon() {
+    if let Ok(temporaries) = TEMPORARIES.try_lock() {
+        remove(&temporaries);
+        mem::forget(temporaries);
+    }
+}
+
+fn remove(temporaries: &[PathBuf]) {
+    for path in temporaries {
         // Most of the files are removed or moved already.
         let _ = fs::remove_file(path);
     }
-    mem::forget(temporaries);
 }
 
 /// A temporary file in `folder`, removed when dropped. Also the way to check, before any work, whether files can be

@@ -17,6 +17,8 @@ mod exif;
 mod features;
 #[cfg(unix)]
 mod interruption;
+#[cfg(target_os = "linux")]
+mod limits;
 mod man;
 mod match_views;
 mod mosaics;
