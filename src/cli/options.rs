@@ -36,7 +36,7 @@ pub struct RunOptions {
     /// hsad verify)
     #[arg(long)]
     self_test: bool,
-    /// Print errors only
+    /// Print errors only, and whether the CPU takes the place of a device
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -57,9 +57,8 @@ impl RunOptions {
     fn open_untested(&self) -> anyhow::Result<Backend> {
         match Backend::open(&self.device) {
             Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if self.device == DeviceChoice::Best => {
-                if !self.quiet {
-                    terminal::warning(format!("the CPU does the work: {error}"));
-                }
+                // Even if quiet: the work takes many times as long.
+                terminal::warning(format!("the CPU does the work: {error}"));
                 Ok(Backend::open(&DeviceChoice::Cpu)?)
             }
             Err(error @ Error::NoAdapter) => Err(anyhow!("{error}, or use the CPU with --device cpu")),

@@ -69,6 +69,24 @@ fn without_a_driver_the_cpu_works_and_says_so() {
 }
 
 #[test]
+fn the_cpu_in_place_of_a_device_is_told_once_even_if_quiet() {
+    let temporary = folder();
+    let mut command = hsad_without_driver();
+    command.arg("features").arg(scene("weak", "left.png")).arg("-o").arg(temporary.path().join("out")).arg("-q");
+    let output = command.output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && output.stdout.is_empty(), "{stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    assert!(
+        stderr.contains("the CPU does the work") && stderr.contains("apt-get install mesa-vulkan-drivers"),
+        "{stderr}"
+    );
+    let mut command = hsad();
+    command.arg("features").arg(scene("weak", "left.png")).args(["-q", "--device", "cpu"]);
+    command.assert().success().stderr("");
+}
+
+#[test]
 fn large_pictures_are_reduced_unless_told_otherwise() {
     let folder = folder();
     let path = folder.path().join("large.png");
