@@ -155,7 +155,7 @@ fn main() -> Result<(), AnyError> {
         table(title, &["matches", "all", "of 10", "of 100", "of 500"], &scenes, |scene| {
             let pair = block_on(Pair::new(&backend, &scene.data.left, &scene.data.right))?;
             let features = block_on(pair.features(&Preset::Balanced.config().features))?;
-            Ok(scene.right(&seeds(&pair, &features)?))
+            Ok(scene.right(&seeds(&pair, &features.map(|view| view.features))?))
         })?;
     }
     println!(

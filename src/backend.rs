@@ -6,7 +6,7 @@ use crate::{
     cpu,
     dense::Dense,
     error::Result,
-    features::{self, Feature, FeatureConfig},
+    features::{self, Detected, FeatureConfig},
     gpu::{DeviceChoice, Gpu},
     image::Luma,
     io::Picture,
@@ -74,7 +74,7 @@ impl Backend {
     ///
     /// # Errors
     /// See [`crate::features::detect`].
-    pub async fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+    pub async fn features(&self, luma: &Luma, config: &FeatureConfig) -> Result<Detected> {
         match self {
             Self::Gpu(gpu) => features::detect(gpu, luma, config).await,
             Self::Cpu => cpu::features::detector::detect(luma, config),

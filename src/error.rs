@@ -69,7 +69,8 @@ pub enum Error {
         expected: String,
     },
 
-    /// The picture has more interest points than the capacity of the list.
+    /// The picture has more interest points than the capacity of the list, which was read without a chance to keep the
+    /// strongest: see [`crate::Detector::detect`].
     #[error(
         "max_features is {room}, but the picture has {found} interest points: raise max_features, or raise the threshold"
     )]

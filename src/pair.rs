@@ -5,7 +5,7 @@ use crate::{
     cpu,
     dense::{Dense, DenseConfig, compute_uploaded},
     error::{Error, Result, check},
-    features::{Detector, Feature, FeatureConfig},
+    features::{Detected, Detector, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
     image::{Luma, Size, reduced},
     io::Picture,
@@ -124,7 +124,7 @@ impl<'b> Pair<'b> {
     ///
     /// # Errors
     /// See [`crate::features::detect`].
-    pub async fn features(&self, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
+    pub async fn features(&self, config: &FeatureConfig) -> Result<[Detected; 2]> {
         let Some(OnDevice { gpu, luma: [left, right] }) = &self.device else {
             let detect = |view| cpu::features::detector::detect(view, config);
             return Ok([detect(&self.left)?, detect(&self.right)?]);

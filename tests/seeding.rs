@@ -34,7 +34,7 @@ fn pair(far: f32, near: f32, lower: f32, grey: impl Fn(f32) -> f32) -> (Luma, Lu
 }
 
 fn find((left, right): &(Luma, Luma)) -> Seeding {
-    let features = |view: &Luma| -> Vec<Feature> { detect(view, &FeatureConfig::default()).unwrap() };
+    let features = |view: &Luma| -> Vec<Feature> { detect(view, &FeatureConfig::default()).unwrap().features };
     Seeding::find((left, right), (&features(left), &features(right)), &SeedingConfig::default()).unwrap()
 }
 

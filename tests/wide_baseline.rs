@@ -57,6 +57,8 @@ fn points_are_those_of_a_detector_of_their_own() {
     let found = block_on(match_views(&backend, &views[0], &views[1], &config)).unwrap();
     assert_eq!((found.alignment, found.smoothing), (DAffine2::IDENTITY, [0.0; 2]));
     for (features, view) in found.features.iter().zip(&views) {
-        assert!(features.len() > 500 && *features == block_on(backend.features(view, &config.features)).unwrap());
+        assert!(
+            features.len() > 500 && *features == block_on(backend.features(view, &config.features)).unwrap().features
+        );
     }
 }

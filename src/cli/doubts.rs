@@ -40,7 +40,7 @@ impl NotTrusted {
     }
 }
 
-/// Warnings about a result: identical views, raw mosaics, a guessed or cut disparity range, a distorted lens, matches outside the range,
+/// Warnings about a result: identical views, raw mosaics, weak interest points left out, a guessed or cut disparity range, a distorted lens, matches outside the range,
 /// surfaces at an end of the range, and a difference in brightness.
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -48,6 +48,7 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         warnings.push("both views are the same picture, which shows no depth".into());
     }
     warnings.extend(mosaics(outcome.mosaics));
+    warnings.extend(left_out(outcome));
     if let RangeSource::Fallback(thin) = outcome.range_source {
         let reason = in_options(&Error::from(thin));
         warnings.push(format!("{reason}; {} were searched instead", span(outcome.range)));
@@ -74,6 +75,18 @@ fn mosaics(found: [bool; 2]) -> Option<String> {
     Some(format!(
         "{views}: the luma of the colours was matched; demosaic {them} to colour pictures for a sharper result"
     ))
+}
+
+/// A warning if a view has more interest points than are kept.
+fn left_out(outcome: &Outcome) -> Option<String> {
+    let kept = outcome.features.each_ref().map(Vec::len);
+    (kept != outcome.points_found).then(|| {
+        format!(
+            "of {} interest points in the left and {} in the right view the strongest {} and {} were used, spread over the \
+             picture: --max-features raises their number, and --threshold leaves out weak ones",
+            outcome.points_found[0], outcome.points_found[1], kept[0], kept[1]
+        )
+    })
 }
 
 /// A disparity range as text, `MIN to MAX px`.

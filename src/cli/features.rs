@@ -4,7 +4,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::Args;
 use hsad::{
-    features::{DESCRIPTOR_LENGTH, Feature, FeatureConfig},
+    features::{DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig},
     gpu::block_on,
     image::reduced,
     io::{figure, load, png},
@@ -59,7 +59,7 @@ impl Features {
         progress.begin("finding interest points");
         let luma = picture.luma();
         let factor = if self.full_size { 1 } else { reduction(luma.size()) };
-        let features = block_on(backend.features(&reduced(&luma, factor), &config))?;
+        let Detected { features, found } = block_on(backend.features(&reduced(&luma, factor), &config))?;
         let features: Vec<_> = features.into_iter().map(|point| enlarged_feature(point, factor)).collect();
 
         let csv = csv(&features, self.descriptors);
@@ -73,7 +73,8 @@ impl Features {
         drop(progress);
 
         let size = if factor == 1 { String::new() } else { format!(" at 1/{factor} of its size") };
-        let found = format!("{} interest points{size}, found by {}", features.len(), backend.name());
+        let strongest = if features.len() < found { format!(", the strongest of {found},") } else { String::new() };
+        let found = format!("{} interest points{strongest}{size}, found by {}", features.len(), backend.name());
         match output {
             Some(_) if self.run.quiet => {}
             Some(output) => terminal::print(&format!("{found}; see {}\n", output.folder().display()))?,

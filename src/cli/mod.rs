@@ -81,7 +81,7 @@ pub fn exit_code(error: &anyhow::Error) -> ExitCode {
         return ExitCode::from(4);
     }
     match error.downcast_ref() {
-        Some(hsad::Error::Parameter { .. } | hsad::Error::TooManyFeatures { .. }) => ExitCode::from(2),
+        Some(hsad::Error::Parameter { .. }) => ExitCode::from(2),
         Some(hsad::Error::NotRectified { .. }) => ExitCode::from(3),
         _ => ExitCode::FAILURE,
     }

@@ -83,7 +83,7 @@ pub struct FeatureOptions {
     /// Skip orientations, the better choice for views without rotation [default, except paper]
     #[arg(long)]
     upright: bool,
-    #[arg(long, value_name = "N", help = with_default("Capacity for interest points per view, 1 to 1048576; more points are an error", FeatureConfig::default().max_features))]
+    #[arg(long, value_name = "N", help = with_default("Most interest points per view, 1 to 1048576; of more the strongest are kept, spread over the picture", FeatureConfig::default().max_features))]
     max_features: Option<u32>,
 }
 

@@ -36,7 +36,12 @@ impl CompletedJob {
             "device": device(backend),
             "parameters": parameters(&job.config, job.strongest),
             "calibration": job.calibration.as_ref().map(calibration),
-            "features": { "left": outcome.features[0].len(), "right": outcome.features[1].len() },
+            "features": {
+                "left": outcome.features[0].len(),
+                "right": outcome.features[1].len(),
+                "left_found": outcome.points_found[0],
+                "right_found": outcome.points_found[1],
+            },
             "seeds": outcome.seeding.seeds.len(),
             "range": searched(outcome),
             "levels": levels(&job.config, outcome),

@@ -18,10 +18,6 @@ pub fn in_options(error: &Error) -> String {
             "{device} computes wrong results ({what}): use another device (hsad devices) or --device cpu, and repeat \
              the failure with {command}"
         ),
-        Error::TooManyFeatures { found, room } => format!(
-            "--max-features is {room}, but the picture has {found} interest points: raise --max-features, or raise \
-             --threshold"
-        ),
         Error::Parameter { name, value, expected } => match OPTIONS.iter().find(|(parameter, _)| parameter == name) {
             Some((_, option)) => format!("{option} is {value}, but {expected}"),
             None => error.to_string(),
@@ -65,7 +61,6 @@ mod tests {
             (Error::NotRectified { diagnosis: "turned".into() }, &["turned", "--force"][..]),
             (no_range, &["3 points", "--min-disparity", "--disparities"]),
             (wrong, &["GPU", "pad", "--device cpu", "hsad verify"]),
-            (Error::TooManyFeatures { found: 9, room: 5 }, &["--max-features is 5", "9", "--threshold"]),
             (even("the window of costs"), &["--cost-window is 8, but it must be odd"]),
             (
                 Error::Format { path: "rig.yml".into(), reason: "a baseline of 3: name the unit of length".into() },

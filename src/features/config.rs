@@ -19,8 +19,9 @@ pub struct FeatureConfig {
     pub threshold: f32,
     /// Whether orientations stay 0, the default: better for rectified pairs, where nothing is rotated.
     pub upright: bool,
-    /// Capacity of the keypoint list, 1 to 1,048,576; 65,536 by default. More interest points are an error, never a
-    /// silent cut.
+    /// Most interest points, and the capacity of a [`super::Detector`]'s list, 1 to 1,048,576; 65,536 by default. Of more the
+    /// strongest are kept, spread over the picture: the cells of a grid take turns, each with its strongest point that is
+    /// left.
     pub max_features: u32,
 }
 
@@ -46,6 +47,15 @@ impl FeatureConfig {
         )?;
         check_range("max_features", self.max_features, 1..=1 << 20)
     }
+}
+
+/// The interest points of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Detected {
+    /// The points, sorted by octave, layer, row and column.
+    pub features: Vec<Feature>,
+    /// Number of points of the picture; more than there are `features` if only the strongest were kept.
+    pub found: usize,
 }
 
 /// An interest point: where a picture's intensity changes in both directions, at one scale.

@@ -1,10 +1,10 @@
 //! The detector: all stages of sparse features, for pictures of one size.
 
 use super::{
-    DESCRIPTOR_LENGTH, Feature, FeatureConfig,
+    DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig,
     kernels::{
         descriptor::Descriptor,
-        hessian::{DETERMINANT_SCALE, Hessian},
+        hessian::{DETERMINANT_SCALE, Grid, Hessian},
         integral_columns::IntegralColumns,
         integral_rows::IntegralRows,
         nonmax::Nonmax,
@@ -13,6 +13,7 @@ use super::{
     },
     keypoints::{Keypoint, KeypointList},
     readback::FeatureReadback,
+    strongest::{Ranked, strongest},
 };
 use crate::{
     error::{Error, Result},
@@ -35,9 +36,13 @@ pub struct Detector {
     groups: wgpu::Buffer,
     descriptors: wgpu::Buffer,
     size: Size,
+    config: FeatureConfig,
     integral_rows: IntegralRows,
-    /// All dispatches after the row sums, in order.
-    dispatches: Vec<Dispatch>,
+    nonmax: Nonmax,
+    /// The dispatches after the row sums up to the list of keypoints, in order.
+    finding: Vec<Dispatch>,
+    /// The dispatches that describe the keypoints of the list, in order.
+    describing: Vec<Dispatch>,
 }
 
 /// A picture bound to a [`Detector`]: see [`Detector::input`].
@@ -74,24 +79,36 @@ impl Detector {
             let groups = Workgroups::groups(gpu);
             let descriptors = storage_buffer(gpu, "descriptors", Descriptor::bytes(&list))?;
 
-            let mut dispatches = vec![IntegralColumns::new(gpu).prepare(size, &integral)];
+            let mut finding = vec![IntegralColumns::new(gpu).prepare(size, &integral)];
             let mut finer = None;
             for (octave, responses) in (0..).zip(&responses) {
-                dispatches.push(hessian.prepare(size, octave, &integral, finer, responses));
+                finding.push(hessian.prepare(size, octave, &integral, finer, responses));
                 finer = Some(responses);
             }
             let nonmax = Nonmax::new(gpu);
             let suppression =
                 (0..).zip(&responses).map(|(octave, responses)| nonmax.prepare(size, octave, config, responses, &list));
-            dispatches.extend(suppression);
-            dispatches.push(Workgroups::new(gpu).prepare(&list, &groups));
+            finding.extend(suppression);
+            let mut describing = vec![Workgroups::new(gpu).prepare(&list, &groups)];
             if !config.upright {
-                dispatches.push(Orientation::new(gpu).prepare(size, &integral, &list, &groups));
+                describing.push(Orientation::new(gpu).prepare(size, &integral, &list, &groups));
             }
             let descriptor = Descriptor::new(gpu, config.upright);
-            dispatches.push(descriptor.prepare(size, &integral, &list, &groups, &descriptors));
-            let (gpu, integral_rows) = (gpu.clone(), IntegralRows::new(gpu));
-            Ok(Self { gpu, integral, responses, list, groups, descriptors, size, integral_rows, dispatches })
+            describing.push(descriptor.prepare(size, &integral, &list, &groups, &descriptors));
+            Ok(Self {
+                gpu: gpu.clone(),
+                integral,
+                responses,
+                list,
+                groups,
+                descriptors,
+                size,
+                config: config.clone(),
+                integral_rows: IntegralRows::new(gpu),
+                nonmax,
+                finding,
+                describing,
+            })
         })
         .await
     }
@@ -113,14 +130,21 @@ impl Detector {
         Ok(input)
     }
 
-    /// Detects the features of `luma`: binds it, submits all stages and reads the results.
+    /// Detects the features of `luma`: binds it, submits all stages and reads the results. Of more features than
+    /// [`FeatureConfig::max_features`] the strongest are kept, as said there: the same on every device.
     ///
     /// # Errors
-    /// See [`Self::input`] and [`Self::read`].
-    pub async fn detect(&self, luma: &wgpu::Buffer) -> Result<Vec<Feature>> {
+    /// See [`Self::input`]; [`Error::TooLarge`], [`Error::OutOfMemory`] if the device has no room to list all features;
+    /// [`Error::DeviceLost`].
+    pub async fn detect(&self, luma: &wgpu::Buffer) -> Result<Detected> {
         let input = self.input(luma).await?;
         submit(&self.gpu, |encoder| self.record(encoder, &input)).await?;
-        self.read().await
+        let found = self.count().await?;
+        if found > self.list.capacity() {
+            self.keep_strongest(found).await?;
+        }
+        let features = self.read_listed(found.min(self.list.capacity())).await?;
+        Ok(Detected { features, found: found as usize })
     }
 
     /// Device memory of this detector without the picture, in bytes: mostly that of [`FeatureConfig::max_features`]
@@ -148,7 +172,7 @@ impl Detector {
         assert!(input.detector == self.integral, "input of another detector: use this detector's `input`");
         encoder.clear_buffer(self.list.count(), 0, None);
         input.dispatch.record(encoder);
-        self.dispatches.iter().for_each(|dispatch| dispatch.record(encoder));
+        self.finding.iter().chain(&self.describing).for_each(|dispatch| dispatch.record(encoder));
     }
 
     /// Allocates staging buffers for the features of one frame, for applications that must not wait; allocate one
@@ -188,24 +212,60 @@ impl Detector {
     /// Copies only the features found, which takes two submissions.
     ///
     /// # Errors
-    /// [`Error::TooManyFeatures`] if more features were found than [`FeatureConfig::max_features`];
-    /// [`Error::DeviceLost`].
+    /// [`Error::TooManyFeatures`] if more features were found than [`FeatureConfig::max_features`], of which
+    /// [`Self::detect`] keeps the strongest; [`Error::DeviceLost`].
     pub async fn read(&self) -> Result<Vec<Feature>> {
-        let (gpu, list) = (&self.gpu, &self.list);
+        let (found, room) = (self.count().await?, self.list.capacity());
+        if found > room {
+            return Err(Error::TooManyFeatures { found: found as usize, room });
+        }
+        self.read_listed(found).await
+    }
+
+    /// The number of keypoints found.
+    async fn count(&self) -> Result<u32> {
+        let gpu = &self.gpu;
         let count = submit(gpu, |encoder| {
             let count = Readback::new(gpu, "number of keypoints", size_of::<u32>() as u64);
-            count.record(encoder, list.count());
+            count.record(encoder, self.list.count());
             count
         })
         .await?;
-        let keypoint_count = count.read::<u32>(1).await?[0];
-        if keypoint_count > list.capacity() {
-            return Err(Error::TooManyFeatures { found: keypoint_count as usize, room: list.capacity() });
-        }
+        Ok(count.read::<u32>(1).await?[0])
+    }
+
+    /// Puts the strongest of all `found` keypoints into the list, which has no room for all, and describes them.
+    async fn keep_strongest(&self, found: u32) -> Result<()> {
+        let (gpu, room) = (&self.gpu, self.list.capacity());
+        let (all, keypoints) = guarded(gpu, "finding interest points", || {
+            let all = KeypointList::new(gpu, found)?;
+            let keypoints = Readback::new(gpu, "keypoints", all.keypoints().size());
+            Ok((all, keypoints))
+        })
+        .await?;
+        submit(gpu, |encoder| {
+            for (octave, responses) in (0..).zip(&self.responses) {
+                self.nonmax.prepare(self.size, octave, &self.config, responses, &all).record(encoder);
+            }
+            keypoints.record(encoder, all.keypoints());
+        })
+        .await?;
+        let mut keypoints = keypoints.read::<Keypoint>(found as usize).await?;
+        keypoints.sort_unstable_by_key(Keypoint::key);
+        let ranked: Vec<_> = keypoints.iter().map(|keypoint| ranked(keypoint, self.size, self.config.step)).collect();
+        let kept: Vec<_> =
+            strongest(&ranked, self.size, room as usize).into_iter().map(|index| keypoints[index]).collect();
+        gpu.queue.write_buffer(self.list.count(), 0, bytemuck::bytes_of(&room));
+        gpu.queue.write_buffer(self.list.keypoints(), 0, bytemuck::cast_slice(&kept));
+        submit(gpu, |encoder| self.describing.iter().for_each(|dispatch| dispatch.record(encoder))).await
+    }
+
+    /// Copies the first `keypoint_count` keypoints of the list and their descriptors to the host.
+    async fn read_listed(&self, keypoint_count: u32) -> Result<Vec<Feature>> {
         if keypoint_count == 0 {
             return Ok(Vec::new());
         }
-        let keypoint_count = keypoint_count as usize;
+        let (gpu, list, keypoint_count) = (&self.gpu, &self.list, keypoint_count as usize);
         // Each call has its own staging buffers, so that several threads can read.
         let (keypoints, descriptors) = submit(gpu, |encoder| {
             let keypoints = Readback::new(gpu, "keypoints", (keypoint_count * size_of::<Keypoint>()) as u64);
@@ -228,13 +288,13 @@ pub fn collect(keypoints: &[Keypoint], descriptors: &[[f32; DESCRIPTOR_LENGTH]])
     features.into_iter().map(|(keypoint, &descriptor)| feature(keypoint, descriptor)).collect()
 }
 
-/// Finds and describes the interest points of one picture.
+/// Finds and describes the interest points of one picture; of more than [`FeatureConfig::max_features`] the strongest.
 ///
 /// For several pictures of one size, create a [`Detector`] once.
 ///
 /// # Errors
-/// See [`Detector::new`] and [`Detector::read`].
-pub async fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+/// See [`Detector::new`] and [`Detector::detect`].
+pub async fn detect(gpu: &Gpu, picture: &Luma, config: &FeatureConfig) -> Result<Detected> {
     let buffer = upload(gpu, picture).await?;
     Detector::new(gpu, picture.size(), config).await?.detect(&buffer).await
 }
@@ -250,12 +310,25 @@ async fn submit<T>(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> 
     .await
 }
 
+/// Determinant of the Hessian at a keypoint's sample, on OpenSURF's scale.
+fn determinant(keypoint: &Keypoint) -> f32 {
+    (f64::from(keypoint.response >> 1) / DETERMINANT_SCALE) as f32
+}
+
+/// Place and strength of a keypoint's sample in a picture of `size` whose first octave has a sampling step of `step`.
+fn ranked(keypoint: &Keypoint, size: Size, step: u32) -> Ranked {
+    let grid = Grid::new(size, step, keypoint.octave);
+    let place = keypoint.index % (grid.width * grid.height);
+    let (i, j) = (place % grid.width, place / grid.width);
+    Ranked { x: i * grid.step, y: j * grid.step, response: determinant(keypoint) }
+}
+
 fn feature(keypoint: &Keypoint, descriptor: Values) -> Feature {
     Feature {
         x: keypoint.x,
         y: keypoint.y,
         scale: keypoint.scale,
-        response: (f64::from(keypoint.response >> 1) / DETERMINANT_SCALE) as f32,
+        response: determinant(keypoint),
         dark: keypoint.response & 1 == 1,
         orientation: keypoint.orientation,
         descriptor,

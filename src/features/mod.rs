@@ -10,8 +10,9 @@ mod detector;
 pub(crate) mod kernels;
 pub(crate) mod keypoints;
 mod readback;
+pub(crate) mod strongest;
 
-pub use config::{DESCRIPTOR_LENGTH, Feature, FeatureConfig};
+pub use config::{DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig};
 pub use detector::{Detector, DetectorInput, collect, detect};
 pub use keypoints::{Keypoint, KeypointList};
 pub use readback::FeatureReadback;

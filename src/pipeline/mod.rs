@@ -23,7 +23,7 @@ use crate::{
     dense::{Brightness, Dense},
     disparity::DisparityRange,
     error::{Error, Result},
-    features::{Feature, FeatureConfig},
+    features::{Detected, Feature, FeatureConfig},
     image::{Plane, Size},
     io::Picture,
     names::names,
@@ -57,6 +57,9 @@ pub struct Outcome {
     /// Interest points of the left and of the right view. Points with orientations, against
     /// [`FeatureConfig::upright`], if upright points left rectification unknown and points with orientations did not.
     pub features: [Vec<Feature>; 2],
+    /// Number of interest points of the left and of the right view; more than there are [`Self::features`] if only the
+    /// [`FeatureConfig::max_features`] strongest were kept.
+    pub points_found: [usize; 2],
     /// Seeds, coarse map, disparity range, rectification, brightness relation and agreement.
     pub seeding: Seeding,
     /// Searched disparity range, without the disparities that the width of the picture rules out.
@@ -141,10 +144,12 @@ pub async fn run_with_progress(
 
     enter(Some(Step::Features));
     let factor = reduction(size);
-    let features = views.features(factor, &config.features).await?;
+    let detected = views.features(factor, &config.features).await?;
 
     enter(Some(Step::Seeding));
-    let (features, mut matches) = matched(&views, factor, features, config).await?;
+    let (detected, mut matches) = matched(&views, factor, detected, config).await?;
+    let points_found = detected.each_ref().map(|view| view.found);
+    let features = detected.map(|view| view.features);
     if !config.align {
         matches.rectification.rows = RowModel::AS_IS;
     }
@@ -180,6 +185,7 @@ pub async fn run_with_progress(
     enter(None);
     Ok(Outcome {
         features,
+        points_found,
         no_parallax: shows_no_parallax(&dense),
         trust,
         seeding,
@@ -194,19 +200,20 @@ pub async fn run_with_progress(
     })
 }
 
-/// Matches `features` of the views in any row, or features with orientations where upright ones do not tell how rows
+/// Matches the features of the views in any row, or features with orientations where upright ones do not tell how rows
 /// correspond; returns the features that were matched, too.
 async fn matched(
     views: &Views<'_>,
     factor: u32,
-    features: [Vec<Feature>; 2],
+    detected: [Detected; 2],
     config: &Config,
-) -> Result<([Vec<Feature>; 2], RawMatches)> {
+) -> Result<([Detected; 2], RawMatches)> {
     let size = views.size().reduced(factor);
-    let anywhere = |[left, right]: &[Vec<Feature>; 2]| RawMatches::new((left, right), size, &config.seeding);
-    let matches = anywhere(&features)?;
+    let anywhere =
+        |[left, right]: &[Detected; 2]| RawMatches::new((&left.features, &right.features), size, &config.seeding);
+    let matches = anywhere(&detected)?;
     if matches.rectification.is_certain() || !config.features.upright {
-        return Ok((features, matches));
+        return Ok((detected, matches));
     }
     // Upright descriptors of views that are rotated against each other do not match, or rarely.
     let turned = views.features(factor, &FeatureConfig { upright: false, ..config.features.clone() }).await?;
@@ -215,7 +222,7 @@ async fn matched(
     if found.rectification.is_certain() || unknown(&matches) && !unknown(&found) {
         return Ok((turned, found));
     }
-    Ok((features, matches))
+    Ok((detected, matches))
 }
 
 /// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine

@@ -7,7 +7,7 @@ use crate::{
     cpu,
     dense::{Dense, DenseConfig, DenseParameters, View},
     error::Result,
-    features::{Feature, FeatureConfig},
+    features::{Detected, FeatureConfig},
     image::{self, Luma, Size},
     io::Picture,
     mask::{self, Mask},
@@ -43,15 +43,17 @@ impl<'b> Views<'b> {
     }
 
     /// The interest points of both views downscaled by `factor`, in pixels of the downscaled views.
-    pub async fn features(&self, factor: u32, config: &FeatureConfig) -> Result<[Vec<Feature>; 2]> {
-        let mut features = match factor {
+    pub async fn features(&self, factor: u32, config: &FeatureConfig) -> Result<[Detected; 2]> {
+        let mut detected = match factor {
             1 => self.pair.features(config).await?,
             _ => self.pair.reduced(factor).await?.features(config).await?,
         };
-        for (points, mask) in features.iter_mut().zip(self.masks(factor)) {
-            points.retain(|point| mask.as_ref().is_none_or(|mask| mask::is_seen(mask, point)));
+        for (Detected { features, found }, mask) in detected.iter_mut().zip(self.masks(factor)) {
+            let weaker = *found - features.len();
+            features.retain(|point| mask.as_ref().is_none_or(|mask| mask::is_seen(mask, point)));
+            *found = features.len() + weaker;
         }
-        Ok(features)
+        Ok(detected)
     }
 
     /// The masks of both views downscaled by `factor`.

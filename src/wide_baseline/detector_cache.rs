@@ -30,10 +30,10 @@ impl<'b> DetectorCache<'b> {
         Self { backend, last: None }
     }
 
-    /// Detects the features of one picture, as [`Backend::features`].
+    /// The features of one picture that [`Backend::features`] detects.
     pub(super) async fn features(&mut self, luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
         match self.backend {
-            Backend::Cpu => cpu::features::detector::detect(luma, config),
+            Backend::Cpu => Ok(cpu::features::detector::detect(luma, config)?.features),
             Backend::Gpu(gpu) => self.on_device(gpu, luma, config).await,
         }
     }
@@ -47,7 +47,7 @@ impl<'b> DetectorCache<'b> {
             None => SizedDetector::new(gpu, luma, config).await?,
         };
         let SizedDetector { detector, luma, .. } = self.last.insert(detector);
-        detector.detect(luma).await
+        Ok(detector.detect(luma).await?.features)
     }
 }
 

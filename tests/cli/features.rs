@@ -87,6 +87,20 @@ fn the_cpu_in_place_of_a_device_is_told_once_even_if_quiet() {
 }
 
 #[test]
+fn of_too_many_points_the_strongest_are_kept_and_told() {
+    let (all, _) = printed(&["--device", "cpu", "-q"]);
+    let (kept, note) = printed(&["--device", "cpu", "--max-features", "50"]);
+    assert_eq!(kept.len(), 50);
+    assert!(note.contains(&format!("50 interest points, the strongest of {},", all.len())), "{note}");
+    assert!(all.iter().filter(|point| kept.contains(point)).eq(&kept), "some of all points, in their order");
+    // They are spread: each quarter of the picture has some.
+    for (right, low) in [(false, false), (false, true), (true, false), (true, true)] {
+        let within = |point: &&Vec<f64>| (point[0] > 170.0) == right && (point[1] > 127.0) == low;
+        assert!(kept.iter().filter(within).count() >= 3, "{right} {low}");
+    }
+}
+
+#[test]
 fn large_pictures_are_reduced_unless_told_otherwise() {
     let folder = folder();
     let path = folder.path().join("large.png");

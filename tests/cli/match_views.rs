@@ -71,6 +71,37 @@ fn writes_maps_that_agree_and_a_report() {
 }
 
 #[test]
+fn the_strongest_points_will_do_and_the_report_says_so() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let run = |name: &str, most: &str| {
+        let out = temporary.path().join(name);
+        let told = contains(", spread over the picture: --max-features");
+        let run = match_on_cpu(&left, &right, &out).args(["--max-features", most, "--disparities", "64"]).assert();
+        let run = run.success();
+        if most == "200" {
+            run.stderr(told)
+        } else {
+            run.stderr("")
+        };
+        report(&out)
+    };
+    let (all, few) = (run("all", "65536"), run("few", "200"));
+    let points = |report: &Value, name: &str| report["features"][name].as_u64().unwrap();
+    for side in ["left", "right"] {
+        let found = format!("{side}_found");
+        assert!(points(&all, side) > 400 && points(&all, side) == points(&all, &found), "{}", all["features"]);
+        assert_eq!((points(&few, side), points(&few, &found)), (200, points(&all, side)));
+    }
+    assert!(
+        few["warnings"][0].as_str().unwrap().contains("the strongest 200 and 200 were used"),
+        "{}",
+        few["warnings"]
+    );
+    // Both views keep mostly the same points, so that a good part of them still matches.
+    assert!(few["seeds"].as_u64().unwrap() >= 60 && few["rectification"]["verdict"] == "rectified", "{few}");
+}
+
+#[test]
 fn gpu_and_cpu_find_the_same_bytes() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let run = |device: &str| {

@@ -32,7 +32,7 @@ fn features_of_a_texture_are_read_from_their_buffers() {
         detector.record(encoder, &input);
         detector.record_readback(encoder, &readback);
     });
-    let expected = block_on(detect(gpu, &luma, &features)).unwrap();
+    let expected = block_on(detect(gpu, &luma, &features)).unwrap().features;
 
     let list = detector.keypoints();
     let found = bench.download::<u32>(list.count()).unwrap()[0] as usize;

@@ -8,37 +8,45 @@ use crate::{
         haar::QuantizedPoint,
         hessian::Octave,
         integral::IntegralImage,
-        nonmax::{Extremum, candidates, integer_threshold, locate},
+        nonmax::{Candidate, Extremum, candidates, integer_threshold, locate},
         orientation::orientation,
     },
-    error::{Error, Result},
-    features::{Feature, FeatureConfig},
+    error::Result,
+    features::{
+        Detected, Feature, FeatureConfig,
+        strongest::{Ranked, strongest},
+    },
     image::Luma,
 };
 
-/// Finds and describes the interest points of a picture, sorted by octave, interval, row and column.
+/// Finds and describes the interest points of a picture, sorted by octave, interval, row and column; of more than
+/// `max_features` the [`strongest`].
 ///
 /// A picture too small for the filters has no interest points.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`]; [`crate::Error::TooManyFeatures`] if there are more
-/// than `max_features` points.
-pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Vec<Feature>> {
+/// [`crate::Error::Parameter`] if `config` is refused by [`FeatureConfig::validate`].
+pub fn detect(luma: &Luma, config: &FeatureConfig) -> Result<Detected> {
     config.validate()?;
     let integral = IntegralImage::new(luma);
     let extrema = extrema(&integral, config);
-    if extrema.len() > config.max_features as usize {
-        return Err(Error::TooManyFeatures { found: extrema.len(), room: config.max_features });
-    }
-    Ok(extrema.into_par_iter().map(|extremum| feature(&integral, extremum, config.upright)).collect())
+    let ranked = |&(Candidate { octave, j, i, .. }, Extremum { response, .. })| {
+        let spacing = config.step << octave;
+        Ranked { x: i * spacing, y: j * spacing, response }
+    };
+    let ranked: Vec<Ranked> = extrema.iter().map(ranked).collect();
+    let kept = strongest(&ranked, luma.size(), config.max_features as usize);
+    let features = kept.into_par_iter().map(|index| feature(&integral, extrema[index].1, config.upright)).collect();
+    Ok(Detected { features, found: extrema.len() })
 }
 
-fn extrema(integral: &IntegralImage, config: &FeatureConfig) -> Vec<Extremum> {
+/// All interest points with the samples that they were found at.
+fn extrema(integral: &IntegralImage, config: &FeatureConfig) -> Vec<(Candidate, Extremum)> {
     let threshold = integer_threshold(config.threshold);
     let octave_extrema = |index| {
         let octave = Octave::new(integral, index, config.step);
         let candidates = candidates(&octave, integral.width(), integral.height(), threshold);
-        candidates.into_iter().map(|candidate| locate(&octave, candidate)).collect::<Vec<_>>()
+        candidates.into_iter().map(|candidate| (candidate, locate(&octave, candidate))).collect::<Vec<_>>()
     };
     (0..config.octaves).flat_map(octave_extrema).collect()
 }
@@ -68,7 +76,9 @@ mod tests {
 
     #[test]
     fn features_are_valid_and_described() {
-        let features = detect(&blobs(200, 160), &FeatureConfig { upright: false, ..Default::default() }).unwrap();
+        let Detected { features, found } =
+            detect(&blobs(200, 160), &FeatureConfig { upright: false, ..Default::default() }).unwrap();
+        assert_eq!(found, features.len());
         assert!(features.len() >= 20);
         for feature in &features {
             let length: f32 = feature.descriptor.iter().map(|value| value * value).sum();
@@ -80,24 +90,32 @@ mod tests {
 
     #[test]
     fn upright_features_are_not_turned() {
-        let features = detect(&blobs(200, 160), &FeatureConfig::default()).unwrap();
+        let features = detect(&blobs(200, 160), &FeatureConfig::default()).unwrap().features;
         assert!(features.iter().all(|feature| feature.orientation == 0.0));
     }
 
     #[test]
     fn flat_and_tiny_pictures_have_none() {
         for (width, height) in [(1, 1), (3, 200), (200, 3), (200, 200)] {
-            assert_eq!(detect(&Luma::filled((width, height), 77), &FeatureConfig::default()).unwrap(), []);
+            let flat = detect(&Luma::filled((width, height), 77), &FeatureConfig::default()).unwrap();
+            assert_eq!(flat, Detected::default());
         }
     }
 
     #[test]
-    fn one_feature_too_many_is_an_error() {
+    fn of_too_many_features_the_strongest_are_kept_and_all_are_counted() {
         let picture = blobs(200, 160);
-        let count = detect(&picture, &FeatureConfig::default()).unwrap().len() as u32;
-        let limited = |max_features| detect(&picture, &FeatureConfig { max_features, ..Default::default() });
-        assert_eq!(limited(count).unwrap().len() as u32, count);
-        assert!(matches!(limited(count - 1), Err(Error::TooManyFeatures { .. })));
+        let limited = |max_features| detect(&picture, &FeatureConfig { max_features, ..Default::default() }).unwrap();
+        let Detected { features: all, found } = limited(65_536);
+        assert_eq!(limited(found as u32).features, all);
+        // One cell of 8 * 200 * 160 / (found - 1) square pixels loses its weakest point.
+        let fewer = limited(found as u32 - 1);
+        assert_eq!((fewer.features.len(), fewer.found), (found - 1, found));
+        let ordered = all.iter().filter(|feature| fewer.features.contains(feature));
+        assert!(ordered.eq(&fewer.features));
+        let response = |features: &[Feature]| features.iter().map(|feature| feature.response).fold(0.0, f32::max);
+        assert_eq!(limited(1).features.len(), 1);
+        assert_eq!(limited(1).features[0].response, response(&all));
     }
 
     #[test]

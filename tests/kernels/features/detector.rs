@@ -2,8 +2,9 @@ use std::f32::consts::PI;
 
 use hsad::{
     Error,
-    features::{Detector, Feature, FeatureConfig, detect},
+    features::{Detected, Detector, Feature, FeatureConfig, detect},
     image::{Luma, Size},
+    internals::cpu,
     luma::pack,
     verify::trials::FeaturesTrial,
 };
@@ -27,7 +28,7 @@ fn a_blob_is_found_where_it_is() {
     for (height, dark) in [(100.0, false), (-100.0, true)] {
         for (centre, sigma) in [((40.3, 50.8), 2.5), ((64.0, 47.5), 4.0), ((60.6, 60.2), 8.0)] {
             let picture = blob(128, 120, centre, sigma, height);
-            let found = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap();
+            let found = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap().features;
             let found = strongest(&found);
             assert!((found.x - centre.0).abs() < 0.2 && (found.y - centre.1).abs() < 0.2, "{centre:?}: {found:?}");
             assert!(found.scale / sigma > 0.6 && found.scale / sigma < 1.4, "sigma {sigma}: {}", found.scale);
@@ -42,7 +43,7 @@ fn pictures_of_any_size_are_accepted() {
     for Size { width, height } in SIZES {
         for upright in [true, false] {
             let config = FeatureConfig { upright, ..FeatureConfig::default() };
-            let found = block_on(detect(gpu(), &picture((width, height), 6), &config)).unwrap();
+            let found = block_on(detect(gpu(), &picture((width, height), 6), &config)).unwrap().features;
             assert_eq!(found.is_empty(), width.min(height) < 30, "{width}x{height}: {}", found.len());
             for feature in found {
                 assert!(feature.x >= 0.0 && feature.x < width as f32 && feature.y >= 0.0 && feature.y < height as f32);
@@ -58,10 +59,10 @@ fn pictures_of_any_size_are_accepted() {
 fn the_same_picture_gives_the_same_list() {
     let picture = picture((311, 239), 7);
     let config = FeatureConfig { upright: false, ..FeatureConfig::default() };
-    let first = block_on(detect(gpu(), &picture, &config)).unwrap();
+    let first = block_on(detect(gpu(), &picture, &config)).unwrap().features;
     assert!(first.len() > 100, "{}", first.len());
     for _ in 0..3 {
-        assert_eq!(block_on(detect(gpu(), &picture, &config)).unwrap(), first);
+        assert_eq!(block_on(detect(gpu(), &picture, &config)).unwrap().features, first);
     }
 }
 
@@ -77,25 +78,47 @@ fn a_detector_is_used_again_for_the_next_picture() {
         bench().write(&luma, &pack(&picture));
         bench().run(|encoder| detector.record(encoder, &input));
         let found = block_on(detector.read()).unwrap();
-        assert_eq!(found, block_on(detect(gpu(), &picture, &config)).unwrap());
+        assert_eq!(found, block_on(detect(gpu(), &picture, &config)).unwrap().features);
     }
 }
 
 #[test]
-fn more_than_there_is_room_for_is_an_error_that_says_so() {
+fn of_more_than_there_is_room_for_the_strongest_are_kept() {
     let picture = picture((311, 239), 7);
-    let all = block_on(detect(gpu(), &picture, &FeatureConfig::default())).unwrap().len();
-    let room = all as u32 - 1;
-    let error = block_on(detect(gpu(), &picture, &FeatureConfig { max_features: room, ..FeatureConfig::default() }))
-        .unwrap_err();
-    assert!(matches!(error, Error::TooManyFeatures { .. }), "{error}");
+    let limited =
+        |max_features| block_on(detect(gpu(), &picture, &FeatureConfig { max_features, ..FeatureConfig::default() }));
+    let Detected { features: all, found } = limited(65_536).unwrap();
+    assert_eq!(all.len(), found);
+    assert_eq!(limited(found as u32).unwrap().features, all);
+    for room in [1, found / 3, found - 1] {
+        let kept = limited(room as u32).unwrap();
+        assert_eq!((kept.features.len(), kept.found), (room, found));
+        // The same points as all have, described as they are.
+        assert!(all.iter().filter(|feature| kept.features.contains(feature)).eq(&kept.features));
+        let config = FeatureConfig { max_features: room as u32, ..FeatureConfig::default() };
+        let twin = cpu::features::detector::detect(&picture, &config).unwrap().features;
+        let places = |features: &[Feature]| -> Vec<[f32; 2]> {
+            features.iter().map(|feature| [feature.response, f32::from(u8::from(feature.dark))]).collect()
+        };
+        assert_eq!(places(&kept.features), places(&twin));
+    }
+}
+
+#[test]
+fn a_list_without_room_is_an_error_for_readers_that_say_so() {
+    let picture = picture((311, 239), 7);
+    let config = FeatureConfig { max_features: 20, ..FeatureConfig::default() };
+    let luma = bench().upload_luma(&picture).unwrap();
+    let detector = block_on(Detector::new(gpu(), picture.size(), &config)).unwrap();
+    let input = block_on(detector.input(&luma)).unwrap();
+    bench().run(|encoder| detector.record(encoder, &input));
+    let error = block_on(detector.read()).unwrap_err();
+    assert!(matches!(error, Error::TooManyFeatures { room: 20, .. }), "{error}");
     let text = error.to_string();
-    assert!(
-        text.contains(&room.to_string()) && text.contains(&all.to_string()) && text.contains("threshold"),
-        "{text}"
-    );
-    let exactly = FeatureConfig { max_features: all as u32, ..FeatureConfig::default() };
-    assert_eq!(block_on(detect(gpu(), &picture, &exactly)).unwrap().len(), all);
+    assert!(text.contains("max_features is 20") && text.contains("threshold"), "{text}");
+    // What keeps the strongest leaves the detector as it was.
+    assert_eq!(block_on(detector.detect(&luma)).unwrap().features.len(), 20);
+    assert!(block_on(detector.read()).is_ok(), "the list holds the strongest");
 }
 
 #[test]

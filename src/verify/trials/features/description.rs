@@ -238,11 +238,11 @@ impl Trial for FeaturesTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        Ok(Self::arrays(&block_on(detect(bench.gpu, &self.picture, &self.config))?, self.config.upright))
+        Ok(Self::arrays(&block_on(detect(bench.gpu, &self.picture, &self.config))?.features, self.config.upright))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(Self::arrays(&detector::detect(&self.picture, &self.config)?, self.config.upright))
+        Ok(Self::arrays(&detector::detect(&self.picture, &self.config)?.features, self.config.upright))
     }
 }
 
