@@ -26,7 +26,10 @@ use crate::{
     dense::Brightness,
     disparity::DisparityRange,
     error::{Error, Result},
-    features::Feature,
+    features::{
+        Feature,
+        strongest::{Ranked, strongest},
+    },
     image::{Luma, Size},
     mask::Mask,
     matching::{Match, MatchConfig, Rows, Seed, match_features, refine},
@@ -35,6 +38,10 @@ use crate::{
 
 /// Standard deviation of a normal distribution divided by its median absolute deviation.
 const DEVIATIONS: f32 = 1.4826;
+
+/// Most features of a view that are matched in any row, where the time grows with the square of their number: a few
+/// thousand tell how rows correspond. All are matched along these rows.
+const ANYWHERE: usize = 8192;
 
 /// Parameters of [`Seeding::find`].
 #[derive(Clone, Debug, PartialEq)]
@@ -102,13 +109,20 @@ pub(crate) struct RawMatches {
 }
 
 impl RawMatches {
-    /// Matches the `features` of two views of `size`.
+    /// Matches the `features` of two views of `size`: of more than [`ANYWHERE`] the strongest, spread over the view.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the configuration is not valid.
     pub fn new((left, right): (&[Feature], &[Feature]), size: Size, config: &SeedingConfig) -> Result<Self> {
         let anywhere = MatchConfig { max_dy: None, ..config.matching.clone() };
-        let matches = match_features(left, right, &anywhere)?;
+        let [kept_left, kept_right] = [left, right].map(|features| kept(features, size));
+        let of = |features: &[Feature], kept: &[usize]| -> Vec<Feature> {
+            kept.iter().map(|&index| features[index].clone()).collect()
+        };
+        let mut matches = match_features(&of(left, &kept_left), &of(right, &kept_right), &anywhere)?;
+        for found in &mut matches {
+            (found.left, found.right) = (kept_left[found.left], kept_right[found.right]);
+        }
         let seeds: Vec<Seed> = matches.iter().map(|found| Seed::from_match(left, right, found)).collect();
         let rectification = Rectification::new(&seeds, size);
         Ok(Self { matches, seeds, rectification })
@@ -145,6 +159,12 @@ impl RawMatches {
         let agreement = range.map_or(0.0, |found| agreement(&raw, found.range, &rows, config.max_dy));
         Ok(Seeding { range, coarse, rectification, brightness, agreement, seeds: supported })
     }
+}
+
+/// The indices of the features of a view of `size` that are matched in any row.
+fn kept(features: &[Feature], size: Size) -> Vec<usize> {
+    let ranked = |&Feature { x, y, response, .. }: &Feature| Ranked { x: x as u32, y: y as u32, response };
+    strongest(&features.iter().map(ranked).collect::<Vec<_>>(), size, ANYWHERE)
 }
 
 /// A feature of the right view on the left row that `rows` gives it.
