@@ -2,6 +2,7 @@
 // pixel inside, so that block matching needs no bounds checks. Brightness is corrected on the way.
 
 #import brightness
+#import edges
 
 // Constants:
 //   WORKGROUP_WIDTH    threads per workgroup along x
@@ -33,12 +34,6 @@ fn brightened_word(word: u32) -> u32 {
     return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }
 
-// Mask of the lowest n bytes of a u32; n is clamped to 0 to 4.
-fn mask(n: i32) -> u32 {
-    let bits = 4u * u32(clamp(n, 0, 4));
-    return ~((0xffffffffu << bits) << bits);
-}
-
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= params.stride || id.y >= params.rows {
@@ -48,11 +43,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let y = u32(clamp(params.first_row + i32(id.y), 0, i32(params.height) - 1));
     let word = params.first_word + i32(id.x);
     let nearest = luma[y * ((params.width + 3u) / 4u) + u32(clamp(word, 0, (width - 1) / 4))];
-    // Masks instead of branches: software drivers run both sides of a branch for every u32.
-    let left = mask(-4 * word);
-    let right = ~mask(width - 4 * word);
-    let first_pixel = (nearest & 255u) * 0x01010101u;
-    let last_pixel = ((nearest >> (8u * u32((width - 1) & 3))) & 255u) * 0x01010101u;
-    let pixels = (first_pixel & left) | (last_pixel & right & ~left) | (nearest & ~left & ~right);
+    let pixels = with_edges(word, nearest, width);
     padded[params.offset + id.y * params.stride + id.x] = brightened_word(pixels);
 }

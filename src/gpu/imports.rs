@@ -14,6 +14,7 @@ const PARTS: &[(&str, &str)] = parts![
     "brightness",
     "cell_layout",
     "consistent",
+    "edges",
     "haar",
     "keypoint",
     "line",

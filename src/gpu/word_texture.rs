@@ -23,6 +23,7 @@ pub(crate) fn most_words(gpu: &Gpu) -> u64 {
 #[derive(Clone, Debug)]
 pub struct WordTexture {
     texture: wgpu::Texture,
+    words: u64,
     pub(crate) view: wgpu::TextureView,
 }
 
@@ -56,7 +57,7 @@ impl WordTexture {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { texture, view })
+        Ok(Self { texture, words, view })
     }
 
     /// Writes `words` at the beginning of the texture, before everything that is submitted later.
@@ -70,13 +71,21 @@ impl WordTexture {
         );
     }
 
-    /// Records the copy of the first words of `buffer`, which must hold as many whole rows, to the texture.
+    /// Records the copy of the first words of `buffer`, which must hold as many as the texture, to the texture.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * ROW), rows_per_image: None };
-        encoder.copy_buffer_to_texture(
-            wgpu::TexelCopyBufferInfo { buffer, layout },
-            self.texture.as_image_copy(),
-            self.texture.size(),
-        );
+        let (rows, rest) = ((self.words / u64::from(ROW)) as u32, (self.words % u64::from(ROW)) as u32);
+        let mut copy = |y: u32, width: u32, height: u32| {
+            if width == 0 || height == 0 {
+                return;
+            }
+            let offset = 4 * u64::from(ROW) * u64::from(y);
+            let layout = wgpu::TexelCopyBufferLayout { offset, bytes_per_row: Some(4 * ROW), rows_per_image: None };
+            let mut texture = self.texture.as_image_copy();
+            texture.origin.y = y;
+            let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+            encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer, layout }, texture, size);
+        };
+        copy(0, ROW, rows);
+        copy(rows, rest, 1);
     }
 }

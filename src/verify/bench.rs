@@ -2,7 +2,7 @@
 
 use crate::{
     error::Result,
-    gpu::{Gpu, Readback, WordTexture, block_on, guarded, in_rows, storage_buffer},
+    gpu::{Gpu, Readback, WordTexture, block_on, guarded, storage_buffer},
     image::{Luma, Size},
     luma::pack,
 };
@@ -37,7 +37,7 @@ impl<'g> Bench<'g> {
     pub fn upload_words<T: bytemuck::NoUninit>(&self, values: &[T]) -> Result<WordTexture> {
         let words = (size_of_val(values) as u64).div_ceil(4);
         let texture = WordTexture::new(self.gpu, "input", words)?;
-        let buffer = storage_buffer(self.gpu, "input", 4 * in_rows(words))?;
+        let buffer = storage_buffer(self.gpu, "input", 4 * words)?;
         self.write(&buffer, values);
         self.run(|encoder| texture.record(encoder, &buffer));
         Ok(texture)

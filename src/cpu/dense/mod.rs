@@ -1,5 +1,6 @@
 //! The CPU twins of dense matching.
 
+mod agreement;
 mod block_match;
 mod box_mean;
 mod cell_cost;
@@ -20,10 +21,12 @@ mod path;
 mod pyramid;
 mod residual;
 mod select;
+mod soft_rank;
 mod support;
 mod weighted_median;
 mod wide_census;
 
+pub use agreement::agreement;
 pub use block_match::{block_match, winners};
 pub use box_mean::box_mean;
 pub use cell_cost::cell_cost;
@@ -44,6 +47,7 @@ pub use path::path;
 pub use pyramid::pyramid;
 pub use residual::residual;
 pub use select::{path_winners, select};
+pub use soft_rank::soft_rank;
 pub use support::support;
 pub use weighted_median::weighted_median;
 pub use wide_census::wide_census;

@@ -1,5 +1,6 @@
 //! The kernels of dense matching, one per stage, and the layouts of their shared buffers.
 
+mod agreement;
 mod block_match;
 mod box_mean;
 mod cell_cost;
@@ -23,11 +24,13 @@ mod residual;
 mod rows_per_thread;
 mod select;
 mod selection;
+mod soft_rank;
 mod support;
 mod volume_band;
 mod weighted_median;
 mod wide_census;
 
+pub use agreement::{AGREEMENT_REACH, AGREEMENT_TOLERANCE, Agreement, AgreementTile};
 pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
 pub use cell_cost::CellCost;
@@ -53,6 +56,7 @@ pub use residual::{ComparedViews, MAX_RESIDUAL, Residual};
 pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use select::{Select, Selection};
 pub use selection::ResultKind;
+pub use soft_rank::{SOFT_RANK_LIMIT, SOFT_RANK_MIDDLE, SoftRank};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
@@ -117,8 +121,9 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([Residual::stage(), Fill::stage()]);
     let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
+    stages.extend([AgreementTile::SOFTWARE, AgreementTile::HARDWARE].map(Agreement::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
-        stages.extend([Census::stage(rows), WideCensus::stage(1, rows), Support::stage(5, rows)]);
+        stages.extend([SoftRank::stage(rows), Census::stage(rows), WideCensus::stage(1, rows), Support::stage(5, rows)]);
         stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
     }
     stages

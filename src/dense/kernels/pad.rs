@@ -7,36 +7,24 @@ use crate::{
 
 const WORKGROUP: [u32; 2] = [64, 4];
 
-/// Place of a padded plane in the picture and in the buffer. Words and rows are counted in the picture and can lie
-/// outside of it.
-#[derive(Clone, Copy, Debug)]
-pub struct PadParams {
-    /// Width of the picture in pixels.
-    pub width: u32,
-    /// Height of the picture in pixels.
-    pub height: u32,
-    /// First padded word of four pixels, counted from the picture's first word.
-    pub first_word: i32,
-    /// Row of the picture of the first padded row.
-    pub first_row: i32,
-    /// Number of padded rows.
-    pub rows: u32,
-    /// Words per padded row, four pixels each.
-    pub stride: u32,
-    /// Offset of the plane in the buffer, in words.
-    pub offset: u32,
-}
-
 shader_struct! {
-    /// [`PadParams`] as the shader declares it.
-    struct Params {
-        width: u32,
-        height: u32,
-        first_word: i32,
-        first_row: i32,
-        rows: u32,
-        stride: u32,
-        offset: u32,
+    /// Place of a padded plane in the picture and in the buffer. Words and rows are counted in the picture and can lie
+    /// outside of it.
+    pub struct PadParams {
+        /// Width of the picture in pixels.
+        pub width: u32,
+        /// Height of the picture in pixels.
+        pub height: u32,
+        /// First padded word of four pixels, counted from the picture's first word.
+        pub first_word: i32,
+        /// Row of the picture of the first padded row.
+        pub first_row: i32,
+        /// Number of padded rows.
+        pub rows: u32,
+        /// Words per padded row, four pixels each.
+        pub stride: u32,
+        /// Offset of the plane in the buffer, in words.
+        pub offset: u32,
     }
 }
 
@@ -51,7 +39,7 @@ impl Pad {
             name: "pad",
             source: include_str!("../../../shaders/dense/pad.wgsl"),
             bindings: &[
-                Binding::Uniform(Params::SHAPE),
+                Binding::Uniform(PadParams::SHAPE),
                 Binding::Uniform(Brightness::SHAPE),
                 Binding::Read,
                 Binding::Write,
@@ -74,9 +62,7 @@ impl Pad {
         luma: &wgpu::Buffer,
         padded: &wgpu::Buffer,
     ) -> Dispatch {
-        let PadParams { width, height, first_word, first_row, rows, stride, offset } = params;
-        let params = Params { width, height, first_word, first_row, rows, stride, offset };
-        let groups = [stride.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
+        let groups = [params.stride.div_ceil(WORKGROUP[0]), params.rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[brightness, luma, padded], groups)
     }
 }

@@ -8,9 +8,9 @@ mod pipelines;
 mod rectify;
 
 pub use dense::{
-    BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial, CellSelectTrial, CensusTrial,
-    ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial,
-    ResidualTrial, SelectTrial, SupportTrial, WideCensusTrial,
+    AgreementTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial, CellSelectTrial,
+    CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial, PadTrial,
+    PathTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial, WideCensusTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,

@@ -1,5 +1,6 @@
 //! The kernels of dense matching.
 
+mod agreement;
 mod block_match;
 mod box_mean;
 mod cell_cost;
@@ -19,6 +20,7 @@ mod pad;
 mod path;
 mod residual;
 mod select;
+mod soft_rank;
 mod support;
 mod weighted_median;
 mod wide_census;

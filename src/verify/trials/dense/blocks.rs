@@ -1,85 +1,22 @@
-//! Padding and block matching.
+//! Block matching.
 
 use crate::{
     cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
         Aggregation, Brightness, DenseConfig, DenseParameters, Search, View,
         kernels::{
-            BlockMatch, CELL, ConfirmingMap, Layout, MapBuffer, MapLayout, Pad, PadParams, Ranges, ResultKind, Tile,
-            halved_config,
+            BlockMatch, CELL, ConfirmingMap, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile, halved_config,
         },
     },
     disparity::DisparityRange,
     error::Result,
-    gpu::uniform_buffer,
     image::{Luma, Plane, Size},
     luma::pack,
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
-pub(super) const SUBJECTS: &[Subject] = &[
-    Subject::kernel("pad", |size, dice| Box::new(PadTrial::draw(size, dice))),
-    Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice))),
-];
-
-/// A picture to be padded.
-#[derive(Clone, Debug)]
-pub struct PadTrial {
-    /// The picture, of the size given by the parameters.
-    pub picture: Luma,
-    /// Padding of the picture.
-    pub params: PadParams,
-    /// Change of brightness.
-    pub brightness: Brightness,
-}
-
-impl PadTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let Size { width, height } = size;
-        let (above, below) = (dice.below(20), dice.below(20));
-        let brightness = dice.pick(&[
-            Brightness::SAME,
-            Brightness { gain: 300, offset: -9000 },
-            Brightness { gain: -40, offset: 60_000 },
-        ]);
-        let params = PadParams {
-            width,
-            height,
-            first_word: dice.between(-33, 5),
-            first_row: -(above as i32),
-            rows: above + height + below,
-            stride: width.div_ceil(4) + dice.below(40) + 1,
-            offset: dice.below(9),
-        };
-        Self { picture: dice.picture(size), params, brightness }
-    }
-}
-
-impl Trial for PadTrial {
-    fn parameters(&self) -> String {
-        format!("{:?}, {:?}", self.params, self.brightness)
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("picture", self.picture.data().to_vec())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, params) = (bench.gpu, self.params);
-        let plane = bench.output(params.offset + params.rows * params.stride)?;
-        let brightness = uniform_buffer(gpu, "brightness", &self.brightness);
-        let pad = Pad::new(gpu).prepare(params, &brightness, &bench.upload_luma(&self.picture)?, &plane);
-        bench.run(|encoder| pad.record(encoder));
-        Ok(vec![Array::exact("padded plane", bench.download::<u32>(&plane)?)])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        let mut plane = pad(&self.picture, &self.params, self.brightness);
-        // The kernel does not write the words in front of the plane.
-        plane[..self.params.offset as usize].fill(u32::MAX);
-        Ok(vec![Array::exact("padded plane", plane)])
-    }
-}
+pub(super) const SUBJECTS: &[Subject] =
+    &[Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice)))];
 
 /// A pair for block matching.
 #[derive(Clone, Debug)]

@@ -1,13 +1,13 @@
-//! Map kernels: consistency, residuals, support, filling, medians, textures.
+//! Map kernels: residuals, support, filling, medians, textures.
 
 use super::blocks::signed;
 use crate::{
-    cpu::dense::{consistency, fill, map_texture, residual, support, weighted_median},
+    cpu::dense::{fill, map_texture, residual, support, weighted_median},
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            CheckedAgainst, ComparedViews, Consistency, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel,
-            MapTexture, Residual, Support, WeightedMedian,
+            ComparedViews, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual, Support,
+            WeightedMedian,
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -19,7 +19,6 @@ use crate::{
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
-    Subject::kernel("consistency", |size, dice| Box::new(ConsistencyTrial::draw(size, dice))),
     Subject::kernel("residual", |size, dice| Box::new(ResidualTrial::draw(size, dice))),
     Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
     Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
@@ -29,7 +28,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
 
 /// Draws a map of all kinds of disparities, in 1/256 px: smooth, noisy, none, from `least` to `most` and possibly
 /// beyond.
-fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
+pub(super) fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> DisparityMap {
     let surface = dice.picture((width, height));
     let (holes, noise) = (dice.pick(&[0, 30, 128, 250]), 1 + dice.below(300));
     Plane::from_fn((width, height), |x, y| {
@@ -39,95 +38,22 @@ fn map(Size { width, height }: Size, dice: &mut Dice, least: i32, most: i32) -> 
 }
 
 /// Draws a map with confidences, 0 where there is no disparity.
-fn dense(size: Size, dice: &mut Dice) -> Dense {
+pub(super) fn dense(size: Size, dice: &mut Dice) -> Dense {
     let disparity = map(size, dice, -30 * SCALE, 60 * SCALE);
     let confidence = disparity.map(|&disparity| if disparity == NONE { 0 } else { 1 + dice.below(255) as u8 });
     Dense { disparity, confidence }
 }
 
 /// A map and its confidences in one buffer, in the layout of the kernels.
-fn matches(dense: &Dense) -> Vec<u32> {
+pub(super) fn matches(dense: &Dense) -> Vec<u32> {
     let mut words: Vec<u32> = dense.disparity.data().iter().map(|disparity| disparity.cast_unsigned()).collect();
     words.extend(pack(&dense.confidence));
     words
 }
 
-fn arrays(matches: &[u32], pixels: usize) -> Vec<Array> {
+pub(super) fn arrays(matches: &[u32], pixels: usize) -> Vec<Array> {
     let (disparities, confidences) = matches.split_at(pixels);
     vec![Array::exact("disparities", signed(disparities)), Array::exact("confidences", confidences.to_vec())]
-}
-
-/// Two maps to be compared.
-#[derive(Clone, Debug)]
-pub struct ConsistencyTrial {
-    /// Map of the reference view.
-    pub dense: Dense,
-    /// The reference view.
-    pub view: View,
-    /// Map of the other view.
-    pub others: DisparityMap,
-    /// Disparity of index 0, in pixels, if the other view's disparities are claims, which are whole pixels.
-    pub claims_from: Option<i32>,
-    /// Largest accepted difference, in 1/256 px.
-    pub max_difference: u32,
-}
-
-impl ConsistencyTrial {
-    /// The other view's disparities as the kernel reads them.
-    fn words(&self) -> Vec<u32> {
-        let word = |disparity: i32| match self.claims_from {
-            None => disparity.cast_unsigned(),
-            Some(_) if disparity == NONE => 0,
-            // The cost is arbitrary.
-            Some(least) => !(77 << 16 | (disparity / SCALE - least) as u32),
-        };
-        self.others.data().iter().map(|&disparity| word(disparity)).collect()
-    }
-}
-
-impl ConsistencyTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let (view, max_difference) = (dice.view(), dice.pick(&[0, 100, 256, 2000, 65536]));
-        let claims_from = dice.coin().then_some(-30);
-        let others = map(size, dice, -30 * SCALE, 60 * SCALE);
-        let whole = |&disparity: &i32| if disparity == NONE { NONE } else { disparity.div_euclid(SCALE) * SCALE };
-        let others = if claims_from.is_some() { others.map(whole) } else { others };
-        Self { dense: dense(size, dice), view, others, claims_from, max_difference }
-    }
-}
-
-impl Trial for ConsistencyTrial {
-    fn parameters(&self) -> String {
-        let Self { view, claims_from, max_difference, .. } = self;
-        format!("{view:?}, claims from {claims_from:?}, at most {max_difference}")
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("matches", matches(&self.dense)), Array::exact("others", self.words())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, size) = (bench.gpu, self.dense.disparity.size());
-        let layout = MapLayout { width: size.width, rows: size.height };
-        let (others, matches) = (bench.upload(&self.words())?, bench.upload(&matches(&self.dense))?);
-        let kernel =
-            Consistency::new(gpu, self.claims_from.map_or(CheckedAgainst::Disparities, CheckedAgainst::Claims));
-        let dispatch = kernel.prepare(
-            MapBuffer { buffer: &matches, layout },
-            size.height,
-            self.view,
-            self.max_difference,
-            &others,
-        );
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(arrays(&bench.download(&matches)?, layout.pixels() as usize))
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        let mut dense = self.dense.clone();
-        consistency(&mut dense, self.view, &self.others, self.max_difference);
-        Ok(arrays(&matches(&dense), dense.disparity.data().len()))
-    }
 }
 
 /// Two views to be compared at the disparities of one.

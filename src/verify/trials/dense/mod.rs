@@ -2,20 +2,32 @@
 
 mod blocks;
 mod cells;
+mod checks;
 mod costs;
 mod levels;
 mod maps;
 mod paths;
+mod planes;
 mod words;
 
-pub use blocks::{BlockMatchTrial, PadTrial};
+pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
+pub use checks::{AgreementTrial, ConsistencyTrial};
 pub use costs::{BoxMeanTrial, CensusTrial, CostTrial, WideCensusTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
-pub use maps::{ConsistencyTrial, FillTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
+pub use maps::{FillTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
 pub use paths::{ClaimTrial, PathTrial, SelectTrial};
+pub use planes::{PadTrial, SoftRankTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const SUBJECTS: [&[Subject]; 6] =
-    [blocks::SUBJECTS, cells::SUBJECTS, costs::SUBJECTS, paths::SUBJECTS, levels::SUBJECTS, maps::SUBJECTS];
+pub(super) const SUBJECTS: [&[Subject]; 8] = [
+    planes::SUBJECTS,
+    blocks::SUBJECTS,
+    cells::SUBJECTS,
+    costs::SUBJECTS,
+    paths::SUBJECTS,
+    levels::SUBJECTS,
+    checks::SUBJECTS,
+    maps::SUBJECTS,
+];
