@@ -2,8 +2,8 @@
 
 use crate::{
     dense::{
-        Aggregation, Brightness, CostAggregation, DenseConfig, DenseParameters, Interpolation, Paths, Refinement,
-        Search, SemiGlobal, View,
+        Aggregation, Brightness, Compared, CostAggregation, DenseConfig, DenseParameters, Interpolation, Paths,
+        Refinement, Search, SemiGlobal, View,
     },
     disparity::DisparityRange,
     error::Result,
@@ -106,8 +106,8 @@ const OPENSURF_THRESHOLD: f32 = 0.0004;
 /// A named set of parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Block matching in windows of 9x9, coarse to fine, checked for uniqueness and, at half the size, from the other view;
-    /// with holes.
+    /// Block matching of soft ranks in windows of 9x9, coarse to fine, checked for uniqueness and for agreement of
+    /// neighbours; with holes.
     Fast,
     /// Semi-global matching along three paths, checked and filled.
     #[default]
@@ -166,6 +166,7 @@ impl Preset {
             interpolation: Interpolation::Equiangular,
             uniqueness: 1,
             consistency: Some(256),
+            agreement: 0,
             refinement: Some(Refinement {
                 support: 10,
                 medians_before: 0,
@@ -191,8 +192,10 @@ impl Preset {
                 ..balanced
             },
             Self::Fast => DenseParameters {
-                aggregation: Aggregation::Sad { side: 9, search: Search::CoarseToFine },
-                uniqueness: 10,
+                aggregation: Aggregation::Sad { side: 9, search: Search::CoarseToFine, compared: Compared::SoftRank },
+                uniqueness: 16,
+                consistency: None,
+                agreement: 6,
                 refinement: None,
                 ..balanced
             },
@@ -224,11 +227,12 @@ mod tests {
             Config { method: Method::Hsad(parameters), ..balanced() }
         };
         let even = |parameters: &mut DenseParameters| {
-            parameters.aggregation = Aggregation::Sad { side: 8, search: Search::Whole };
+            parameters.aggregation = Aggregation::Sad { side: 8, search: Search::Whole, compared: Compared::SoftRank };
         };
         let bad = [
             (with(even), "window is 8"),
             (with(|parameters| parameters.uniqueness = 101), "uniqueness is 101"),
+            (with(|parameters| parameters.agreement = 10), "agreement is 10"),
             (
                 with(|parameters| parameters.refinement.as_mut().unwrap().medians_after = u32::MAX),
                 "medians_after is 4294967295",

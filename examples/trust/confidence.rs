@@ -14,7 +14,14 @@ const SURE: u8 = 192;
 const RIGHT: f32 = 2.0;
 
 pub fn print(backend: &Backend, scenes: &[Named]) -> Result<(), AnyError> {
-    heading("Confidence: preset `balanced`, wrong by over 2 px");
+    for preset in [Preset::Fast, Preset::Balanced] {
+        of_preset(backend, scenes, preset)?;
+    }
+    Ok(())
+}
+
+fn of_preset(backend: &Backend, scenes: &[Named], preset: Preset) -> Result<(), AnyError> {
+    heading(&format!("Confidence: preset `{preset}`, wrong by over 2 px"));
     columns(&[
         "scene",
         "all pixels, %",
@@ -24,8 +31,8 @@ pub fn print(backend: &Backend, scenes: &[Named]) -> Result<(), AnyError> {
     ]);
     let mut shares: Vec<[f64; 4]> = Vec::new();
     for Named { name, scene } in scenes {
-        eprintln!("{name}: confidence");
-        let dense = matched(backend, scene, &Preset::Balanced.config())?.outcome.dense;
+        eprintln!("{name}: confidence, {preset}");
+        let dense = matched(backend, scene, &preset.config())?.outcome.dense;
         let figures = figures(scene, &dense);
         line(name, figures);
         shares.push(figures);

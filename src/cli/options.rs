@@ -14,7 +14,7 @@ use clap::{
 use hsad::{
     Backend, Error, Result,
     config::{Config, Method, Preset},
-    dense::{Aggregation, CrossCheck, DenseParameters, Interpolation, Paths, Search, SemiGlobal, View},
+    dense::{Aggregation, Compared, CrossCheck, DenseParameters, Interpolation, Paths, Search, SemiGlobal, View},
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -127,9 +127,12 @@ pub struct MatchOptions {
     /// 31 [default: 1]
     #[arg(long, value_name = "PX", conflicts_with = "window")]
     cost_window: Option<u32>,
+    /// What blocks compare [default: soft-rank, paper luma]
+    #[arg(long, value_parser = compared())]
+    compare: Option<Compared>,
     /// Compare at every disparity of the range [default of fast: coarse to fine, near the disparities of a map of half
-    /// the size, with the left-right consistency check at half the size; of balanced and quality, in pictures at
-    /// least 1600 px wide: over a pyramid, near the disparities of the level above]
+    /// the size; of balanced and quality, in pictures at least 1600 px wide: over a pyramid, near the disparities of the
+    /// level above]
     #[arg(long)]
     whole_range: bool,
     /// Smallest disparity in pixels, -1048576 to 1048576: with --disparities the start of the range
@@ -144,23 +147,30 @@ pub struct MatchOptions {
     reference: Option<View>,
     /// Uniqueness margin: per cent by which the best rival, two or more disparities away, must cost more than the best
     /// disparity, 0 to 100
-    /// [default: 1, fast 10, paper 0]
+    /// [default: 1, fast 16, paper 0]
     #[arg(long, value_name = "PERCENT")]
     uniqueness: Option<u32>,
     /// Left-right consistency check: largest difference of the two views' disparities in pixels, 0 to 256
-    /// [default: 1, paper no check]; fast allows 1 px more, since it checks at half the size
+    /// [default: 1, fast and paper no check]; fast allows 1 px more, since it checks at half the size
     #[arg(long, value_name = "PX", conflicts_with = "no_lr_check", allow_negative_numbers = true)]
     max_lr_difference: Option<f32>,
     /// Skip the left-right consistency check
     #[arg(long)]
     no_lr_check: bool,
     /// Match the other view separately for the left-right consistency check, instead of deriving its
-    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time; block
-    /// matching over the whole range always does so, and fast only with --whole-range
+    /// disparities from those of the reference view: fewer errors beside occlusions, for nearly twice the time. Block
+    /// matching does so for any check: over the whole range at the whole size, coarse to fine at half the size
     #[arg(long, conflicts_with = "no_lr_check")]
     search_both_views: bool,
-    /// Leave holes where the left-right consistency check fails or too few neighbours agree
+    /// Agreement check: of nine pixels, the pixel itself and the eight pixels 3 columns, rows, or both away, the number
+    /// whose disparities must lie within 2 px of the pixel's, 0 to 9 [default: no check, fast 6]
+    #[arg(long, value_name = "N")]
+    agreement: Option<u32>,
+    /// Fill holes, and refine the map as balanced does [default of balanced and quality]
     #[arg(long)]
+    fill: bool,
+    /// Leave holes where a check fails or too few neighbours agree [default of fast and paper]
+    #[arg(long, conflicts_with = "fill")]
     no_fill: bool,
     /// Do not equalise the brightness of the views, even where matched points show a difference
     #[arg(long)]
@@ -238,6 +248,14 @@ impl MatchOptions {
         } else if self.no_lr_check {
             parameters.consistency = None;
         }
+        let blocks = matches!(parameters.aggregation, Aggregation::Sad { .. });
+        if self.search_both_views && blocks && parameters.consistency.is_none() {
+            return Err(self.misfit("it makes no left-right check, unless --max-lr-difference is given"));
+        }
+        parameters.agreement = self.agreement.unwrap_or(parameters.agreement);
+        if self.fill {
+            parameters.refinement = parameters.refinement.or(Preset::Balanced.dense_parameters().refinement);
+        }
         if let (true, Some(refinement)) = (self.no_fill, &mut parameters.refinement) {
             refinement.fill = false;
         }
@@ -246,28 +264,22 @@ impl MatchOptions {
 
     /// The preset's aggregation, overridden by the options on the command line.
     fn aggregation(&self, of_preset: Aggregation) -> Result<Aggregation> {
-        let Self { window, paths, cost_window, whole_range, search_both_views, .. } = *self;
+        let Self { window, paths, cost_window, compare, whole_range, search_both_views, .. } = *self;
         match of_preset {
-            Aggregation::Sad { side, search } => {
+            Aggregation::Sad { side, search, compared } => {
                 if paths.is_some() || cost_window.is_some() {
-                    return Err(Error::Parameter {
-                        name: "preset",
-                        value: self.preset.unwrap_or_default().to_string(),
-                        expected: "--paths and --cost-window need balanced or quality".into(),
-                    });
+                    return Err(self.misfit("--paths and --cost-window need balanced or quality"));
                 }
                 let search = if whole_range { Search::Whole } else { search };
-                if search_both_views && search == Search::CoarseToFine {
-                    return Err(Error::Parameter {
-                        name: "preset",
-                        value: self.preset.unwrap_or_default().to_string(),
-                        expected: "it checks against a half-size map: --whole-range searches both views".into(),
-                    });
-                }
-                Ok(Aggregation::Sad { side: window.unwrap_or(side), search })
+                Ok(Aggregation::Sad { side: window.unwrap_or(side), search, compared: compare.unwrap_or(compared) })
             }
-            Aggregation::Costs(_) if window.is_some() => {
-                Ok(Aggregation::Sad { side: window.unwrap_or_default(), search: Search::Whole })
+            Aggregation::Costs(_) if window.is_some() => Ok(Aggregation::Sad {
+                side: window.unwrap_or_default(),
+                search: Search::Whole,
+                compared: compare.unwrap_or(Compared::SoftRank),
+            }),
+            Aggregation::Costs(_) if compare.is_some() => {
+                Err(self.misfit("--compare needs blocks: --window, or the preset fast or paper"))
             }
             Aggregation::Costs(mut costs) => {
                 costs.window = cost_window.unwrap_or(costs.window);
@@ -286,11 +298,18 @@ impl MatchOptions {
         }
     }
 
+    /// The error of an option that the preset ignores.
+    fn misfit(&self, expected: &str) -> Error {
+        let preset = self.preset.unwrap_or_default();
+        Error::Parameter { name: "preset", value: preset.to_string(), expected: expected.into() }
+    }
+
     /// Refuses the options that Kamencay's method ignores.
     fn refuse_what_only_hsad_does(&self) -> Result<()> {
         let given = [
             ("--preset", self.preset.is_some()),
             ("--window", self.window.is_some()),
+            ("--compare", self.compare.is_some()),
             ("--whole-range", self.whole_range),
             ("--search-both-views", self.search_both_views),
             ("--paths", self.paths.is_some()),
@@ -298,6 +317,8 @@ impl MatchOptions {
             ("--uniqueness", self.uniqueness.is_some()),
             ("--max-lr-difference", self.max_lr_difference.is_some()),
             ("--no-lr-check", self.no_lr_check),
+            ("--agreement", self.agreement.is_some()),
+            ("--fill", self.fill),
             ("--no-fill", self.no_fill),
             ("--interpolation", self.interpolation.is_some()),
         ];
@@ -366,7 +387,7 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
     choices(&[
         (
             Preset::Fast.name(),
-            "Block matching, coarse to fine, with holes where the left-right consistency check fails",
+            "Block matching, coarse to fine, with holes where a match is not unique or its neighbours do not agree",
         ),
         (Preset::Balanced.name(), "Semi-global matching along 3 paths, with holes filled"),
         (Preset::Quality.name(), "Semi-global matching along 4 paths, with holes filled and further refinement"),
@@ -379,6 +400,13 @@ fn interpolations() -> impl TypedValueParser<Value = Interpolation> {
         (Interpolation::None.name(), "Whole pixels, no interpolation"),
         (Interpolation::Parabola.name(), "Vertex of a parabola through three costs"),
         (Interpolation::Equiangular.name(), "Intersection of two lines of opposite slope through three costs"),
+    ])
+}
+
+fn compared() -> impl TypedValueParser<Value = Compared> {
+    choices(&[
+        (Compared::Luma.name(), "Luma, after equalisation"),
+        (Compared::SoftRank.name(), "How much brighter than a pixel its neighbours are, within limits"),
     ])
 }
 

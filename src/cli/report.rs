@@ -112,10 +112,10 @@ pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
 
 /// Parameters that only block matching and semi-global matching take.
 fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
-    let DenseParameters { aggregation, interpolation, uniqueness, consistency, refinement } = parameters;
-    let window = match aggregation {
-        Aggregation::Sad { side, .. } => Some(side),
-        Aggregation::Costs(_) => None,
+    let DenseParameters { aggregation, interpolation, uniqueness, consistency, agreement, refinement } = parameters;
+    let (window, compared) = match aggregation {
+        Aggregation::Sad { side, compared, .. } => (Some(side), Some(compared.name())),
+        Aggregation::Costs(_) => (None, None),
     };
     let (Aggregation::Sad { search, .. } | Aggregation::Costs(CostAggregation { search, .. })) = aggregation;
     let search = match search {
@@ -136,9 +136,11 @@ fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
         ("aggregation", aggregation_of(aggregation)),
         ("window", json!(window)),
         ("search", json!(search)),
+        ("compared", json!(compared)),
         ("interpolation", json!(interpolation.name())),
         ("uniqueness_percent", json!(uniqueness)),
         ("max_lr_difference_px", json!(max_lr_difference)),
+        ("agreement", json!(agreement)),
         ("refinement", json!(refinement)),
     ]
 }

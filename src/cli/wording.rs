@@ -30,7 +30,8 @@ pub fn in_options(error: &Error) -> String {
 }
 
 /// Parameters of the library, and the options that set them.
-const OPTIONS: [(&str, &str); 15] = [
+const OPTIONS: [(&str, &str); 16] = [
+    ("agreement", "--agreement"),
     ("condition", "--condition"),
     ("max-lr-difference", "--max-lr-difference"),
     ("max_features", "--max-features"),

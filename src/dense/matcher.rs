@@ -127,7 +127,9 @@ impl Matcher {
             let views = [&luma[0], &luma[1]];
             let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
             let plan = match &config.parameters.aggregation {
-                Aggregation::Sad { search, .. } => blocks::plan(gpu, size, config, *search, views, limits),
+                Aggregation::Sad { search, compared, .. } => {
+                    blocks::plan(gpu, size, config, (*search, *compared), views, limits)
+                }
                 Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, views, limits),
             }?;
             Ok(Self { gpu: gpu.clone(), size, luma, plan })

@@ -1,11 +1,13 @@
 //! Dense matching (paper, step 5): a disparity for every pixel.
 //!
-//! Block matching: padding -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of both views. Coarse to
-//! fine, both views are matched at half the size first: the reference view gives each cell of the picture the
-//! disparities worth searching, the other view confirms matches; only the reference view is matched at full size.
+//! Block matching: padding or soft ranks -> block matching (cost, winner-take-all, uniqueness, sub-pixel) of the
+//! reference view and, for a left-right check, of the other view. Coarse to fine, the pair is matched at half the size
+//! first: the reference view gives each cell of the picture the disparities worth searching, the other view confirms
+//! matches; only the reference view is matched at full size.
 //! Semi-global matching: padding -> census, wide census -> cost -> optional mean over a window -> paths -> selection, of one
-//! view or both; without paths it is block matching by these costs. Both then go on: left-right consistency -> residuals
-//! and support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for bit.
+//! view or both; without paths it is block matching by these costs. Both then go on: left-right consistency -> agreement of
+//! neighbours -> residuals and support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for
+//! bit.
 
 pub(crate) mod config;
 mod inputs;
@@ -19,7 +21,7 @@ mod readback;
 mod word_copy;
 
 pub use config::{
-    Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
+    Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
     Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
 };
 pub(crate) use config::{Direction, MAX_COST, WEIGHT_BITS};

@@ -40,6 +40,7 @@ const PARAMETERS: DenseParameters = DenseParameters {
     }),
     interpolation: Interpolation::Equiangular,
     uniqueness: 1,
+    agreement: 0,
     consistency: Some(SCALE.cast_unsigned()),
     refinement: Some(Refinement {
         support: 10,

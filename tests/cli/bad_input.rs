@@ -69,8 +69,10 @@ fn values_out_of_range() {
         (&["--paths", "0", "--preset", "paper"], "preset is paper"),
         (
             &["--search-both-views", "--preset", "fast"],
-            "--preset is fast, but it checks against a half-size map: --whole-range",
+            "--preset is fast, but it makes no left-right check, unless --max-lr-difference is given",
         ),
+        (&["--compare", "luma"], "--preset is balanced, but --compare needs blocks: --window"),
+        (&["--agreement", "10"], "--agreement is 10"),
         (&["--disparities", "0"], "--disparities is 0"),
         (&["--disparities", "4000000000"], "the disparity range is 0 to 3999999999"),
         (&["--min-disparity", "-2000000000"], "the disparity range is -2000000000"),

@@ -65,6 +65,7 @@ fn usage_errors_are_two() {
         &["--window", "7", "--cost-window", "7"],
         &["--paths", "5"],
         &["--no-lr-check", "--max-lr-difference", "1"],
+        &["--fill", "--no-fill"],
         &["--oriented", "--upright"],
         &["--focal", "700"],
         &["--calib", "c", "--focal", "700", "--baseline", "0.1"],

@@ -134,8 +134,8 @@ fn options_override_the_preset() {
     let report = report(out);
     assert_eq!(ends(&report["range"]), asked(-3, 36));
     let expected = json!({
-        "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "search": "whole", "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
-        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "refinement": null, "equalise": false, "align": false, "force": true,
+        "method": "hsad", "reference": "right", "aggregation": "window", "window": 5, "search": "whole", "compared": "luma", "range": { "min": -3, "max": 36, "count": 40 }, "min_disparity": -3,
+        "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "agreement": 0, "refinement": null, "equalise": false, "align": false, "force": true,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },
         "strongest": 4
@@ -208,6 +208,9 @@ fn options_of_the_other_method_are_refused() {
         &["--uniqueness", "1"],
         &["--max-lr-difference", "1"],
         &["--no-lr-check"],
+        &["--agreement", "6"],
+        &["--compare", "luma"],
+        &["--fill"],
         &["--no-fill"],
         &["--interpolation", "none"],
     ] {

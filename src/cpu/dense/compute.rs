@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use super::{
-    Transforms, block_match, box_mean, cell_ranges, claim, consistency, cost, fill, half_consistency, halve, path,
-    path_winners, pyramid, residual, select, support, weighted_median, winners,
+    Transforms, agreement, block_match, box_mean, cell_ranges, claim, consistency, cost, fill, half_consistency, halve,
+    path, path_winners, pyramid, residual, select, soft_rank, support, weighted_median, winners,
 };
 use crate::{
     dense::{
-        Aggregation, CostAggregation, CrossCheck, Dense, DenseConfig, Pyramid, Refinement, Search, SemiGlobal, View,
-        kernels::halved_config,
+        Aggregation, Compared, CostAggregation, CrossCheck, Dense, DenseConfig, Pyramid, Refinement, Search,
+        SemiGlobal, View, kernels::halved_config,
     },
     disparity::{NONE, SCALE},
     error::{Error, Result},
@@ -34,26 +34,26 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
 /// [`Error::Parameter`] if no pixel has a partner.
 pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Option<&Pyramid>) -> Result<Dense> {
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
-    let unchanged = [left, right];
-    let right = &right.map(|&luma| config.brightness.apply(luma));
     let view = config.reference;
     let mut dense;
     let other_disparities;
     match (&config.parameters.aggregation, levels) {
-        (Aggregation::Sad { search: Search::Whole, .. }, _) => {
-            dense = block_match(left, right, view, &config, None);
+        (Aggregation::Sad { search: Search::Whole, compared, .. }, _) => {
+            let [left, right] = bytes([left, right], *compared, &config);
+            dense = block_match(&left, &right, view, &config, None);
             other_disparities =
-                config.parameters.consistency.map(|_| winners(left, right, view.other(), &config, None));
+                config.parameters.consistency.map(|_| winners(&left, &right, view.other(), &config, None));
         }
-        (Aggregation::Sad { search: Search::CoarseToFine, .. }, _) => {
-            dense = coarse_to_fine([left, right], unchanged, &config);
+        (Aggregation::Sad { search: Search::CoarseToFine, compared, .. }, _) => {
+            dense = coarse_to_fine([left, right], *compared, &config);
             other_disparities = None;
         }
         (Aggregation::Costs(costs), Some(levels)) => {
-            dense = pyramid(unchanged, &config, costs, levels);
+            dense = pyramid([left, right], &config, costs, levels);
             other_disparities = None;
         }
         (Aggregation::Costs(costs), None) => {
+            let right = &right.map(|&luma| config.brightness.apply(luma));
             let paths = all_paths(left, right, view, &config, costs);
             dense = select(&paths, left.size(), &config);
             other_disparities = config.parameters.consistency.map(|_| match costs.cross_check {
@@ -69,21 +69,33 @@ pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Opt
     if let (Some(max_difference), Some(other_disparities)) = (config.parameters.consistency, other_disparities) {
         consistency(&mut dense, view, &other_disparities, max_difference);
     }
+    if config.parameters.checks_agreement() {
+        agreement(&mut dense, config.parameters.agreement);
+    }
     match &config.parameters.refinement {
-        Some(refinement) => Ok(refined(unchanged, &dense, refinement, &config)),
+        Some(refinement) => Ok(refined([left, right], &dense, refinement, &config)),
         None => Ok(dense),
     }
 }
 
-/// Block matching of a pair within the ranges found at half size, confirmed by the other view at half size. The
-/// half-size pictures are made of the `unchanged` ones, before the change of brightness.
-fn coarse_to_fine([left, right]: [&Luma; 2], unchanged: [&Luma; 2], config: &DenseConfig) -> Dense {
-    let [left_half, right_half] = unchanged.map(halve);
-    let right_half = right_half.map(|&luma| config.brightness.apply(luma));
+/// The bytes of both views that block matching compares.
+fn bytes([left, right]: [&Luma; 2], compared: Compared, config: &DenseConfig) -> [Luma; 2] {
+    match compared {
+        Compared::Luma => [left.clone(), right.map(|&luma| config.brightness.apply(luma))],
+        Compared::SoftRank => [left, right].map(soft_rank),
+    }
+}
+
+/// Block matching of a pair within the ranges found at half size, confirmed by the other view at half size. The luma of the
+/// half-size pictures is that of the pair, before the change of brightness.
+fn coarse_to_fine(views: [&Luma; 2], compared: Compared, config: &DenseConfig) -> Dense {
+    let [left, right] = bytes(views, compared, config);
+    let halves = views.map(halve);
+    let [left_half, right_half] = bytes(halves.each_ref(), compared, config);
     let (half, view) = (halved_config(config, config.range), config.reference);
     let map = block_match(&left_half, &right_half, view, &half, None).disparity;
     let ranges = cell_ranges(&map, left.size(), config.range);
-    let mut dense = block_match(left, right, view, config, Some(&ranges));
+    let mut dense = block_match(&left, &right, view, config, Some(&ranges));
     if let Some(max_difference) = config.parameters.consistency {
         let other_disparities = winners(&left_half, &right_half, view.other(), &half, None);
         half_consistency(&mut dense, view, &other_disparities, max_difference);

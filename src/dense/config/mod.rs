@@ -1,6 +1,7 @@
 //! Parameters of dense matching.
 
 mod brightness;
+mod compared;
 mod cost;
 mod costs;
 mod interpolation;
@@ -10,6 +11,7 @@ mod refinement;
 mod view;
 
 pub use brightness::Brightness;
+pub use compared::Compared;
 pub use cost::{Cost, Difference, MAX_COST, WEIGHT_BITS, WeakTexture};
 pub use costs::{CostAggregation, CrossCheck, SemiGlobal};
 pub use interpolation::Interpolation;
@@ -21,7 +23,7 @@ pub use view::View;
 
 use crate::{
     disparity::DisparityRange,
-    error::{Error, Result, check},
+    error::{Error, Result, check, check_range},
 };
 
 /// Low bits of a key of aggregated costs that hold the disparity's index; the aggregated cost, at most 16 bits, is
@@ -49,12 +51,14 @@ pub enum Search {
 /// Cost aggregation: from the costs of single pixels to those that decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aggregation {
-    /// Block matching by SAD: the sum of absolute differences of luma over a square window.
+    /// Block matching by SAD: the sum of absolute differences of one byte per pixel over a square window.
     Sad {
         /// Side of the window, odd, 3 to 31 pixels.
         side: u32,
         /// The disparities at which a pixel is compared.
         search: Search,
+        /// The bytes that are compared.
+        compared: Compared,
     },
     /// Costs of census, luma and gradient, aggregated semi-globally or by blocks.
     Costs(CostAggregation),
@@ -63,7 +67,7 @@ pub enum Aggregation {
 /// Parameters of dense matching that do not depend on the pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DenseParameters {
-    /// Cost aggregation; by default SAD over 7x7 pixels, over the whole range.
+    /// Cost aggregation; by default SAD of luma over 7x7 pixels, over the whole range.
     pub aggregation: Aggregation,
     /// Sub-pixel interpolation; equiangular by default.
     pub interpolation: Interpolation,
@@ -75,18 +79,23 @@ pub struct DenseParameters {
     /// compares with the half-size map of the other view, at the partner there or the pixel to its left or right, and
     /// accepts 1 px more, since twice a half-size disparity is even.
     pub consistency: Option<u32>,
+    /// Agreement: of nine pixels, the pixel itself and the eight pixels 3 columns, rows, or both away, the number whose
+    /// disparities must lie within 2 px of the pixel's for the pixel to keep its disparity, 0 to 9. 0, the default, or 1
+    /// accepts every disparity.
+    pub agreement: u32,
     /// Refinement of the map; `None`, the default, leaves the map as it is.
     pub refinement: Option<Refinement>,
 }
 
 impl Default for DenseParameters {
-    /// Block matching in windows of 7x7 pixels, without uniqueness and consistency checks.
+    /// Block matching of luma in windows of 7x7 pixels, without checks.
     fn default() -> Self {
         Self {
-            aggregation: Aggregation::Sad { side: 7, search: Search::Whole },
+            aggregation: Aggregation::Sad { side: 7, search: Search::Whole, compared: Compared::Luma },
             interpolation: Interpolation::Equiangular,
             uniqueness: 0,
             consistency: None,
+            agreement: 0,
             refinement: None,
         }
     }
@@ -120,10 +129,12 @@ impl DenseConfig {
         Self { parameters, ..self }
     }
 
-    /// This configuration with SAD windows of this side, 3 to 31 pixels and odd, over the whole range.
+    /// This configuration with SAD of luma in windows of this side, 3 to 31 pixels and odd, over the whole range.
     #[must_use]
     pub fn with_window(self, side: u32) -> Self {
-        self.with(|parameters| parameters.aggregation = Aggregation::Sad { side, search: Search::Whole })
+        self.with(|parameters| {
+            parameters.aggregation = Aggregation::Sad { side, search: Search::Whole, compared: Compared::Luma };
+        })
     }
 
     /// The searched disparities in a picture `width` pixels wide: the part of the range that gives at least one pixel a
@@ -184,6 +195,16 @@ impl DenseParameters {
         self.window() / 2
     }
 
+    /// Whether the agreement check drops any disparity.
+    pub(crate) fn checks_agreement(&self) -> bool {
+        self.agreement > 1
+    }
+
+    /// Whether the whole map is worked on after the matching: checked for agreement, or refined.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.checks_agreement() || self.refinement.is_some()
+    }
+
     /// Whether half-size maps give the ranges of cells and confirm matches.
     pub(crate) fn is_coarse_to_fine(&self) -> bool {
         matches!(self.aggregation, Aggregation::Sad { search: Search::CoarseToFine, .. })
@@ -208,6 +229,7 @@ impl DenseParameters {
         self.refinement.map_or(Ok(()), |refinement| refinement.validate())?;
         check(self.uniqueness <= 100, "uniqueness", self.uniqueness, "it must be 0 to 100 per cent")?;
         let consistency = self.consistency.unwrap_or(0);
-        check(consistency <= 1 << 16, "consistency", consistency, "it must be at most 65536 (256 px)")
+        check(consistency <= 1 << 16, "consistency", consistency, "it must be at most 65536 (256 px)")?;
+        check_range("agreement", self.agreement, 0..=9)
     }
 }

@@ -91,6 +91,7 @@ pub(crate) const HALF_GRAIN: u32 = SCALE as u32;
 pub(crate) fn halved_config(config: &DenseConfig, range: DisparityRange) -> DenseConfig {
     let unconfirmed = |parameters: &mut DenseParameters| {
         parameters.consistency = None;
+        parameters.agreement = 0;
         parameters.refinement = None;
     };
     DenseConfig { range: halved(range), ..config.clone().with(unconfirmed) }

@@ -63,7 +63,8 @@ pub use weighted_median::WeightedMedian;
 pub use wide_census::WideCensus;
 
 use super::config::{
-    Aggregation, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View, WeakTexture,
+    Aggregation, Compared, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
+    WeakTexture,
 };
 use crate::gpu::Stage;
 
@@ -74,8 +75,10 @@ pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
     stages.extend([CheckedAgainst::Disparities, CheckedAgainst::Claims(0)].map(Consistency::stage));
-    let sad =
-        |side, search| DenseParameters { aggregation: Aggregation::Sad { side, search }, ..DenseParameters::default() };
+    let sad = |side, search| DenseParameters {
+        aggregation: Aggregation::Sad { side, search, compared: Compared::Luma },
+        ..DenseParameters::default()
+    };
     let blocks = |side| sad(side, Search::Whole);
     for window in (3..=31).step_by(2) {
         for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
@@ -123,7 +126,12 @@ pub fn stages() -> Vec<Stage> {
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     stages.extend([AgreementTile::SOFTWARE, AgreementTile::HARDWARE].map(Agreement::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
-        stages.extend([SoftRank::stage(rows), Census::stage(rows), WideCensus::stage(1, rows), Support::stage(5, rows)]);
+        stages.extend([
+            SoftRank::stage(rows),
+            Census::stage(rows),
+            WideCensus::stage(1, rows),
+            Support::stage(5, rows),
+        ]);
         stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
     }
     stages

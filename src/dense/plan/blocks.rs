@@ -1,6 +1,6 @@
 //! Block matching: the plan.
 //!
-//! padding -> winners of the other view -> block matching of the reference view, which those winners confirm. The pair
+//! padding or soft ranks -> winners of the other view -> block matching of the reference view, which those winners confirm. The pair
 //! is matched in bands of rows where its padded planes exceed the buffer limits; the result does not depend on where
 //! bands are cut. Coarse to fine, each band first finds the ranges of its cells and the winners of the other view at
 //! half the size: see [`super::coarse_to_fine`].
@@ -8,13 +8,14 @@
 use super::{
     BandLimits, Plan,
     coarse_to_fine::Coarse,
+    compared::ComparedBytes,
     other_winners::OtherWinners,
-    refine::{Unrefined, plan_refinement},
+    refine::{After, Unrefined, plan_after_bands},
 };
 use crate::{
     dense::{
-        config::{DenseConfig, Search, View},
-        kernels::{BlockMatch, CELL, ComparedViews, Layout, MapBuffer, MapLayout, Pad, Ranges, ResultKind, Tile},
+        config::{Compared, DenseConfig, Search, View},
+        kernels::{BlockMatch, CELL, ComparedViews, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile},
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
@@ -33,7 +34,7 @@ pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
     config: &DenseConfig,
-    search: Search,
+    (search, compared): (Search, Compared),
     [left, right]: [&wgpu::Buffer; 2],
     limits: BandLimits,
 ) -> Result<Plan> {
@@ -42,11 +43,13 @@ pub(in crate::dense) fn plan(
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
     let view = config.reference;
-    let pad = Pad::new(gpu);
+    let bytes = ComparedBytes::new(gpu, compared);
     let block_match = BlockMatch::new(gpu, &config.parameters, view, ResultKind::Matches, tile);
 
     let mut plan = Plan::new(gpu, config, height.div_ceil(band_rows) as usize);
-    let whole = config.parameters.refinement.map(|_| plan.collect(size)).transpose()?;
+    if config.parameters.goes_on() {
+        plan.keep(size)?;
+    }
     let map = MapLayout { width, rows: band_rows };
     let planes = plan.words("padded planes", Layout::new(size, 0, band_rows, config, tile)?.words())?;
     let matches = plan.buffer("matches", map.words())?;
@@ -62,12 +65,9 @@ pub(in crate::dense) fn plan(
         let layout = Layout::new(size, first_row, rows, config, tile)?;
         let (ranges, confirming) = match &coarse {
             None => (&whole_range, None),
-            Some(coarse) => coarse.plan(&mut plan, &pad, &block_match, (first_row, rows))?,
+            Some(coarse) => coarse.plan(&mut plan, &bytes, &block_match, (first_row, rows))?,
         };
-        for ((params, view), picture) in layout.padding().into_iter().zip(View::ALL).zip([left, right]) {
-            plan.run(pad.prepare(params, &plan.brightness(view), picture, &planes.0));
-        }
-        plan.fill_texture(&planes.0, &planes.1);
+        bytes.plan(&mut plan, &layout, [left, right], &planes);
         let confirming = match &other_winners {
             None => confirming,
             Some(view) => Some(view.plan(&mut plan, (&layout, &planes.1), ranges, 0)),
@@ -75,10 +75,12 @@ pub(in crate::dense) fn plan(
         plan.run(block_match.prepare(&layout, &planes.1, ranges, confirming, matches));
         plan.hand_out(matches, first_row, rows);
     }
-    if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
+    if config.parameters.goes_on() {
+        let map = matches.buffer;
         let views = ComparedViews { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
-        plan_refinement(gpu, &mut plan, &refinement.into(), Unrefined { map, size, range, views }, limits)?;
+        let after = After::of(&config.parameters);
+        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views }, limits)?;
     }
     Ok(plan)
 }

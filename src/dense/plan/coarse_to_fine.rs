@@ -1,15 +1,15 @@
 //! Coarse to fine: the ranges of cells, found in half-size pictures.
 //!
-//! halving, once -> per band of rows: padding -> winners of the other view -> block matching of the reference view ->
+//! halving, once -> per band of rows: padding or soft ranks -> winners of the other view -> block matching of the reference view ->
 //! ranges of the band's cells.
 
-use super::{Plan, other_winners::OtherWinners};
+use super::{Plan, compared::ComparedBytes, other_winners::OtherWinners};
 use crate::{
     dense::{
-        config::{DenseConfig, View},
+        config::DenseConfig,
         kernels::{
-            BlockMatch, CELL, CellBand, CellRanges, ConfirmingMap, Halve, Layout, MapBuffer, MapLayout, Pad, REACH,
-            Ranges, Tile, halved_config,
+            BlockMatch, CELL, CellBand, CellRanges, ConfirmingMap, Halve, Layout, MapBuffer, MapLayout, REACH, Ranges,
+            Tile, halved_config,
         },
     },
     disparity::DisparityRange,
@@ -85,17 +85,14 @@ impl Coarse {
     pub(super) fn plan(
         &self,
         plan: &mut Plan,
-        pad: &Pad,
+        bytes: &ComparedBytes,
         block_match: &BlockMatch,
         rows: (u32, u32),
     ) -> Result<(&Ranges, Option<ConfirmingMap<'_>>)> {
         let band = CellBand::new(self.size, rows, self.range);
         let half_size = Size::new(band.map_width, self.size.height.div_ceil(2));
         let layout = Layout::new(half_size, band.map_first_row, band.map_rows, &self.half, self.tile)?;
-        for ((params, view), half) in layout.padding().into_iter().zip(View::ALL).zip(&self.halves) {
-            plan.run(pad.prepare(params, &plan.brightness(view), half, &self.planes.0));
-        }
-        plan.fill_texture(&self.planes.0, &self.planes.1);
+        bytes.plan(plan, &layout, self.halves.each_ref(), &self.planes);
         let confirming = self
             .other_winners
             .as_ref()

@@ -10,7 +10,7 @@
 
 use super::{
     BandLimits, Plan,
-    refine::{Unrefined, plan_refinement},
+    refine::{After, Unrefined, plan_after_bands},
     transform::Transform,
 };
 use crate::{
@@ -41,7 +41,9 @@ pub(in crate::dense) fn plan(
     let range = config.searched(width)?;
     let bands = Bands::new(size, range, costs, limits)?;
     let mut plan = Plan::new(gpu, config, bands.count());
-    let whole = config.parameters.refinement.map(|_| plan.collect(size)).transpose()?;
+    if config.parameters.goes_on() {
+        plan.keep(size)?;
+    }
     let workspace = Workspace::new(gpu, &mut plan, bands, costs, luma)?;
     let layout = MapLayout { width, rows: workspace.bands.rows };
     let is_claimed = config.parameters.consistency.is_some() && costs.cross_check == CrossCheck::Claimed;
@@ -103,9 +105,11 @@ pub(in crate::dense) fn plan(
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
         plan.checkpoint();
     }
-    if let (Some(map), Some(refinement)) = (&whole, &config.parameters.refinement) {
+    if config.parameters.goes_on() {
+        let map = &reference.matches;
         let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
-        plan_refinement(gpu, &mut plan, &refinement.into(), Unrefined { map, size, range, views }, limits)?;
+        let after = After::of(&config.parameters);
+        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views }, limits)?;
     }
     Ok(plan)
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::{
     BandLimits, Plan,
-    refine::{Unrefined, plan_refinement},
+    refine::{After, Unrefined, plan_after_bands},
     transform::Transform,
 };
 use crate::{
@@ -85,7 +85,11 @@ impl LevelKernels {
         let (size, range) = (table.size, table.range);
         let volumes = Volumes::new(table, self.directions.len() as u64, limits)?;
         let mut plan = Plan::new(gpu, config, volumes.bands.len());
-        let whole = filters.map(|_| plan.collect(size)).transpose()?;
+        let after = After { filters: filters.cloned(), ..After::of(&config.parameters) };
+        let goes_on = after.filters.is_some() || after.agreement.is_some();
+        if goes_on {
+            plan.keep(size)?;
+        }
         let level = self.level(gpu, &mut plan, task, volumes)?;
         let check = match config.parameters.consistency {
             None => None,
@@ -107,9 +111,15 @@ impl LevelKernels {
             plan.hand_out(matches, band.top, band.rows);
             plan.checkpoint();
         }
-        if let (Some(map), Some(filters)) = (&whole, filters) {
+        if goes_on {
             let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
-            plan_refinement(gpu, &mut plan, filters, Unrefined { map, size, range, views }, limits)?;
+            plan_after_bands(
+                gpu,
+                &mut plan,
+                &after,
+                Unrefined { matches: &level.matches, size, range, views },
+                limits,
+            )?;
         }
         Ok(plan)
     }

@@ -2,6 +2,7 @@
 
 pub(super) mod blocks;
 mod coarse_to_fine;
+mod compared;
 pub(super) mod costs;
 mod level;
 mod other_winners;
@@ -54,13 +55,23 @@ pub(super) struct WholeMap {
     pub(super) confidences: wgpu::Buffer,
 }
 
+/// What becomes of the maps of bands.
+#[derive(Debug)]
+pub(super) enum Kept {
+    /// They go to the caller's outputs.
+    Nowhere,
+    /// The only one stays in the buffer of the matches, for later steps.
+    InPlace,
+    /// They are collected, for later steps.
+    Whole(WholeMap),
+}
+
 /// The steps, and the memory that they share.
 #[derive(Debug)]
 pub(super) struct Plan {
     gpu: Gpu,
     steps: Vec<Step>,
-    /// The map of all bands; only where a later step, the refinement, needs it.
-    whole: Option<WholeMap>,
+    kept: Kept,
     /// Changes of brightness of the left and of the right view, as uniforms.
     brightness: [wgpu::Buffer; 2],
     pub(super) bytes: u64,
@@ -72,7 +83,7 @@ impl Plan {
     /// A plan without steps, for `bands` bands.
     pub(super) fn new(gpu: &Gpu, config: &DenseConfig, bands: usize) -> Self {
         let brightness = [Brightness::SAME, config.brightness].map(|change| uniform_buffer(gpu, "brightness", &change));
-        Self { gpu: gpu.clone(), steps: Vec::new(), whole: None, brightness, bytes: 0, bands }
+        Self { gpu: gpu.clone(), steps: Vec::new(), kept: Kept::Nowhere, brightness, bytes: 0, bands }
     }
 
     /// The change of a view's brightness: a [`Brightness`] in a uniform buffer, shared by all bands.
@@ -97,12 +108,12 @@ impl Plan {
         WordTexture::new(&self.gpu, label, words)
     }
 
-    /// Allocates a buffer and a texture of `words` `u32`s; the buffer holds whole texture rows.
+    /// Allocates a buffer and a texture of `words` `u32`s.
     pub(super) fn words(&mut self, label: &'static str, words: u64) -> Result<(wgpu::Buffer, WordTexture)> {
-        Ok((self.buffer(label, in_rows(words))?, self.word_texture(label, words)?))
+        Ok((self.buffer(label, words)?, self.word_texture(label, words)?))
     }
 
-    /// Copies the first words of a buffer, which holds whole texture rows, to the texture.
+    /// Copies the first words of a buffer, which holds as many as the texture, to the texture.
     pub(super) fn fill_texture(&mut self, buffer: &wgpu::Buffer, texture: &WordTexture) {
         self.steps.push(Step::ToTexture(buffer.clone(), texture.clone()));
     }
@@ -120,8 +131,12 @@ impl Plan {
         self.steps.push(Step::Copy(copy));
     }
 
-    /// Collects the maps of all bands in one map of `size`, for a later step to read.
-    pub(super) fn collect(&mut self, Size { width, height }: Size) -> Result<WholeMap> {
+    /// Keeps the maps of all bands, of a picture of this size, for later steps to read.
+    pub(super) fn keep(&mut self, Size { width, height }: Size) -> Result<()> {
+        if self.bands == 1 {
+            self.kept = Kept::InPlace;
+            return Ok(());
+        }
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
             self.bytes += bytes;
@@ -129,18 +144,17 @@ impl Plan {
         };
         let disparities = whole("all disparities", width)?;
         let confidences = whole("all confidences", width.div_ceil(4))?;
-        let whole = WholeMap { disparities, confidences };
-        self.whole = Some(whole.clone());
-        Ok(whole)
+        self.kept = Kept::Whole(WholeMap { disparities, confidences });
+        Ok(())
     }
 
-    /// Copies the map of a band of `rows` rows from `first_row` to the caller's outputs, or to the whole map if there
-    /// is one.
+    /// Copies the map of a band of `rows` rows from `first_row` to where it is kept, or to the caller's outputs.
     pub(super) fn hand_out(&mut self, matches: MapBuffer<'_>, first_row: u32, rows: u32) {
         let (width, buffer) = (matches.layout.width, matches.buffer);
-        let [disparities, confidences] = match &self.whole {
-            None => [CopyTarget::Disparities, CopyTarget::Confidences],
-            Some(WholeMap { disparities, confidences }) => {
+        let [disparities, confidences] = match &self.kept {
+            Kept::InPlace => return,
+            Kept::Nowhere => [CopyTarget::Disparities, CopyTarget::Confidences],
+            Kept::Whole(WholeMap { disparities, confidences }) => {
                 [disparities, confidences].map(|b| CopyTarget::Buffer(b.clone()))
             }
         };

@@ -1,25 +1,55 @@
-//! Refinement: the plan from a map with holes and speckles to a complete one.
+//! What follows when all bands are matched: the plan from a map with holes and speckles to a complete one.
 //!
-//! residuals and support -> weighted medians of the supported disparities -> filling -> a weighted median of the filled
-//! pixels -> weighted medians of all pixels -> a plain median.
+//! agreement of neighbours -> residuals and support -> weighted medians of the supported disparities -> filling -> a
+//! weighted median of the filled pixels -> weighted medians of all pixels -> a plain median.
 
-use super::{BandLimits, Plan, WholeMap};
+use super::{BandLimits, Kept, Plan, WholeMap};
 use crate::{
     dense::{
-        config::{Filters, Median, View},
-        kernels::{ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support, WeightedMedian},
+        config::{DenseParameters, Filters, Median, View},
+        kernels::{
+            AGREEMENT_REACH, Agreement, ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
+            WeightedMedian,
+        },
         word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
+    gpu::{BUFFER_LIMITS, Gpu, WordTexture, most_words},
     image::Size,
 };
 
+/// What is done to a map of all bands.
+#[derive(Clone, Debug)]
+pub(super) struct After {
+    /// Least number of agreeing pixels, if that is checked.
+    pub(super) agreement: Option<u32>,
+    /// Filters of the refinement, if there is one.
+    pub(super) filters: Option<Filters>,
+}
+
+impl After {
+    /// What `parameters` ask for.
+    pub(super) fn of(parameters: &DenseParameters) -> Self {
+        Self {
+            agreement: parameters.checks_agreement().then_some(parameters.agreement),
+            filters: parameters.refinement.as_ref().map(Into::into),
+        }
+    }
+
+    /// Rows above and below a pixel that its checks and filters read.
+    fn halo(&self) -> u32 {
+        let agreement = if self.agreement.is_some() { AGREEMENT_REACH } else { 0 };
+        let radii =
+            |filters: &Filters| filters.before.iter().chain(&filters.after).map(|median| median.radius).sum::<u32>();
+        agreement + self.filters.as_ref().map_or(0, |filters| SUPPORT_RADIUS + radii(filters))
+    }
+}
+
 /// A map to be refined.
 pub(super) struct Unrefined<'a> {
-    /// The map of all bands.
-    pub(super) map: &'a WholeMap,
+    /// The buffer of the matches of a band, in which the map lies if there is only one.
+    pub(super) matches: &'a wgpu::Buffer,
     /// Width and height of the map.
     pub(super) size: Size,
     /// The searched disparities; filled pixels stay within them.
@@ -48,73 +78,126 @@ impl Medians {
     }
 }
 
-/// Plans the refinement of a map of all bands, and its copies to the caller's outputs.
+/// The kernels of a refinement, and its memory besides the maps.
+struct Refining {
+    filters: Filters,
+    residual: Residual,
+    support: Support,
+    fill: Fill,
+    medians: Medians,
+    residuals: wgpu::Buffer,
+    supported: wgpu::Buffer,
+    with_holes: Option<WordTexture>,
+    filtered: wgpu::Buffer,
+}
+
+impl Refining {
+    /// Compiles and allocates for maps of up to `largest`.
+    fn new(gpu: &Gpu, plan: &mut Plan, filters: Filters, largest: MapLayout) -> Result<Self> {
+        let pixels = u64::from(largest.pixels());
+        Ok(Self {
+            residual: Residual::new(gpu),
+            support: Support::new(gpu, filters.support),
+            fill: Fill::new(gpu),
+            medians: Medians::new(gpu, &filters),
+            residuals: plan.buffer("residuals", u64::from(largest.width.div_ceil(4)) * u64::from(largest.rows))?,
+            supported: plan.buffer("supported disparities", largest.words())?,
+            with_holes: match filters.fill {
+                true => Some(plan.word_texture("disparities with holes", pixels)?),
+                false => None,
+            },
+            filtered: plan.buffer("filtered disparities", pixels)?,
+            filters,
+        })
+    }
+
+    /// Plans the refinement of a window of rows that begins in row `top`, in `unrefined`. Returns the buffers of the result:
+    /// of its disparities, and of the confidences, which lie behind a map.
+    fn plan<'b>(
+        &'b self,
+        plan: &mut Plan,
+        unrefined: MapBuffer<'b>,
+        top: u32,
+        (views, range): (ComparedViews<'_>, DisparityRange),
+    ) -> [&'b wgpu::Buffer; 2] {
+        let layout = unrefined.layout;
+        let size = Size::new(layout.width, layout.rows);
+        let [left, right] = views.luma;
+        let luma = if views.reference == View::Left { left } else { right };
+        plan.run(self.residual.prepare(size, top, views, unrefined.buffer, &self.residuals));
+        plan.run(self.support.prepare(unrefined, &self.residuals, &self.supported));
+
+        // The map that the next filter reads, and two more. Confidences stay behind the supported disparities.
+        let mut maps = [&self.supported, unrefined.buffer, &self.filtered];
+        let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
+            self.medians.get(median).prepare(size, (luma, top), [disparities, before], to)
+        };
+        for &median in &self.filters.before {
+            plan.run(filter(median, [maps[0], maps[0], maps[1]]));
+            maps.swap(0, 1);
+        }
+        if let Some(with_holes) = &self.with_holes {
+            plan.fill_texture(maps[0], with_holes);
+            plan.run(self.fill.prepare(size, range, with_holes, maps[1]));
+            // Later filters read the map with holes to recognise filled pixels.
+            maps.swap(0, 1);
+        }
+        for &median in &self.filters.after {
+            plan.run(filter(median, maps));
+            maps.swap(0, 2);
+        }
+        [maps[0], &self.supported]
+    }
+}
+
+/// Plans the agreement check and the refinement of a map of all bands, and its copies to the caller's outputs.
 ///
-/// A map that exceeds `limits` is refined in windows of rows, with a halo of as many rows as the filters reach; the
+/// A map that exceeds `limits` is worked on in windows of rows, with a halo of as many rows as the filters reach; the
 /// result does not depend on where windows are cut.
-pub(super) fn plan_refinement(
+pub(super) fn plan_after_bands(
     gpu: &Gpu,
     plan: &mut Plan,
-    filters: &Filters,
-    Unrefined { map, size: Size { width, height }, range, views }: Unrefined<'_>,
+    after: &After,
+    Unrefined { matches, size, range, views }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
-    let halo = SUPPORT_RADIUS + filters.before.iter().chain(&filters.after).map(|median| median.radius).sum::<u32>();
-    let rows = window_rows(gpu, Size { width, height }, halo, limits)?;
+    let Size { width, height } = size;
+    let halo = after.halo();
+    let rows = window_rows(gpu, size, halo, limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
-    let pixels = u64::from(largest.pixels());
-    let words = largest.words().max(in_rows(pixels));
-    let unrefined = plan.buffer("disparities to refine", words)?;
-    let supported = plan.buffer("supported disparities", words)?;
-    let with_holes = match filters.fill {
-        true => Some(plan.word_texture("disparities with holes", pixels)?),
-        false => None,
+    let map = StoredMap::new(plan, matches, size);
+    // A map that lies whole in the buffer of the matches stays there.
+    let in_place = rows == height && matches!(plan.kept, Kept::InPlace);
+    let window = if in_place { matches.clone() } else { plan.buffer("map of a window", largest.words())? };
+    let agreement = match after.agreement {
+        Some(least) => Some((Agreement::new(gpu), least, plan.word_texture("map before the check", largest.words())?)),
+        None => None,
     };
-    let filtered = plan.buffer("filtered disparities", pixels)?;
-    let residuals = plan.buffer("residuals", u64::from(width.div_ceil(4)) * u64::from(largest.rows))?;
-    let (residual, support, fill) = (Residual::new(gpu), Support::new(gpu, filters.support), Fill::new(gpu));
-    let medians = Medians::new(gpu, filters);
-    let [left, right] = views.luma;
-    let luma = if views.reference == View::Left { left } else { right };
+    let refining = match &after.filters {
+        Some(filters) => Some(Refining::new(gpu, plan, filters.clone(), largest)?),
+        None => None,
+    };
 
     for first_row in (0..height).step_by(rows as usize) {
         let result_rows = rows.min(height - first_row);
         let top = first_row.saturating_sub(halo);
         let layout = MapLayout { width, rows: (first_row + result_rows + halo).min(height) - top };
-        let (size, confidence_offset) = (Size::new(width, layout.rows), u64::from(layout.confidence_offset()));
-        let parts = [(&map.disparities, width, 0), (&map.confidences, width.div_ceil(4), confidence_offset)];
-        for (from, row_words, to_word) in parts {
-            let row_words = u64::from(row_words);
-            let (from_word, words) = (row_words * u64::from(top), row_words * u64::from(layout.rows));
-            let to = CopyTarget::Buffer(unrefined.clone());
-            plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
+        if !in_place {
+            map.copy_rows(plan, top, MapBuffer { buffer: &window, layout });
         }
-        plan.run(residual.prepare(size, top, views, &unrefined, &residuals));
-        plan.run(support.prepare(MapBuffer { buffer: &unrefined, layout }, &residuals, &supported));
-
-        // The map that the next filter reads, and two more. Confidences stay behind the supported disparities.
-        let mut maps = [&supported, &unrefined, &filtered];
-        let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
-            medians.get(median).prepare(size, (luma, top), [disparities, before], to)
+        let matches = MapBuffer { buffer: &window, layout };
+        if let Some((agreement, least, before)) = &agreement {
+            plan.fill_texture(&window, before);
+            plan.run(agreement.prepare(before, *least, matches));
+        }
+        let [disparities, confidences] = match &refining {
+            None => [&window, &window],
+            Some(refining) => refining.plan(plan, matches, top, (views, range)),
         };
-        for &median in &filters.before {
-            plan.run(filter(median, [maps[0], maps[0], maps[1]]));
-            maps.swap(0, 1);
-        }
-        if let Some(with_holes) = &with_holes {
-            plan.fill_texture(maps[0], with_holes);
-            plan.run(fill.prepare(size, range, with_holes, maps[1]));
-            // Later filters read the map with holes to recognise filled pixels.
-            maps.swap(0, 1);
-        }
-        for &median in &filters.after {
-            plan.run(filter(median, maps));
-            maps.swap(0, 2);
-        }
         let skipped = u64::from(first_row - top);
         for (from, start, row_words, to) in [
-            (maps[0], 0, width, CopyTarget::Disparities),
-            (&supported, confidence_offset, width.div_ceil(4), CopyTarget::Confidences),
+            (disparities, 0, width, CopyTarget::Disparities),
+            (confidences, u64::from(layout.confidence_offset()), width.div_ceil(4), CopyTarget::Confidences),
         ] {
             let row_words = u64::from(row_words);
             let from_word = start + row_words * skipped;
@@ -126,11 +209,45 @@ pub(super) fn plan_refinement(
     Ok(())
 }
 
+/// The map of all bands, in one or two buffers.
+struct StoredMap {
+    /// Buffer and first word of the disparities and of the confidences.
+    parts: [(wgpu::Buffer, u64); 2],
+}
+
+impl StoredMap {
+    /// The map that `plan` keeps; `matches` is the buffer of the only band.
+    fn new(plan: &Plan, matches: &wgpu::Buffer, Size { width, height }: Size) -> Self {
+        let parts = match &plan.kept {
+            Kept::Whole(WholeMap { disparities, confidences }) => {
+                [disparities, confidences].map(|buffer| (buffer.clone(), 0))
+            }
+            Kept::InPlace | Kept::Nowhere => {
+                let offset = MapLayout { width, rows: height }.confidence_offset();
+                [0, offset.into()].map(|word| (matches.clone(), word))
+            }
+        };
+        Self { parts }
+    }
+
+    /// Plans a copy of as many rows as `window` has, from row `top` on.
+    fn copy_rows(&self, plan: &mut Plan, top: u32, MapBuffer { buffer, layout }: MapBuffer<'_>) {
+        let MapLayout { width, rows } = layout;
+        let places = [(width, 0), (width.div_ceil(4), u64::from(layout.confidence_offset()))];
+        for ((from, start), (row_words, to_word)) in self.parts.iter().zip(places) {
+            let from_word = start + u64::from(row_words) * u64::from(top);
+            let words = u64::from(row_words) * u64::from(rows);
+            let to = CopyTarget::Buffer(buffer.clone());
+            plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
+        }
+    }
+}
+
 /// The most rows of the result per window, with `halo` rows on either side.
 fn window_rows(gpu: &Gpu, Size { width, height }: Size, halo: u32, limits: BandLimits) -> Result<u32> {
     let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words();
-    // The map with holes is also copied to a texture.
-    let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / u64::from(width));
+    // The map is also copied to a texture.
+    let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / MapLayout { width, rows: 1 }.words());
     let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);
     let rows = if fitting >= height { height } else { fitting.saturating_sub(2 * halo) }.min(limits.rows);
     if rows > 0 {

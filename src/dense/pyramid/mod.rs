@@ -94,6 +94,7 @@ impl Level {
     pub(crate) fn coarse(&self, config: &DenseConfig) -> DenseConfig {
         self.finest(config).with(|parameters| {
             parameters.consistency = None;
+            parameters.agreement = 0;
             parameters.refinement = None;
         })
     }

@@ -9,8 +9,8 @@ mod rectify;
 
 pub use dense::{
     AgreementTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial, CellSelectTrial,
-    CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial, PadTrial,
-    PathTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial, WideCensusTrial,
+    CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial,
+    PadTrial, PathTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial, WideCensusTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,

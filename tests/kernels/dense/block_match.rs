@@ -1,7 +1,7 @@
 //! Block matching.
 
 use hsad::{
-    dense::{Aggregation, DenseConfig, Interpolation, Search, View},
+    dense::{Aggregation, Compared, DenseConfig, Interpolation, Search, View},
     disparity::{DisparityRange, SCALE},
     image::{Luma, Plane, Size},
     internals::{
@@ -89,7 +89,7 @@ fn the_other_view_is_asked_at_half_the_size() {
         let (left, right) = pair(width, height, 71);
         for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
             for min in [0, -9] {
-                let aggregation = Aggregation::Sad { side: 7, search: Search::CoarseToFine };
+                let aggregation = Aggregation::Sad { side: 7, search: Search::CoarseToFine, compared: Compared::Luma };
                 let config = config(7, min, 21).with(|parameters| parameters.aggregation = aggregation);
                 let what = format!("{width}x{height} {view:?} from {min}");
                 compare_tiled(&what, (&left, &right), view, &config, None, tile);

@@ -6,8 +6,8 @@ use hsad::{
     Error,
     config::Preset,
     dense::{
-        self, Aggregation, Brightness, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Destination,
-        Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
+        self, Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters,
+        Destination, Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
     },
     disparity::{DisparityRange, coverage},
     gpu::Gpu,
@@ -34,6 +34,10 @@ fn config(reference: View) -> DenseConfig {
     DenseConfig { reference, brightness, range, parameters: checked }
 }
 
+/// A refinement with every step.
+const FILLED: Option<Refinement> =
+    Some(Refinement { support: 9, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 });
+
 fn costs(reference: View, window: u32, paths: Option<Paths>, cross_check: CrossCheck) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
     // With the other view as the reference, all texture costs the same.
@@ -45,14 +49,22 @@ fn costs(reference: View, window: u32, paths: Option<Paths>, cross_check: CrossC
     config(reference).with(|parameters| {
         parameters.aggregation =
             Aggregation::Costs(CostAggregation { cost, window, semi_global, cross_check, search: Search::Whole });
-        parameters.refinement =
-            Some(Refinement { support: 9, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 });
+        parameters.refinement = FILLED;
     })
 }
 
 fn coarse_to_fine(reference: View) -> DenseConfig {
-    let aggregation = Aggregation::Sad { side: 5, search: Search::CoarseToFine };
+    let aggregation = Aggregation::Sad { side: 5, search: Search::CoarseToFine, compared: Compared::Luma };
     config(reference).with(|parameters| parameters.aggregation = aggregation)
+}
+
+/// Soft ranks, checked for agreement of neighbours, with or without a refinement after it.
+fn agreeing(reference: View, search: Search, refinement: Option<Refinement>) -> DenseConfig {
+    config(reference).with(|parameters| {
+        parameters.aggregation = Aggregation::Sad { side: 5, search, compared: Compared::SoftRank };
+        parameters.agreement = 4;
+        parameters.refinement = refinement;
+    })
 }
 
 #[test]
@@ -64,6 +76,8 @@ fn the_twins_end_with_the_same_bytes() {
             (View::Right, config(View::Right)),
             (View::Left, coarse_to_fine(View::Left)),
             (View::Right, coarse_to_fine(View::Right)),
+            (View::Left, agreeing(View::Left, Search::Whole, None)),
+            (View::Right, agreeing(View::Right, Search::CoarseToFine, FILLED)),
             (View::Left, costs(View::Left, 1, Some(Paths::Three), CrossCheck::Claimed)),
             (View::Right, costs(View::Right, 1, Some(Paths::Four), CrossCheck::Searched)),
             (View::Left, costs(View::Left, 5, None, CrossCheck::Searched)),
@@ -89,6 +103,8 @@ fn bands_leave_no_trace() {
     for config in [
         config(View::Left),
         coarse_to_fine(View::Left),
+        agreeing(View::Left, Search::CoarseToFine, None),
+        agreeing(View::Right, Search::Whole, FILLED),
         costs(View::Right, 1, Some(Paths::Three), CrossCheck::Claimed),
         costs(View::Left, 1, Some(Paths::Eight), CrossCheck::Searched),
         costs(View::Left, 5, None, CrossCheck::Claimed),
@@ -105,7 +121,7 @@ fn in_bands(left: &Luma, right: &Luma, config: &DenseConfig) {
         let banded = block_on(Matcher::with_band_rows(gpu(), (130, 131), config, rows)).unwrap();
         write(&banded, left, right);
         // Whole cells, where each has a range of its own.
-        let in_cells = *config == coarse_to_fine(View::Left);
+        let in_cells = matches!(config.parameters.aggregation, Aggregation::Sad { search: Search::CoarseToFine, .. });
         let rows_of_band = if in_cells { (rows / CELL * CELL).max(CELL) } else { rows };
         assert_eq!(banded.bands(), 131_usize.div_ceil(rows_of_band as usize));
         let banded = banded.run().unwrap();
@@ -215,6 +231,7 @@ fn no_buffer_needs_to_hold_a_whole_view() {
         costs(View::Left, 5, None, CrossCheck::Claimed),
         costs(View::Right, 3, Some(Paths::Three), CrossCheck::Claimed),
         coarse_to_fine(View::Right),
+        agreeing(View::Left, Search::CoarseToFine, None),
         config(View::Left).with(|parameters| {
             parameters.refinement = costs(View::Left, 1, None, CrossCheck::Claimed).parameters.refinement;
         }),

@@ -3,7 +3,7 @@
 use crate::{
     cpu::dense::{CellPlane, block_match, consistency, half_consistency, halve, pad, winners},
     dense::{
-        Aggregation, Brightness, DenseConfig, DenseParameters, Search, View,
+        Aggregation, Brightness, Compared, DenseConfig, DenseParameters, Search, View,
         kernels::{
             BlockMatch, CELL, ConfirmingMap, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile, halved_config,
         },
@@ -113,8 +113,9 @@ impl BlockMatchTrial {
         let [left, right] = dice.pair(size);
         let consistency = dice.pick(&[None, Some(0), Some(256)]);
         let search = dice.pick(&[Search::Whole, Search::CoarseToFine]);
-        let aggregation = Aggregation::Sad { side: window, search };
-        let parameters = DenseParameters { aggregation, interpolation, uniqueness, consistency, refinement: None };
+        let aggregation = Aggregation::Sad { side: window, search, compared: Compared::Luma };
+        let parameters =
+            DenseParameters { aggregation, interpolation, uniqueness, consistency, agreement: 0, refinement: None };
         let config = DenseConfig { parameters, ..DenseConfig::new(range) };
         let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
         let ranges = config.searched(size.width).ok().filter(|_| in_cells).map(|range| {
