@@ -1,7 +1,7 @@
 //! Calibration files.
 //!
 //! [`Calibration`], the geometry of a rectified pair, is always there, with Middlebury's format ([`Calibration::read`]). With the
-//! feature `calibrations`, [`read`] recognises the files of OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP and others by their content:
+//! feature `calibrations`, `read` recognises the files of OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP and others by their content:
 //! see `docs/calibration.md`.
 
 #[cfg(feature = "calibrations")]
