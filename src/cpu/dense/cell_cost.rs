@@ -8,7 +8,7 @@ use crate::{
     image::Size,
 };
 
-/// [`super::cost`] at the disparities of each pixel's cell.
+/// The stage `cost` at the disparities of each pixel's cell.
 pub fn cell_cost(views: [&Transforms; 2], view: View, cost: &Cost, table: &CellTable) -> CellVolume {
     let Size { width, height } = table.size;
     let pixel =

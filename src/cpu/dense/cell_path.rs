@@ -6,7 +6,7 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// [`super::path`] where the disparities of a pixel are those of its cell: a disparity that the pixel before does not have
+/// The stage `path` where the disparities of a pixel are those of its cell: a disparity that the pixel before does not have
 /// costs as much as a jump.
 pub fn cell_path(
     reference: &Plane<u32>,

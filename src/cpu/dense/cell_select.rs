@@ -9,7 +9,7 @@ use crate::{
     image::{Plane, Size},
 };
 
-/// [`super::select`] and [`super::path_winners`] among the disparities of each pixel's cell. A winner at an end of its
+/// The stage `select` and its winners among the disparities of each pixel's cell. A winner at an end of its
 /// cell's range that is no end of the whole range is none: a smaller cost may lie beyond.
 pub fn cell_select(paths: &[CellVolume], config: &DenseConfig) -> (Dense, Plane<Option<(u32, i32)>>) {
     let table = &paths[0].table;

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Finds and describes the interest points of a picture, sorted by octave, interval, row and column; of more than
-/// `max_features` the [`strongest`].
+/// `max_features` the strongest, spread over the picture.
 ///
 /// A picture too small for the filters has no interest points.
 ///
