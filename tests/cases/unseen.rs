@@ -144,8 +144,12 @@ fn a_black_object_is_no_border() {
     let pair = layered((320, 240), &scene).with(|view, eye| changed(&view, Kind::Noise, 1.0, eye.into()));
     let run = pair.matched(&[]).ends(0, &[]).holds(&pair.truth, 48).judges(&pair.truth);
     let map = run.disparity();
-    for (place, disparity) in [((255, 180), 30.0), ((255, 238), 30.0), ((80, 65), 24.0)] {
-        let found = hsad::disparity::pixels(map.get(place.0, place.1));
-        assert!(found.is_some_and(|found| (found - disparity).abs() < 2.0), "{place:?}: {found:?}");
+    // Within an object without texture, noise may decide here and there.
+    for (columns, rows, disparity) in [(232..278, 162..240, 30.0), (62..98, 42..88, 24.0)] {
+        let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        let found: Vec<_> = places.map(|(x, y)| hsad::disparity::pixels(map.get(x, y))).collect();
+        assert!(found.iter().all(Option::is_some), "{columns:?}");
+        let right = found.iter().flatten().filter(|&&found| (found - disparity).abs() < 2.0).count();
+        assert!(right as f32 >= 0.7 * found.len() as f32, "{right} of {}", found.len());
     }
 }
