@@ -51,7 +51,7 @@ fn embed_draws_the_picture_and_its_disparities() {
     assert!(2 * colors > width * height, "only {colors} pixels differ from the first");
 }
 
-/// Range and brightness from the features of some frames serve the later frames: their coverage is that of the first ones.
+/// Range and brightness from the features of some frames serve the later frames, whose coverage is larger.
 #[test]
 fn stream_follows_the_cameras() {
     let text = run("stream", &["32"]);
@@ -61,8 +61,8 @@ fn stream_follows_the_cameras() {
     };
     assert!(text.contains(" px instead of 0 to 31\n"), "{text}");
     assert!(coverage(15) > 60.0, "{text}");
-    // The right camera is darker from frame 16 on, and it is known when frame 24 has been seen.
-    assert!(coverage(16) < 20.0, "{text}");
+    // The right camera is darker from frame 16 on, which soft ranks do not see.
+    assert!(coverage(16) > 60.0, "{text}");
     assert!(coverage(31) > 60.0, "{text}");
     let speeds: Vec<f64> = text.lines().last().unwrap().split(' ').filter_map(|word| word.parse().ok()).collect();
     assert!(speeds.len() == 2 && speeds.iter().all(|&speed| speed > 0.0), "{text}");
@@ -77,5 +77,5 @@ fn trust_prints_its_tables() {
     let table = text.split("## Confidence").nth(1).expect("the table");
     let line = table.lines().find(|line| line.starts_with("| planes |")).expect("the scene");
     let shares: Vec<f64> = line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
-    assert!(shares.len() == 4 && shares[2] < 1.0 && shares[3] > 30.0, "{line}");
+    assert!(shares.len() == 4 && shares[2] < 1.0 && shares[3] > 20.0, "{line}");
 }
