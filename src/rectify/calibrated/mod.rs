@@ -1,4 +1,4 @@
-//! CalibratedRectification of a calibrated pair.
+//! Rectification of a calibrated pair.
 
 mod view;
 mod window;
