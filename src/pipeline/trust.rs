@@ -7,7 +7,7 @@
 use super::range::is_at_end;
 use crate::{
     config::{Config, Method},
-    dense::{Dense, View},
+    dense::{Aggregation, Compared, Dense, View},
     disparity::{DisparityRange, pixels},
     image::Size,
     seeding::Seeding,
@@ -18,8 +18,9 @@ pub const TRUSTED: f32 = 0.5;
 
 /// Evidence of a map at which trust is 1, where confidences come from the support of neighbours.
 const FULL_BY_SUPPORT: f32 = 0.71;
-/// The same where confidences come from the margin of the costs alone, which is smaller.
+/// The same where confidences come from the margin of the costs alone, which is smaller: of luma, and of soft ranks.
 const FULL_BY_MARGIN: f32 = 0.52;
+const FULL_BY_MARGIN_OF_RANKS: f32 = 0.46;
 /// Weight of the pixels that contradict the coarse map.
 const CONTRADICTION: f32 = 2.0;
 /// Share of the coarse map on surfaces from which it confirms what it does not contradict, 0 to 1.
@@ -58,7 +59,10 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let covered = (seeding.coarse.coverage() / COVERED).min(1.0);
     let evidence = share(sure) / 255.0 * (1.0 - CONTRADICTION * share(contradicted)).max(0.0) * by_seeds * covered;
     let full = match &config.method {
-        Method::Hsad(parameters) if parameters.refinement.is_none() => FULL_BY_MARGIN,
+        Method::Hsad(parameters) if parameters.refinement.is_none() => match parameters.aggregation {
+            Aggregation::Sad { compared: Compared::SoftRank, .. } => FULL_BY_MARGIN_OF_RANKS,
+            Aggregation::Sad { .. } | Aggregation::Costs(_) => FULL_BY_MARGIN,
+        },
         Method::Hsad(_) | Method::Kamencay(_) => FULL_BY_SUPPORT,
     };
     (evidence / full).min(1.0)
@@ -182,8 +186,10 @@ mod tests {
         let config = Preset::Balanced.config();
         let expected = 102.0 / 255.0 * 0.6 / 0.71;
         assert!((trust(&flat(102), &config, &seeding) - expected).abs() < 1e-6);
-        let by_margin = trust(&flat(102), &Preset::Fast.config(), &seeding);
-        assert!((by_margin - expected * 0.71 / 0.52).abs() < 1e-6);
+        for (preset, full) in [(Preset::Fast, 0.46), (Preset::Paper, 0.52)] {
+            let by_margin = trust(&flat(102), &preset.config(), &seeding);
+            assert!((by_margin - expected * 0.71 / full).abs() < 1e-6, "{preset}");
+        }
         // What the surfaces contradict, and views without content, are not trusted.
         assert_eq!(trust(&map(255), &config, &seeding), 0.0);
         let grey = Luma::filled((40, 10), 90);

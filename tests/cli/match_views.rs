@@ -146,6 +146,32 @@ fn options_override_the_preset() {
 }
 
 #[test]
+fn holes_of_fast_are_filled_on_demand() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let run = |name: &str, args: &[&str]| {
+        let out = temporary.path().join(name);
+        let mut command = match_on_cpu(&left, &right, &out);
+        command.args(["--preset", "fast", "--disparities", "72"]).args(args).assert().success();
+        report(&out)
+    };
+    let (fast, filled) = (run("fast", &[]), run("filled", &["--fill"]));
+    let parameters = |report: &Value| ["compared", "agreement"].map(|name| report["parameters"][name].clone());
+    assert_eq!(parameters(&fast), [json!("soft-rank"), json!(6)]);
+    assert_eq!(parameters(&fast), parameters(&filled));
+    assert_eq!(fast["parameters"]["refinement"], json!(null));
+    assert_eq!(filled["parameters"]["refinement"]["fill"], json!(true));
+    let coverage = |report: &Value| report["coverage"].as_f64().unwrap();
+    assert!(
+        (0.7..0.95).contains(&coverage(&fast)) && coverage(&filled) == 1.0,
+        "{} {}",
+        coverage(&fast),
+        coverage(&filled)
+    );
+    let luma = run("luma", &["--compare", "luma", "--agreement", "0", "--max-lr-difference", "1"]);
+    assert_eq!(parameters(&luma), [json!("luma"), json!(0)]);
+}
+
+#[test]
 fn the_hybrid_method_finds_disparities_too() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let run = |device: &str| {
