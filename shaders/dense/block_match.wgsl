@@ -7,6 +7,9 @@
 // searched pixels are those of the last step, moved by one u32. The sum of a window is never computed from its SIDE^2
 // terms: running sums slide along the row, then down the column.
 //
+// With CORE > 0 only the rows at both ends are held like that. The CORE rows in the middle, which all windows of the tile
+// share, are loaded and summed in a loop that stays a loop: slower, but code that hardly grows with the window.
+//
 // Loops marked 'unroll' are written out before compilation (src/gpu/unroll.rs), so that their arrays become registers:
 // a factor of forty on software drivers.
 
@@ -20,7 +23,10 @@
 //   TILE_HEIGHT      rows of pixels per thread
 //   QUADS            quads of four neighbouring pixels per row of a tile
 //   SIDE             side of the window, in pixels
-//   ROWS             rows of a tile and its halo: TILE_HEIGHT + SIDE - 1
+//   CORE             rows in the middle of a tile and its halo that are loaded again at each step, 0 or SIDE - TILE_HEIGHT
+//                    + 1: rows of all windows of the tile
+//   HELD             rows of a tile and its halo that are held in registers: TILE_HEIGHT + SIDE - 1 - CORE
+//   HELD_SIDE        held rows of each window: SIDE - CORE
 //   SPAN             pixels per row of a tile and its halo: 4 QUADS + SIDE - 1
 //   WORDS            u32 per row of a tile and its halo, four pixels packed per u32
 //   FIRST            pixel of these WORDS at which the first window begins
@@ -192,6 +198,24 @@ fn row_sums(reference: array<vec4<i32>, WORDS>, searched: array<u32, WORDS + 1>)
     return sums;
 }
 
+// Sums of the CORE rows, as those of one row. `row` is the index of a tile's first u32 relative to the planes' starts.
+fn core_sums(row: u32, step: u32) -> Costs {
+    let reference_row = params.reference_start + row;
+    let searched_row = params.searched_start + row + u32(DIRECTION * i32(step) + START - 1);
+    var core = Costs();
+    for (var y = u32(HELD_SIDE); y < HELD_SIDE + CORE; y++) {
+        var reference: array<vec4<i32>, WORDS>;
+        var searched: array<u32, WORDS + 1>;
+        for (var j = 0; j < WORDS; j++) { // unroll
+            reference[j] = unpack(word_at(reference_row + y * params.stride + j));
+            searched[j] = word_at(searched_row + y * params.stride + j);
+        }
+        searched[WORDS] = word_at(searched_row + y * params.stride + WORDS);
+        core = slide_down(core, row_sums(reference, searched), Costs());
+    }
+    return core;
+}
+
 @compute @workgroup_size(TILES_ACROSS * TILES_DOWN)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let column = QUADS * (TILES_ACROSS * group.x + thread % TILES_ACROSS);
@@ -206,11 +230,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let end = (params.skipped + range.x + range.y + 3u) / 4u;
     let searched_start = params.searched_start + u32(DIRECTION * i32(first_step));
 
-    var reference: array<array<vec4<i32>, WORDS>, ROWS>;
+    // The held rows: those of the first windows, then those behind the core.
+    var reference: array<array<vec4<i32>, WORDS>, HELD>;
     // One u32 more than the reference: each step shifts the row by one u32 and loads one.
-    var searched: array<array<u32, WORDS + 1>, ROWS>;
-    for (var y = 0; y < ROWS; y++) { // unroll
-        let row = (y0 + y) * params.stride + column;
+    var searched: array<array<u32, WORDS + 1>, HELD>;
+    for (var y = 0; y < HELD; y++) { // unroll
+        let row = (y0 + y + y / HELD_SIDE * CORE) * params.stride + column;
         for (var j = 0; j < WORDS; j++) { // unroll
             reference[y][j] = unpack(word_at(params.reference_start + row + j));
             searched[y][j + START] = word_at(searched_start + row + j);
@@ -218,8 +243,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
 
     let no_key = vec4<u32>(NO_KEY);
-    var searches: array<array<Search, QUADS>, ROWS>;
-    for (var y = 0; y < ROWS; y++) { // unroll
+    // The last element is padding, which moves up behind the last row.
+    var searches: array<array<Search, QUADS>, HELD + 1>;
+    for (var y = 0; y < HELD; y++) { // unroll
         for (var q = 0; q < QUADS; q++) { // unroll
             searches[y][q] = Search(no_key, no_key, no_key, no_key, no_key);
         }
@@ -227,12 +253,15 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
 
     for (var step = first_step; step < end; step++) {
         let tags = index_bits(i32(x), step, range);
-        // Sums of each row, behind SIDE rows of zeros, which leave the first windows.
-        var sums: array<Costs, ROWS + SIDE>;
+        // Sums of each held row, behind HELD_SIDE rows of zeros, which leave the first windows.
+        var sums: array<Costs, HELD + HELD_SIDE>;
         // Zeros written out: without an initial value Chromium's compiler keeps the last step's window.
         var window = Costs();
-        for (var y = 0; y < ROWS; y++) { // unroll
-            let row = params.searched_start + (y0 + y) * params.stride + column;
+        if CORE > 0 {
+            window = core_sums(y0 * params.stride + column, step);
+        }
+        for (var y = 0; y < HELD; y++) { // unroll
+            let row = params.searched_start + (y0 + y + y / HELD_SIDE * CORE) * params.stride + column;
             if DIRECTION < 0 {
                 for (var j = 0; j < WORDS; j++) { // unroll
                     searched[y][WORDS - j] = searched[y][WORDS - j - 1];
@@ -244,17 +273,21 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                 }
                 searched[y][WORDS] = word_at(row + WORDS + step);
             }
-            sums[y + SIDE] = row_sums(reference[y], searched[y]);
-            window = slide_down(window, sums[y + SIDE], sums[y]);
-            if y >= SIDE - 1 {
+            sums[y + HELD_SIDE] = row_sums(reference[y], searched[y]);
+            window = slide_down(window, sums[y + HELD_SIDE], sums[y]);
+            if y >= HELD_SIDE - 1 {
                 searches[y] = visit_step(searches[y], window, tags);
             }
         }
     }
 
-    for (var n = 0; n < TILE_HEIGHT; n++) { // unroll
+    // A loop that stays a loop, in which the rows move up: unrolled, it would be most of the code.
+    for (var y = y0; y < y0 + TILE_HEIGHT; y++) {
         for (var q = 0; q < QUADS; q++) { // unroll
-            write_quad(4u * (column + q), y0 + n, searches[n + SIDE - 1][q]);
+            write_quad(4u * (column + q), y, searches[HELD_SIDE - 1][q]);
+        }
+        for (var n = 0; n < TILE_HEIGHT; n++) { // unroll
+            searches[n + HELD_SIDE - 1] = searches[n + HELD_SIDE];
         }
     }
 }

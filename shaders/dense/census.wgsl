@@ -64,14 +64,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     // The first row of the window and the four pixels left of the thread's pixels.
     let begin = (HALO_ROWS - 2u) * params.stride + HALO_WORDS - 1u + id.x;
     var window: array<Row, 5>;
-    for (var j = 0; j < 4; j++) { // unroll
-        window[j + 1] = row_at(begin + (first + j) * params.stride);
-    }
+    var missing = 5u;
     for (var y = first; y < min(first + ROWS, params.rows); y++) {
-        for (var j = 0; j < 4; j++) { // unroll
-            window[j] = window[j + 1];
+        // All rows of the first window, one more row for each later window.
+        for (; missing > 0u; missing--) {
+            for (var j = 0; j < 4; j++) { // unroll
+                window[j] = window[j + 1];
+            }
+            window[4] = row_at(begin + (y + 5u - missing) * params.stride);
         }
-        window[4] = row_at(begin + (y + 4u) * params.stride);
+        missing = 1u;
         let words = transformed(window);
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < params.width {

@@ -132,14 +132,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     var window: Window;
-    for (var j = 0; j < KEPT; j++) { // unroll
-        window[j + 1] = row_at(x, first + j - RADIUS);
-    }
+    var missing = SIDE;
     for (var y = first; y < min(first + ROWS, height); y++) {
-        for (var j = 0; j < KEPT; j++) { // unroll
-            window[j] = window[j + 1];
+        // All rows of the first window, one more row for each later window.
+        for (; missing > 0; missing--) {
+            for (var j = 0; j < KEPT; j++) { // unroll
+                window[j] = window[j + 1];
+            }
+            window[KEPT] = row_at(x, y + RADIUS + 1 - missing);
         }
-        window[KEPT] = row_at(x, y + RADIUS);
+        missing = 1;
         let centre = window[RADIUS].disparities;
         let own = vec4<i32>(centre[RADIUS], centre[RADIUS + 1], centre[RADIUS + 2], centre[RADIUS + 3]);
         var wanted = own != vec4<i32>(NONE);

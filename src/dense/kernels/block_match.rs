@@ -31,18 +31,35 @@ pub struct Tile {
     pub down: u32,
 }
 
+/// Side of the largest window whose rows all stay in registers.
+const LARGEST_HELD: u32 = 9;
+
 impl Tile {
-    /// For lavapipe, where loads are the bottleneck, registers spill into the L1 cache, and eight lanes run in
-    /// lockstep: over two cells. Other CPU drivers compile this tile in minutes: SwiftShader takes five for a window of
-    /// 11.
-    pub const SOFTWARE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
+    /// For lavapipe: eight lanes run in lockstep, over one cell. The state of a thread fits in the L1 cache, where
+    /// lavapipe's registers are.
+    pub const SMALL: Self = Self { quads: 1, height: 4, across: 4, down: 2 };
+
+    /// For lavapipe and windows whose halo is larger than a small tile: eight lanes run in lockstep, over two cells. Other
+    /// CPU drivers compile this tile in minutes.
+    pub const LARGE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
 
     /// For all other devices: GPUs prefer many threads with few registers.
     pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
 
-    /// The tile for the device of `gpu`.
-    pub fn of(gpu: &Gpu) -> Self {
-        if gpu.is_lavapipe() { Self::SOFTWARE } else { Self::HARDWARE }
+    /// The fastest tile on the device of `gpu` for windows of `side` pixels.
+    pub fn of(gpu: &Gpu, side: u32) -> Self {
+        match gpu.is_lavapipe() {
+            true if side <= LARGEST_HELD => Self::SMALL,
+            true => Self::LARGE,
+            false => Self::HARDWARE,
+        }
+    }
+
+    /// Rows in the middle of the tile and its halo, for windows of `side` pixels, that each step loads again. Small windows
+    /// have none: registers are faster. Of large windows all rows that the tile's windows share are loaded again, since
+    /// what is held is unrolled.
+    fn core(self, side: u32) -> u32 {
+        if side > LARGEST_HELD && self.height > 1 { (side + 1).saturating_sub(self.height) } else { 0 }
     }
 }
 
@@ -84,7 +101,8 @@ fn margin(radius: u32) -> u32 {
 impl BlockMatch {
     /// Source, bindings and constants of the kernel.
     pub fn stage(parameters: &DenseParameters, view: View, kind: ResultKind, tile: Tile) -> Stage {
-        let radius = parameters.radius();
+        let (radius, side) = (parameters.radius(), parameters.window());
+        let core = tile.core(side);
         let constant = |value: u32| i64::from(value);
         // Each step appends words: in front when searching to the left, behind when searching to the right.
         let (direction, front) = match view {
@@ -99,10 +117,12 @@ impl BlockMatch {
                 ("TILES_ACROSS", constant(tile.across)),
                 ("TILES_DOWN", constant(tile.down)),
                 ("TILE_HEIGHT", constant(tile.height)),
-                ("SIDE", constant(parameters.window())),
-                ("ROWS", constant(tile.height + 2 * radius)),
+                ("SIDE", constant(side)),
+                ("CORE", constant(core)),
+                ("HELD", constant(tile.height + side - 1 - core)),
+                ("HELD_SIDE", constant(side - core)),
                 ("QUADS", constant(tile.quads)),
-                ("SPAN", constant(4 * tile.quads + parameters.window() - 1)),
+                ("SPAN", constant(4 * tile.quads + side - 1)),
                 ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),

@@ -81,7 +81,7 @@ pub fn stages() -> Vec<Stage> {
     };
     let blocks = |side| sad(side, Search::Whole);
     for window in (3..=31).step_by(2) {
-        for tile in [Tile::SOFTWARE, Tile::HARDWARE] {
+        for tile in [Tile::SMALL, Tile::LARGE, Tile::HARDWARE] {
             for view in [View::Left, View::Right] {
                 stages.push(BlockMatch::stage(&blocks(window), view, ResultKind::Matches, tile));
                 stages.push(BlockMatch::stage(&blocks(window), view, ResultKind::Winners, tile));

@@ -39,7 +39,7 @@ pub(in crate::dense) fn plan(
     limits: BandLimits,
 ) -> Result<Plan> {
     let Size { width, height } = size;
-    let tile = Tile::of(gpu);
+    let tile = Tile::of(gpu, config.parameters.window());
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
     let view = config.reference;

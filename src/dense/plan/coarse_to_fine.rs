@@ -59,7 +59,7 @@ impl Coarse {
         });
         // A band in the middle of the picture reads the most rows.
         let most_rows = (band_rows.next_multiple_of(CELL) / 2 + REACH).min(half_size.height);
-        let tile = Tile::of(gpu);
+        let tile = Tile::of(gpu, config.parameters.window());
         let planes = plan.words("padded halves", Layout::new(half_size, 0, most_rows, &half, tile)?.words())?;
         let map_layout = MapLayout { width: half_size.width, rows: most_rows };
         let map = plan.buffer("map of half the size", map_layout.words())?;

@@ -24,7 +24,7 @@ impl OtherWinners {
         let Some(max_difference) = config.parameters.consistency else {
             return Ok(None);
         };
-        let (view, tile) = (config.reference.other(), Tile::of(gpu));
+        let (view, tile) = (config.reference.other(), Tile::of(gpu, config.parameters.window()));
         Ok(Some(Self {
             find_winners: BlockMatch::new(gpu, &config.parameters, view, ResultKind::Winners, tile),
             winners: plan.words("winners of the other view", layout.pixels().into())?,

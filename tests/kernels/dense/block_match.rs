@@ -63,8 +63,11 @@ fn the_twin_matches_the_same_at_any_size() {
 #[test]
 fn tiles_leave_no_trace() {
     let (left, right) = pair(97, 33, 51);
-    for tile in [Tile::SOFTWARE, Tile { quads: 3, height: 1, across: 3, down: 5 }] {
-        compare_tiled(&format!("{tile:?}"), (&left, &right), View::Right, &config(7, 0, 17), None, tile);
+    for tile in [Tile::SMALL, Tile::LARGE, Tile { quads: 3, height: 1, across: 3, down: 5 }] {
+        for window in [7, 11] {
+            let what = format!("{tile:?}, window {window}");
+            compare_tiled(&what, (&left, &right), View::Right, &config(window, 0, 17), None, tile);
+        }
     }
 }
 
@@ -75,7 +78,12 @@ fn the_twin_searches_the_same_cells() {
     let parts = [(0, 0), (0, 30), (0, 1), (29, 1), (3, 9), (7, 23), (11, 2), (4, 4)];
     let (columns, rows) = (130_u32.div_ceil(CELL), 131_u32.div_ceil(CELL));
     let cells = Plane::from_fn((columns, rows), |x, y| parts[((3 * x + 5 * y) % 8) as usize]);
-    for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::HARDWARE), (View::Left, Tile::SOFTWARE)] {
+    for (view, tile) in [
+        (View::Left, Tile::HARDWARE),
+        (View::Right, Tile::HARDWARE),
+        (View::Left, Tile::SMALL),
+        (View::Left, Tile::LARGE),
+    ] {
         for min in [0, -7, 2] {
             let what = format!("{view:?} {tile:?} from {min}");
             compare_tiled(&what, (&left, &right), view, &config(5, min, 30), Some(&cells), tile);
@@ -87,7 +95,7 @@ fn the_twin_searches_the_same_cells() {
 fn the_other_view_is_asked_at_half_the_size() {
     for Size { width, height } in SIZES {
         let (left, right) = pair(width, height, 71);
-        for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::SOFTWARE)] {
+        for (view, tile) in [(View::Left, Tile::HARDWARE), (View::Right, Tile::LARGE)] {
             for min in [0, -9] {
                 let aggregation = Aggregation::Sad { side: 7, search: Search::CoarseToFine, compared: Compared::Luma };
                 let config = config(7, min, 21).with(|parameters| parameters.aggregation = aggregation);

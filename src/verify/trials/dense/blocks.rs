@@ -99,12 +99,8 @@ impl BlockMatchTrial {
         // Software drivers take seconds to compile for a window, and a minute for a wide one.
         let window = if dice.below(16) == 0 { dice.pick(&[11, 13, 15, 21]) } else { dice.pick(&[3, 3, 5, 7, 9]) };
         let (interpolation, view) = (dice.interpolation(), dice.view());
-        let tile = dice.pick(&[
-            Tile::HARDWARE,
-            Tile::HARDWARE,
-            Tile::SOFTWARE,
-            Tile { quads: 3, height: 1, across: 3, down: 5 },
-        ]);
+        let tile =
+            dice.pick(&[Tile::HARDWARE, Tile::SMALL, Tile::LARGE, Tile { quads: 3, height: 1, across: 3, down: 5 }]);
         let uniqueness = dice.pick(&[0, 0, 1, 15, 100]);
         let range = dice.range(80);
         // Some ranges leave most pixels without any cost.
