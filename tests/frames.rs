@@ -110,3 +110,31 @@ fn matchers_that_are_dropped_leave_nothing_behind() {
     let added = growth(100, &mut build);
     assert!(added <= LIMIT, "{added} kB");
 }
+
+/// On lavapipe, which compiles a kernel when it first runs, the first frame after a warm-up takes no more memory than any
+/// other; without one it takes that of the compiled kernels.
+#[test]
+fn after_a_warm_up_the_first_frame_compiles_nothing() {
+    let _alone = alone();
+    let first_frame = |is_warm: bool| {
+        let gpu = open();
+        let config = Preset::Balanced.dense_config(DisparityRange::new(0, 32).expect("a range"));
+        let matcher = Matcher::new(&gpu, (64, 48), &config).expect("a matcher");
+        let mut readback = block_on(matcher.readback()).expect("a readback");
+        if is_warm {
+            block_on(matcher.warm_up(None, readback.outputs())).expect("a warm-up");
+        }
+        let before = memory();
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        matcher.record_luma(&mut encoder, readback.outputs());
+        gpu.queue.submit([encoder.finish()]);
+        block_on(readback.read()).expect("a map");
+        (memory() - before, gpu.info().driver)
+    };
+    // The first device of a process also takes what the driver's compiler takes for itself.
+    first_frame(false);
+    let ((cold, driver), (warm, _)) = (first_frame(false), first_frame(true));
+    if driver == "llvmpipe" {
+        assert!(warm < cold / 4, "{warm} kB with a warm-up, {cold} kB without");
+    }
+}

@@ -54,12 +54,13 @@ impl Features {
         config.validate()?;
         let mut output = self.output.as_deref().map(Output::open).transpose()?;
         let picture = load::load(&self.image)?;
-        let backend = self.run.open()?;
+        let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("finding interest points");
         let luma = picture.luma();
         let factor = if self.full_size { 1 } else { reduction(luma.size()) };
-        let Detected { features, found } = block_on(backend.features(&reduced(&luma, factor), &config))?;
+        let Detected { features, found } = block_on(cached.backend.features(&reduced(&luma, factor), &config))?;
+        cached.save();
         let features: Vec<_> = features.into_iter().map(|point| enlarged_feature(point, factor)).collect();
 
         let csv = csv(&features, self.descriptors);
@@ -74,7 +75,7 @@ impl Features {
 
         let size = if factor == 1 { String::new() } else { format!(" at 1/{factor} of its size") };
         let strongest = if features.len() < found { format!(", the strongest of {found},") } else { String::new() };
-        let found = format!("{} interest points{strongest}{size}, found by {}", features.len(), backend.name());
+        let found = format!("{} interest points{strongest}{size}, found by {}", features.len(), cached.backend.name());
         match output {
             Some(_) if self.run.quiet => {}
             Some(output) => terminal::print(&format!("{found}; see {}\n", output.folder().display()))?,

@@ -48,21 +48,23 @@ impl Job {
     /// Opens the device and matches the pair; writes no files.
     pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
-        let backend = options.open()?;
+        let cached = options.open()?;
         let progress = Progress::new(options.quiet);
         let views = (&self.left, &self.right);
         let outcome = block_on(pipeline::run_with_progress(
-            &backend,
+            &cached.backend,
             views,
             &self.config,
             |step| progress.step(step),
             |share| progress.share(share),
         ))?;
+        cached.save();
         let mut warnings = doubts::warnings(views, &self.config, &outcome);
         let mut not_trusted = NotTrusted::new(&outcome);
         if self.config.force {
             warnings.extend(not_trusted.take().map(|doubt| doubt.reason));
         }
-        Ok(CompletedJob { job: self, backend, outcome, total: start.elapsed(), warnings, not_trusted })
+        let (backend, total) = (cached.backend, start.elapsed());
+        Ok(CompletedJob { job: self, backend, outcome, total, warnings, not_trusted })
     }
 }

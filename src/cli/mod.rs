@@ -13,6 +13,7 @@ mod match_views;
 mod options;
 pub mod out_of_memory;
 mod output;
+mod pipeline_cache;
 mod products;
 mod report;
 mod score;

@@ -24,7 +24,10 @@ use hsad::{
     verify::self_test,
 };
 
-use super::terminal::{self, Progress};
+use super::{
+    pipeline_cache::CachedBackend,
+    terminal::{self, Progress},
+};
 
 /// Device and verbosity of a subcommand.
 #[derive(Args)]
@@ -42,15 +45,15 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
-    /// Opens the device, and runs the self-test with `--self-test`.
-    pub fn open(&self) -> anyhow::Result<Backend> {
-        let backend = self.open_untested()?;
-        if let (true, Backend::Gpu(gpu)) = (self.self_test, &backend) {
+    /// Opens the device with its pipeline cache, and runs the self-test with `--self-test`.
+    pub fn open(&self) -> anyhow::Result<CachedBackend> {
+        let cached = CachedBackend::new(self.open_untested()?);
+        if let (true, Backend::Gpu(gpu)) = (self.self_test, &cached.backend) {
             let progress = Progress::new(self.quiet);
             progress.begin("testing the device");
             self_test(gpu, &self.device)?;
         }
-        Ok(backend)
+        Ok(cached)
     }
 
     /// Opens the device. For `best` the CPU takes over if there is no usable adapter.

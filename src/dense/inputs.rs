@@ -9,3 +9,10 @@ pub struct Inputs {
     /// First luma buffer of the matcher that the inputs were prepared for.
     pub(super) matcher: wgpu::Buffer,
 }
+
+impl Inputs {
+    /// Panics unless the inputs were prepared for the matcher whose first buffer is `matcher`.
+    pub(super) fn assert_of(&self, matcher: &wgpu::Buffer) {
+        assert!(self.matcher == *matcher, "inputs of another matcher: use this matcher's `inputs`");
+    }
+}

@@ -20,7 +20,7 @@ use crate::{
     error::{Error, Result, check, check_range},
     gpu::{
         Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded, refused,
-        storage_buffer, try_recording,
+        storage_buffer, try_recording, warm_up,
     },
     image::{Luma, Plane, Size},
     luma::{Input, Source, check_size, packed_bytes, upload},
@@ -276,7 +276,7 @@ impl Matcher {
     /// # Panics
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
-        assert!(inputs.matcher == self.luma[0], "inputs of another matcher: use this matcher's `inputs`");
+        inputs.assert_of(&self.luma[0]);
         inputs.views.iter().for_each(|view| view.record(encoder));
         self.record_luma(encoder, outputs);
     }
@@ -286,8 +286,27 @@ impl Matcher {
     /// # Panics
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        assert!(outputs.matcher == self.luma[0], "outputs of another matcher: use this matcher's `outputs`");
+        outputs.assert_of(&self.luma[0]);
         self.plan.record(encoder, outputs, None);
+    }
+
+    /// Compiles what [`Self::record`], or [`Self::record_luma`] without `inputs`, would compile when the device first runs
+    /// it, and waits for that: some drivers, among them lavapipe, compile when a kernel first runs. Nothing is computed or
+    /// overwritten. Other work that is submitted meanwhile waits, too.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If `inputs` or `outputs` were prepared for another matcher.
+    pub async fn warm_up(&self, inputs: Option<&Inputs>, outputs: &Outputs) -> Result<()> {
+        if let Some(inputs) = inputs {
+            inputs.assert_of(&self.luma[0]);
+        }
+        outputs.assert_of(&self.luma[0]);
+        let inputs = inputs.into_iter().flat_map(|inputs| &inputs.views).filter_map(Input::dispatch);
+        let dispatches = inputs.chain(self.plan.dispatches()).chain(outputs.disparities.dispatches()).collect();
+        warm_up(&self.gpu, "dense matching", dispatches).await
     }
 
     /// Submits the matching of [`Self::luma`], and waits for the result.
@@ -320,7 +339,7 @@ impl Matcher {
     /// # Errors
     /// See [`Self::run`]; [`Error::Unsupported`] without [`wgpu::Features::TIMESTAMP_QUERY`].
     pub async fn profile(&self) -> Result<(Dense, Vec<(&'static str, Duration)>)> {
-        let kernels: Vec<_> = self.plan.kernels().collect();
+        let kernels: Vec<_> = self.plan.dispatches().map(Dispatch::name).collect();
         let stopwatch = guarded(&self.gpu, "timestamps", || Stopwatch::new(&self.gpu, kernels.len())).await?;
         let dense = self.run_timed(Some(&stopwatch)).await?;
         Ok((dense, kernels.into_iter().zip(stopwatch.read(&self.gpu.queue).await?).collect()))

@@ -37,9 +37,22 @@ impl Disparities {
             Self::Texture(_) => None,
         }
     }
+
+    /// The dispatches that write a texture.
+    pub(super) fn dispatches(&self) -> &[Dispatch] {
+        match self {
+            Self::Buffer(_) => &[],
+            Self::Texture(dispatches) => dispatches,
+        }
+    }
 }
 
 impl Outputs {
+    /// Panics unless the outputs were prepared for the matcher whose first buffer is `matcher`.
+    pub(super) fn assert_of(&self, matcher: &wgpu::Buffer) {
+        assert!(self.matcher == *matcher, "outputs of another matcher: use this matcher's `outputs`");
+    }
+
     /// Records `copy`, the plan's copy of disparities number `index`, to the destination.
     pub(super) fn record_disparities(&self, encoder: &mut wgpu::CommandEncoder, copy: &WordCopy, index: usize) {
         match &self.disparities {

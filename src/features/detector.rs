@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, refused, storage_buffer, try_recording},
+    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, refused, storage_buffer, try_recording, warm_up},
     image::{Luma, Size},
     luma::{check_packed, check_size, upload},
 };
@@ -169,10 +169,28 @@ impl Detector {
     /// # Panics
     /// If `input` was prepared for another detector.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
-        assert!(input.detector == self.integral, "input of another detector: use this detector's `input`");
+        self.assert_own(input);
         encoder.clear_buffer(self.list.count(), 0, None);
         input.dispatch.record(encoder);
         self.finding.iter().chain(&self.describing).for_each(|dispatch| dispatch.record(encoder));
+    }
+
+    /// Compiles what [`Self::record`] would compile when the device first runs it, and waits for that: see
+    /// [`crate::Matcher::warm_up`].
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If `input` was prepared for another detector.
+    pub async fn warm_up(&self, input: &DetectorInput) -> Result<()> {
+        self.assert_own(input);
+        let dispatches = std::iter::once(&input.dispatch).chain(&self.finding).chain(&self.describing).collect();
+        warm_up(&self.gpu, "finding interest points", dispatches).await
+    }
+
+    fn assert_own(&self, input: &DetectorInput) {
+        assert!(input.detector == self.integral, "input of another detector: use this detector's `input`");
     }
 
     /// Allocates staging buffers for the features of one frame, for applications that must not wait; allocate one

@@ -89,8 +89,8 @@ impl Gpu {
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults()
         };
-        // Timestamps only measure kernels; no kernel needs them.
-        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        // Timestamps only measure kernels, and a pipeline cache only shortens their compilation; no kernel needs them.
+        let required_features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE);
         let descriptor =
             wgpu::DeviceDescriptor { label: Some("hsad"), required_features, required_limits, ..Default::default() };
         let (device, queue) = adapter

@@ -110,11 +110,22 @@ impl Dispatch {
     ) {
         let label = Some(self.name());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-        pass.set_pipeline(self.kernel.pipeline.compiled(&self.kernel.gpu));
-        pass.set_bind_group(0, &self.bind_group, &[]);
+        self.bind_to(&mut pass);
         match &self.groups {
             Groups::Known([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
             Groups::Indirect(groups) => pass.dispatch_workgroups_indirect(groups, 0),
         }
+    }
+    /// Records the dispatch without any workgroup: drivers compile the kernel, and nothing runs.
+    pub(super) fn record_empty(&self, encoder: &mut wgpu::CommandEncoder) {
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.name()), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        self.bind_to(&mut pass);
+        pass.dispatch_workgroups(0, 0, 0);
+    }
+
+    fn bind_to(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(self.kernel.pipeline.compiled(&self.kernel.gpu));
+        pass.set_bind_group(0, &self.bind_group, &[]);
     }
 }

@@ -8,6 +8,8 @@
 //! of a stage has its own file. A failed write is only a warning in the log. Browsers write no files.
 
 #[cfg(not(target_arch = "wasm32"))]
+mod background;
+#[cfg(not(target_arch = "wasm32"))]
 mod block_on;
 mod buffers;
 mod device;
@@ -20,6 +22,8 @@ mod inlinable;
 pub(crate) mod kernel;
 mod limits;
 mod pipeline;
+#[cfg(all(feature = "files", not(target_arch = "wasm32")))]
+mod pipeline_file;
 mod pipelines;
 mod readback;
 mod resources;
@@ -27,6 +31,7 @@ pub(crate) mod shader_struct;
 pub(crate) mod stage;
 mod stopwatch;
 mod unroll;
+mod warm_up;
 pub(crate) mod word_texture;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -38,10 +43,13 @@ pub use handle::Gpu;
 pub(crate) use kernel::{Bindable, Dispatch, Kernel};
 pub(crate) use limits::{BUFFER_LIMITS, check_limits};
 pub use limits::{Limit, REQUIRED_LIMITS};
+#[cfg(all(feature = "files", not(target_arch = "wasm32")))]
+pub use pipeline_file::PipelineFile;
 pub(crate) use readback::Readback;
 pub(crate) use resources::{check_buffer, check_texture, refused};
 pub(crate) use shader_struct::shader_struct;
 pub(crate) use shader_struct::{Member, ShaderType, Shape};
 pub(crate) use stage::{Binding, Stage};
 pub(crate) use stopwatch::Stopwatch;
+pub(crate) use warm_up::warm_up;
 pub(crate) use word_texture::{ROW_BITS, WordTexture, in_rows, most_words};

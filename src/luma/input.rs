@@ -94,6 +94,14 @@ impl Input {
         Ok(self)
     }
 
+    /// The dispatch, unless the conversion is a copy.
+    pub(crate) fn dispatch(&self) -> Option<&Dispatch> {
+        match &self.0 {
+            Conversion::Copy { .. } => None,
+            Conversion::Run(dispatch) => Some(dispatch),
+        }
+    }
+
     /// Records the conversion.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         match &self.0 {

@@ -24,6 +24,7 @@ mod match_views;
 mod mosaics;
 #[path = "../pictures/mod.rs"]
 mod pictures;
+mod pipeline_cache;
 mod verify;
 
 use common::hsad;

@@ -169,7 +169,7 @@ impl Features {
             check_writable(file)?;
         }
         let finder = match self.matches.take() {
-            None => Finder::Hsad(self.run.open()?, config),
+            None => Finder::Hsad(self.run.open()?.backend, config),
             Some(matches) if pairs.len() > 1 || self.folders.len() > 1 || changes.len() > 1 => {
                 return Err(Error::Parameter {
                     name: "matches",

@@ -175,10 +175,10 @@ impl Plan {
         })
     }
 
-    /// Names of the kernels, in order.
-    pub(super) fn kernels(&self) -> impl Iterator<Item = &'static str> {
+    /// The dispatches, in order.
+    pub(super) fn dispatches(&self) -> impl Iterator<Item = &Dispatch> {
         self.steps.iter().filter_map(|step| match step {
-            Step::Run(dispatch) => Some(dispatch.name()),
+            Step::Run(dispatch) => Some(dispatch),
             _ => None,
         })
     }

@@ -118,7 +118,7 @@ impl Dense {
         for file in [&self.csv, &self.json].into_iter().flatten() {
             check_writable(file)?;
         }
-        let backend = if self.given_only { None } else { Some(self.run.open()?) };
+        let backend = if self.given_only { None } else { Some(self.run.open()?.backend) };
 
         let mut results = Results { failures, ..Default::default() };
         Run::new(&self, &config, backend.as_ref()).all(&scenes, &mut results);

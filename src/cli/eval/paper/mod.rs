@@ -119,7 +119,7 @@ impl Paper {
         let (scenes, unread) = self.find()?;
         let mut failures: Vec<String> = unread.iter().map(Error::to_string).collect();
         let root = self.output.as_deref().map(Output::open).transpose()?;
-        let backend = self.run.open()?;
+        let backend = self.run.open()?.backend;
         let run = Run::new(&self, &changes, &backend);
         let mut printed = false;
         for files in &scenes {
