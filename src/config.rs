@@ -168,10 +168,10 @@ impl Preset {
             consistency: Some(256),
             agreement: 0,
             refinement: Some(Refinement {
-                support: 10,
+                support: 12,
+                majority: true,
                 medians_before: 0,
                 fill: true,
-                median_of_filled: false,
                 medians_after: 1,
             }),
         };
@@ -183,10 +183,10 @@ impl Preset {
                     ..CostAggregation::TUNED
                 }),
                 refinement: Some(Refinement {
-                    support: 10,
+                    support: 12,
+                    majority: true,
                     medians_before: 1,
                     fill: true,
-                    median_of_filled: true,
                     medians_after: 2,
                 }),
                 ..balanced

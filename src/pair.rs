@@ -3,13 +3,13 @@
 use crate::{
     backend::Backend,
     cpu,
-    dense::{Dense, DenseConfig, compute_uploaded},
+    dense::{Dense, DenseConfig, View, compute_uploaded},
     error::{Error, Result, check},
     features::{Detected, Detector, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
     image::{Luma, Size, reduced},
     io::Picture,
-    luma::{check_size, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
+    luma::{Colours, check_size, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
     rectify::{WarpMap, warp},
 };
 
@@ -19,6 +19,8 @@ pub struct Pair<'b> {
     backend: &'b Backend,
     left: Luma,
     right: Luma,
+    /// The pictures of either view on the host, without a device and unless other views took their place.
+    pictures: [Option<Picture>; 2],
     device: Option<OnDevice<'b>>,
 }
 
@@ -27,6 +29,8 @@ pub struct Pair<'b> {
 struct OnDevice<'b> {
     gpu: &'b Gpu,
     luma: [wgpu::Buffer; 2],
+    /// The colours of either view, unless other views took their place.
+    colours: [Option<Colours>; 2],
 }
 
 impl<'b> Pair<'b> {
@@ -36,18 +40,33 @@ impl<'b> Pair<'b> {
     /// [`Error::SizesDiffer`]; [`Error::Unsupported`] if the device lacks a limit; [`Error::TooLarge`],
     /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
     pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
+        Self::with_colours(backend, [left, right], [true; 2]).await
+    }
+
+    /// [`Self::new`], with the colours of the views that are `coloured` only: colours take four times the memory of luma.
+    pub(crate) async fn with_colours(
+        backend: &'b Backend,
+        [left, right]: [&Picture; 2],
+        coloured: [bool; 2],
+    ) -> Result<Self> {
         if left.size() != right.size() {
             return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
         }
         check_size(left.size())?;
         match backend {
-            Backend::Cpu => Ok(Self { backend, left: left.luma(), right: right.luma(), device: None }),
+            Backend::Cpu => {
+                let pictures =
+                    [(left, coloured[0]), (right, coloured[1])].map(|(view, kept)| kept.then(|| view.clone()));
+                Ok(Self { backend, left: left.luma(), right: right.luma(), pictures, device: None })
+            }
             Backend::Gpu(gpu) => {
                 check_limits(gpu)?;
-                let (left_buffer, left) = luma_on(gpu, left).await?;
-                let (right_buffer, right) = luma_on(gpu, right).await?;
-                let device = Some(OnDevice { gpu, luma: [left_buffer, right_buffer] });
-                Ok(Self { backend, left, right, device })
+                let (left_buffer, left_colours, left) = luma_on(gpu, left).await?;
+                let (right_buffer, right_colours, right) = luma_on(gpu, right).await?;
+                let colours = [(left_colours, coloured[0]), (right_colours, coloured[1])];
+                let colours = colours.map(|(colours, kept)| kept.then_some(colours));
+                let device = Some(OnDevice { gpu, luma: [left_buffer, right_buffer], colours });
+                Ok(Self { backend, left, right, pictures: [None, None], device })
             }
         }
     }
@@ -71,28 +90,32 @@ impl<'b> Pair<'b> {
         let device = match &self.device {
             None => None,
             Some(OnDevice { gpu, .. }) => {
-                Some(OnDevice { gpu, luma: [upload(gpu, &left).await?, upload(gpu, &right).await?] })
+                let luma = [upload(gpu, &left).await?, upload(gpu, &right).await?];
+                Some(OnDevice { gpu, luma, colours: [None, None] })
             }
         };
-        Ok(Self { backend: self.backend, left, right, device })
+        Ok(Self { backend: self.backend, left, right, pictures: [None, None], device })
     }
 
-    /// The pair with other views of its size in place of those that are given.
+    /// The pair with other views of its size in place of those that are given; other views have no colours.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub(crate) async fn with_views(mut self, views: [Option<Luma>; 2]) -> Result<Self> {
         for ((view, own), side) in views.into_iter().zip([&mut self.left, &mut self.right]).zip(0..) {
             let Some(view) = view else { continue };
-            if let Some(OnDevice { gpu, luma }) = &mut self.device {
+            if let Some(OnDevice { gpu, luma, colours }) = &mut self.device {
                 luma[side] = upload(gpu, &view).await?;
+                colours[side] = None;
             }
+            self.pictures[side] = None;
             *own = view;
         }
         Ok(self)
     }
 
-    /// The pair with its right view resampled by `map`; the left view stays. The same bytes on every backend.
+    /// The pair with its right view resampled by `map`, without colours; the left view stays. The same bytes on every
+    /// backend.
     ///
     /// # Errors
     /// [`Error::Parameter`] unless both sizes of the map are that of the pair; [`Error::TooLarge`], [`Error::OutOfMemory`],
@@ -107,12 +130,14 @@ impl<'b> Pair<'b> {
         )?;
         let (right, device) = match &self.device {
             None => (cpu::rectify::warp(&self.right, map), None),
-            Some(OnDevice { gpu, luma: [left, right] }) => {
+            Some(OnDevice { gpu, luma: [left, right], colours }) => {
                 let (right_buffer, right) = warp(gpu, right, map).await?;
-                (right, Some(OnDevice { gpu, luma: [left.clone(), right_buffer] }))
+                let colours = [colours[0].clone(), None];
+                (right, Some(OnDevice { gpu, luma: [left.clone(), right_buffer], colours }))
             }
         };
-        Ok(Self { backend: self.backend, left: self.left.clone(), right, device })
+        let pictures = [self.pictures[0].clone(), None];
+        Ok(Self { backend: self.backend, left: self.left.clone(), right, pictures, device })
     }
 
     /// Width and height of both views, in pixels.
@@ -125,7 +150,7 @@ impl<'b> Pair<'b> {
     /// # Errors
     /// See [`crate::features::detect`].
     pub async fn features(&self, config: &FeatureConfig) -> Result<[Detected; 2]> {
-        let Some(OnDevice { gpu, luma: [left, right] }) = &self.device else {
+        let Some(OnDevice { gpu, luma: [left, right], .. }) = &self.device else {
             let detect = |view| cpu::features::detector::detect(view, config);
             return Ok([detect(&self.left)?, detect(&self.right)?]);
         };
@@ -133,7 +158,8 @@ impl<'b> Pair<'b> {
         Ok([detector.detect(left).await?, detector.detect(right).await?])
     }
 
-    /// Dense matching: a disparity and a confidence for each pixel of the reference view.
+    /// Dense matching: a disparity and a confidence for each pixel of the reference view. Holes are filled by the colours of
+    /// its picture.
     ///
     /// # Errors
     /// See [`crate::dense::compute`].
@@ -143,31 +169,35 @@ impl<'b> Pair<'b> {
 
     /// [`Self::dense`] with calls of `progress` with the share of the work that a device has done, 0 to 1.
     pub(crate) async fn dense_with_progress(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
+        let reference = usize::from(config.reference == View::Right);
         match &self.device {
-            Some(OnDevice { gpu, luma }) => compute_uploaded(gpu, self.size(), config, luma.clone(), progress).await,
-            None => cpu::dense::compute(&self.left, &self.right, config),
+            Some(OnDevice { gpu, luma, colours }) => {
+                let views = (luma.clone(), colours[reference].clone());
+                compute_uploaded(gpu, self.size(), config, views, progress).await
+            }
+            None => match &self.pictures[reference] {
+                Some(picture) => cpu::dense::compute_in_colour([&self.left, &self.right], picture, config),
+                None => cpu::dense::compute(&self.left, &self.right, config),
+            },
         }
     }
 }
 
-/// Converts a picture to luma, on the device and on the host. Large pictures are uploaded in bands of rows, since
-/// colours take four times the memory of luma.
-async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
+/// Uploads a picture, and converts it to luma, on the device and on the host.
+async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Colours, Luma)> {
     let Size { width, height } = picture.size();
-    let row_bytes = 4 * u64::from(width);
-    let rows = (gpu.device.limits().max_storage_buffer_binding_size / row_bytes).clamp(1, height.into()) as u32;
-    let (luma, readback) = guarded(gpu, "the picture", || {
+    let (luma, colours, readback) = guarded(gpu, "the picture", || {
         let kernel = RgbaToLuma::new(gpu);
         let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
-        let bands =
-            (0..height).step_by(rows as usize).zip(picture.rgba().chunks((row_bytes * u64::from(rows)) as usize));
-        for (first_row, pixels) in bands {
-            let rows = rows.min(height - first_row);
-            let rgba = storage_buffer(gpu, "rows of the picture", pixels.len() as u64)?;
-            gpu.queue.write_buffer(&rgba, 0, pixels);
-            let band = storage_buffer(gpu, "luma of a band", packed_bytes((width, rows)))?;
+        let colours = Colours::new(gpu, picture.size())?;
+        let mut rest = picture.rgba();
+        for (first_row, size, rgba) in colours.bands() {
+            let pixels;
+            (pixels, rest) = rest.split_at(4 * size.pixels() as usize);
+            gpu.queue.write_buffer(rgba, 0, pixels);
+            let band = storage_buffer(gpu, "luma of a band", packed_bytes(size))?;
             let mut encoder = gpu.encoder("luma");
-            kernel.prepare(Size::new(width, rows), &rgba, &band).record(&mut encoder);
+            kernel.prepare(size, rgba, &band).record(&mut encoder);
             encoder.copy_buffer_to_buffer(&band, 0, &luma, packed_bytes((width, first_row)), None);
             gpu.queue.submit([encoder.finish()]);
         }
@@ -175,9 +205,9 @@ async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Luma)> {
         let mut encoder = gpu.encoder("luma");
         readback.record(&mut encoder, &luma);
         gpu.queue.submit([encoder.finish()]);
-        Ok((luma, readback))
+        Ok((luma, colours, readback))
     })
     .await?;
     let words = readback.read((packed_bytes((width, height)) / 4) as usize).await?;
-    Ok((luma, unpack((width, height), &words)))
+    Ok((luma, colours, unpack((width, height), &words)))
 }

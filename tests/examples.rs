@@ -4,8 +4,8 @@
 use std::{path::Path, process::Command};
 
 use hsad::{
+    Backend, Pair,
     config::Preset,
-    dense,
     disparity::DisparityRange,
     gpu::{DeviceChoice, Gpu, block_on},
     image::Size,
@@ -34,7 +34,9 @@ fn embed_draws_the_picture_and_its_disparities() {
     let [left, right] = ["left.png", "right.png"].map(|name| load::load(&scene.join(name)).unwrap());
     let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
     let config = Preset::Balanced.dense_config(DisparityRange::new(0, 64).unwrap());
-    let map = block_on(dense::compute(&gpu, &left.luma(), &right.luma(), &config)).unwrap().disparity;
+    let backend = Backend::Gpu(gpu);
+    let pair = block_on(Pair::new(&backend, &left, &right)).unwrap();
+    let map = block_on(pair.dense(&config)).unwrap().disparity;
     let Size { width, height } = left.size();
     assert_eq!(frame.size(), (2 * width, height));
     let mut colors = 0;

@@ -1,8 +1,10 @@
 // Removes speckles without following their outlines: a disparity stays if at least LEAST pixels of its window, the
-// pixel itself included, have a disparity that differs by at most TOLERANCE.
+// pixel itself included, have a disparity that differs by at most TOLERANCE. With MAJORITY, at least half of the window
+// within the picture must have a disparity that is at most twice TOLERANCE larger, too: what is beside holes, or just
+// behind something nearer, is often wrong, but a thin thing in front of others is not.
 //
-// Confidence of a disparity with n such pixels: 1 + 5 (n - 1), plus up to 4 for the confidence so far, minus an eighth
-// of the sum of the photometric residuals in the 5x5 window; at least 1.
+// Confidence of a disparity with n pixels within TOLERANCE: 1 + 5 (n - 1), plus up to 4 for the confidence so far, minus
+// an eighth of the sum of the photometric residuals in the 5x5 window; at least MEASURED.
 
 // Constants:
 //   WORKGROUP_WIDTH    threads per workgroup along x
@@ -14,8 +16,10 @@
 //   ROWS               rows of pixels per thread
 //   TOLERANCE          largest difference of disparities, in 1/256 px
 //   LEAST              supporting pixels, at least
+//   MAJORITY           1: half of the window must be at most twice TOLERANCE nearer; 0: it need not
+//   MEASURED           least confidence of a disparity
 //   NONE               sentinel: the pixel has no disparity
-//   FAR                sentinel farther than TOLERANCE from any disparity: no disparity
+//   FAR                sentinel farther than twice TOLERANCE from any disparity: no disparity
 
 struct Params {
     width: u32,
@@ -67,19 +71,30 @@ fn row_at(x: i32, y: i32) -> Row {
     return row;
 }
 
-// Supporting pixels of each of the thread's four pixels.
-fn support(window: array<Row, SIDE>) -> vec4<u32> {
+// Pixels of the windows of the thread's four pixels.
+struct Counts {
+    // Those whose disparities differ by at most TOLERANCE.
+    alike: vec4<u32>,
+    // Those whose disparities are at most twice TOLERANCE larger.
+    not_nearer: vec4<u32>,
+}
+
+fn counts(window: array<Row, SIDE>) -> Counts {
     let own = window[RADIUS].disparities;
     let centre = vec4<i32>(own[RADIUS], own[RADIUS + 1], own[RADIUS + 2], own[RADIUS + 3]);
-    var count = vec4<u32>(0u);
+    var counts: Counts;
     for (var j = 0; j < SIDE; j++) { // unroll
         for (var i = 0; i < SIDE; i++) { // unroll
             let row = window[j].disparities;
             let other = vec4<i32>(row[i], row[i + 1], row[i + 2], row[i + 3]);
-            count += select(vec4<u32>(0u), vec4<u32>(1u), abs(other - centre) <= vec4<i32>(TOLERANCE));
+            let nearer = other - centre;
+            counts.alike += select(vec4<u32>(0u), vec4<u32>(1u), abs(nearer) <= vec4<i32>(TOLERANCE));
+            if MAJORITY != 0 {
+                counts.not_nearer += select(vec4<u32>(0u), vec4<u32>(1u), nearer <= vec4<i32>(2 * TOLERANCE));
+            }
         }
     }
-    return count;
+    return counts;
 }
 
 // One thread decides 4 x ROWS pixels.
@@ -103,7 +118,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             window[KEPT] = row_at(x, y + RADIUS + 1 - missing);
         }
         missing = 1;
-        let count = support(window);
+        let counts = counts(window);
+        let count = counts.alike;
+        var is_shared = vec4<bool>(true);
+        if MAJORITY != 0 {
+            let columns = vec4<i32>(x, x + 1, x + 2, x + 3);
+            let left = max(columns - RADIUS, vec4<i32>(0));
+            let right = min(columns + RADIUS, vec4<i32>(width - 1));
+            let rows = min(y + RADIUS, height - 1) - max(y - RADIUS, 0) + 1;
+            let pixels = rows * (right - left + 1);
+            is_shared = 2u * counts.not_nearer >= vec4<u32>(pixels);
+        }
         var residual_sum = vec4<u32>(0u);
         for (var j = 0; j < 5; j++) { // unroll
             residual_sum += window[RADIUS - 2 + j].residuals;
@@ -114,11 +139,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < width {
                 let disparity = window[RADIUS].disparities[RADIUS + t];
-                let stays = (disparity != FAR) & (count[t] >= LEAST);
+                let stays = (disparity != FAR) & (count[t] >= LEAST) & is_shared[t];
                 supported[y * width + x + t] = select(NONE, disparity, stays);
                 let margin = (5u * ((confidences >> (8u * t)) & 255u)) >> 8u;
                 let confidence = 5u * count[t] - 4u + margin;
-                let lowered = confidence - min(residual_sum[t] >> 3u, confidence - 1u);
+                let lowered = max(confidence - min(residual_sum[t] >> 3u, confidence), MEASURED);
                 new_confidences |= select(0u, lowered, stays) << (8u * t);
             }
         }

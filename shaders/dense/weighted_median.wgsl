@@ -2,9 +2,10 @@
 // luma, so that edges of the map move to edges of the picture.
 //
 // Ma, He, Wei, Sun and Wu: 'Constant time weighted median filtering for stereo matching and beyond', ICCV 2013; here
-// with integer weights and straight from the definition. A neighbour whose luma differs by g weighs 256 / 2^(g /
-// 2^HALVING_BITS), interpolated between powers of two. The median is the least disparity of the window for which the
+// with integer weights and straight from the definition. The median is the least disparity of the window for which the
 // disparities up to and including it have at least half of the total weight.
+
+#import halving
 
 // Constants:
 //   WORKGROUP_WIDTH    threads per workgroup along x
@@ -14,7 +15,6 @@
 //   KEPT               rows of a window that the window one row below shares: SIDE - 1
 //   SPAN               pixels per row of four windows: SIDE + 3
 //   HALVING_BITS       log2 of the difference of lumas that halves the weight, in grey levels
-//   HOLES_ONLY         1: only pixels that have no disparity in `before` are filtered
 //   ROWS               rows of pixels per thread
 //   FARTHEST           bound above any absolute disparity, in 1/256 px
 //   NONE               sentinel: the pixel has no disparity
@@ -31,9 +31,7 @@ struct Params {
 @group(0) @binding(1) var<storage, read> luma: array<u32>;
 // One i32 per pixel: the disparity, fixed-point.
 @group(0) @binding(2) var<storage, read> disparities: array<i32>;
-// Disparities before holes were filled; read if HOLES_ONLY.
-@group(0) @binding(3) var<storage, read> before: array<i32>;
-@group(0) @binding(4) var<storage, read_write> filtered: array<i32>;
+@group(0) @binding(3) var<storage, read_write> filtered: array<i32>;
 
 // One row: disparities of the thread's four pixels and RADIUS columns on either side; lumas, packed, of the four pixels
 // and four columns on either side.
@@ -44,13 +42,6 @@ struct Row {
 
 // Windows of the thread's four pixels.
 alias Window = array<Row, SIDE>;
-
-// Weight of a difference of lumas, 0 to 256.
-fn weight(difference: vec4<u32>) -> vec4<u32> {
-    let sixteenths = (difference << vec4<u32>(4u)) >> vec4<u32>(HALVING_BITS);
-    let fraction = sixteenths & vec4<u32>(15u);
-    return ((32u - fraction) * 8u) >> min(sixteenths >> vec4<u32>(4u), vec4<u32>(31u));
-}
 
 // Row y of the windows of the four pixels from column x on. Pixels outside the picture have no disparity, and lumas
 // that do not matter.
@@ -96,7 +87,7 @@ fn median(window: Window, wanted: vec4<bool>, otherwise: vec4<i32>) -> vec4<i32>
             let difference = vec4<u32>(abs(vec4<i32>(other) - vec4<i32>(own)));
             let is_known = value != vec4<i32>(NONE);
             values[j][i] = value;
-            weights[j][i] = select(vec4<u32>(0u), weight(difference), is_known);
+            weights[j][i] = select(vec4<u32>(0u), halving_weight(difference, HALVING_BITS), is_known);
             total += weights[j][i];
             // Neighbours of weight 0 do not bound the search.
             let matters = weights[j][i] > vec4<u32>(0u);
@@ -144,12 +135,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         missing = 1;
         let centre = window[RADIUS].disparities;
         let own = vec4<i32>(centre[RADIUS], centre[RADIUS + 1], centre[RADIUS + 2], centre[RADIUS + 3]);
-        var wanted = own != vec4<i32>(NONE);
-        if HOLES_ONLY != 0 {
-            for (var t = 0; t < 4; t++) { // unroll
-                wanted[t] = wanted[t] && before[y * width + min(x + t, width - 1)] == NONE;
-            }
-        }
+        let wanted = own != vec4<i32>(NONE);
         let result = median(window, wanted, own);
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < width {

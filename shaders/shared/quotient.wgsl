@@ -1,6 +1,6 @@
 // Exact unsigned division by way of floats, since software drivers divide integers one lane at a time.
 
-// floor(numerator / divisor), exact for quotients below 2^16: the estimate is off by at most one, however the float
+// floor(numerator / divisor), exact for quotients below 2^20: the estimate is off by at most one, however the float
 // division rounds.
 fn quotient(numerator: u32, divisor: u32) -> u32 {
     let estimate = u32(f32(numerator) / f32(divisor));

@@ -16,6 +16,7 @@
 //   EQUIANGULAR     value of INTERPOLATION: intersection of two lines of opposite slopes through the three costs
 //   SCALE           disparity units per pixel
 //   NONE            sentinel: the pixel has no disparity
+//   MEASURED        least confidence of a disparity
 
 // Sentinel: no disparity; larger than any key.
 const NO_KEY = 0xffffffffu;
@@ -37,7 +38,7 @@ fn subpixel(below: u32, best: u32, above: u32) -> i32 {
     return select(nearest, 0, divisor == 0u);
 }
 
-// The disparity of a pixel, the bits of an i32, and its confidence, 1 to 255 or 0 without a disparity; from the keys of
+// The disparity of a pixel, the bits of an i32, and its confidence, MEASURED to 255 or 0 without a disparity; from the keys of
 // the winner, the rival and the winner's two neighbours.
 fn disparity_and_confidence(best: u32, rival: u32, below: u32, above: u32) -> vec2<u32> {
     let winner = (params.min_disparity + i32(best & INDEX_MASK)) * SCALE;
@@ -53,5 +54,5 @@ fn disparity_and_confidence(best: u32, rival: u32, below: u32, above: u32) -> ve
     let fraction = select(0, subpixel(below >> SHIFT, cost, above >> SHIFT), has_neighbours);
     let margin = select(quotient(254u * (rival_cost - cost), max(rival_cost, 1u)), 0u, unrivalled);
     let is_match = exists && unique;
-    return vec2<u32>(u32(select(NONE, winner + fraction, is_match)), select(0u, 1u + margin, is_match));
+    return vec2<u32>(u32(select(NONE, winner + fraction, is_match)), select(0u, max(1u + margin, MEASURED), is_match));
 }

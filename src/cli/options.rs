@@ -14,7 +14,9 @@ use clap::{
 use hsad::{
     Backend, Error, Result,
     config::{Config, Method, Preset},
-    dense::{Aggregation, Compared, CrossCheck, DenseParameters, Interpolation, Paths, Search, SemiGlobal, View},
+    dense::{
+        Aggregation, Compared, CrossCheck, DenseParameters, Interpolation, Paths, Refinement, Search, SemiGlobal, View,
+    },
     disparity::{DisparityRange, SCALE},
     features::FeatureConfig,
     gpu::DeviceChoice,
@@ -257,7 +259,11 @@ impl MatchOptions {
         }
         parameters.agreement = self.agreement.unwrap_or(parameters.agreement);
         if self.fill {
-            parameters.refinement = parameters.refinement.or(Preset::Balanced.dense_parameters().refinement);
+            let of_balanced = Preset::Balanced.dense_parameters().refinement;
+            // Neighbours that agree have a majority, or are thin.
+            let majority = parameters.agreement <= 1;
+            let agreeing = of_balanced.map(|refinement| Refinement { majority, ..refinement });
+            parameters.refinement = parameters.refinement.or(agreeing);
         }
         if let (true, Some(refinement)) = (self.no_fill, &mut parameters.refinement) {
             refinement.fill = false;

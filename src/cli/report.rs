@@ -123,12 +123,12 @@ fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
         Search::Whole => "whole",
     };
     let max_lr_difference = consistency.map(|difference| f64::from(difference) / f64::from(SCALE));
-    let refinement = refinement.map(|Refinement { support, medians_before, fill, median_of_filled, medians_after }| {
+    let refinement = refinement.map(|Refinement { support, majority, medians_before, fill, medians_after }| {
         json!({
             "support": support,
+            "majority": majority,
             "medians_before": medians_before,
             "fill": fill,
-            "median_of_filled": median_of_filled,
             "medians_after": medians_after,
         })
     });

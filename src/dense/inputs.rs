@@ -1,11 +1,13 @@
 //! The input views of a matcher.
 
-use crate::luma::Input;
+use crate::{gpu::Dispatch, luma::Input};
 
 /// Left and right view bound to a [`super::Matcher`]: see [`super::Matcher::inputs`].
 #[derive(Debug)]
 pub struct Inputs {
     pub(super) views: [Input; 2],
+    /// The conversion of the reference view's colours, if they matter and the view has some.
+    pub(super) colours: Option<Vec<Dispatch>>,
     /// First luma buffer of the matcher that the inputs were prepared for.
     pub(super) matcher: wgpu::Buffer,
 }

@@ -14,17 +14,17 @@ use crate::{
     error::Result,
     gpu::{Gpu, Readback, buffer_limit, guarded, storage_buffer},
     image::Size,
-    luma::packed_bytes,
+    luma::{Colours, packed_bytes},
 };
 
 /// Most bytes of the volumes of a band: more take no less time.
 const MOST_BYTES: u64 = 1 << 27;
 
 /// Matches packed `luma` over `pyramid`, in bands of at most `band_rows` rows, and calls `progress` with the share of the
-/// work that is done, 0 to 1.
+/// work that is done, 0 to 1. Holes are filled by the `colours` of the reference view.
 pub(super) async fn compute(
     gpu: &Gpu,
-    luma: [wgpu::Buffer; 2],
+    (luma, colours): ([wgpu::Buffer; 2], Option<&Colours>),
     config: &DenseConfig,
     pyramid: &Pyramid,
     band_rows: u32,
@@ -47,7 +47,13 @@ pub(super) async fn compute(
         log::debug!("{:?}: {:.1} % of the disparities", level.size, 100.0 * table.share());
         let filters = if number > 0 { Some(&coarse_filters) } else { refinement.as_ref() };
         let config = if number > 0 { level.coarse(config) } else { level.finest(config) };
-        let task = LevelTask { config: &config, table: &table, filters, luma: [left, right] };
+        let task = LevelTask {
+            config: &config,
+            table: &table,
+            filters,
+            luma: [left, right],
+            colours: colours.filter(|_| number == 0),
+        };
         let part = 0.25_f32.powi(number as i32) / work;
         map = Some(matched(gpu, &kernels, task, limits, |share| progress(done + part * share)).await?);
         done += part;

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::{
-    config::{Aggregation, Brightness, DenseConfig, View},
+    colours::ReferenceColours,
+    config::{Aggregation, Brightness, DenseConfig, FILLED, View},
     inputs::Inputs,
     kernels::{MapRows, MapTexel, MapTexture},
-    levels,
     outputs::{Destination, Disparities, Outputs},
     plan::{BandLimits, Plan, blocks, costs},
     pyramid::Pyramid,
@@ -22,8 +22,8 @@ use crate::{
         Dispatch, Gpu, Readback, Stopwatch, buffer_limit, check_buffer, check_limits, check_texture, guarded, refused,
         storage_buffer, try_recording, warm_up,
     },
-    image::{Luma, Plane, Size},
-    luma::{Input, Source, check_size, packed_bytes, upload},
+    image::{Plane, Size},
+    luma::{Colours, Input, Source, check_size, packed_bytes},
 };
 
 /// A disparity map of the reference view, and its confidences.
@@ -31,9 +31,10 @@ use crate::{
 pub struct Dense {
     /// Disparities in 1/256 px, or [`crate::disparity::NONE`].
     pub disparity: DisparityMap,
-    /// Confidence of each disparity, 1 to 255; 0 for no disparity and for filled holes. Without refinement, the margin of
-    /// the winner's cost below its best rival's, as a share of the rival's cost. With refinement, 1 to 245: the number of
-    /// surrounding pixels with a similar disparity, less where the views differ.
+    /// Confidence of each disparity, above [`FILLED`] and up to 255 where it was measured, 1 to [`FILLED`] in filled holes, 0
+    /// for no disparity. Without refinement, the margin of the winner's cost below its best rival's, as a share of the rival's
+    /// cost. With refinement, up to 245: the number of surrounding pixels with a similar disparity, less where the views differ;
+    /// in filled holes, less where the surface that fills it is farther away or differs in colour.
     pub confidence: Plane<u8>,
 }
 
@@ -41,7 +42,7 @@ impl Dense {
     /// Share of pixels with a measured disparity, 0 to 1: neither none nor filled.
     pub fn measured(&self) -> f64 {
         let confidences = self.confidence.data();
-        confidences.iter().filter(|&&confidence| confidence > 0).count() as f64 / confidences.len() as f64
+        confidences.iter().filter(|&&confidence| confidence > FILLED).count() as f64 / confidences.len() as f64
     }
 }
 
@@ -55,7 +56,7 @@ impl Dense {
 /// no other matcher of the same [`Gpu`] has. Only the brightness of the right view can change: [`Self::set_brightness`].
 ///
 /// A matcher searches the whole range, or coarse to fine by SAD: what a level of a [`Pyramid`] searches depends on the result
-/// of the level above, so that pyramids are matched by [`compute`] alone.
+/// of the level above, so that pyramids are matched by [`super::compute`] alone.
 ///
 /// Pairs that exceed the device's buffer limits are matched in bands of rows. The result does not depend on where bands are
 /// cut.
@@ -63,8 +64,11 @@ impl Dense {
 pub struct Matcher {
     gpu: Gpu,
     size: Size,
+    reference: View,
     /// Packed luma, left and right.
     luma: [wgpu::Buffer; 2],
+    /// The colours of the reference view, unless the caller has them or they do not matter.
+    colours: Option<ReferenceColours>,
     plan: Plan,
 }
 
@@ -101,11 +105,13 @@ impl Matcher {
         Self::build(gpu, size.into(), config, None, band_rows).await
     }
 
-    async fn build(
+    /// [`Self::with_band_rows`], for `views` that are on the device, if there are any: packed luma, left and right, and
+    /// the colours of the reference view, which must be there where holes are filled.
+    pub(super) async fn build(
         gpu: &Gpu,
         size: Size,
         config: &DenseConfig,
-        luma: Option<[wgpu::Buffer; 2]>,
+        views: Option<([wgpu::Buffer; 2], Option<Colours>)>,
         band_rows: u32,
     ) -> Result<Self> {
         config.validate()?;
@@ -120,11 +126,16 @@ impl Matcher {
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
             let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
-            let luma = match luma {
-                Some(luma) => luma,
-                None => [buffer("left luma")?, buffer("right luma")?],
+            let (luma, given, colours) = match views {
+                Some((luma, given)) => (luma, given, None),
+                None => {
+                    let luma = [buffer("left luma")?, buffer("right luma")?];
+                    let colours = ReferenceColours::new(gpu, size, config, luma.each_ref())?;
+                    (luma, None, colours)
+                }
             };
-            let views = [&luma[0], &luma[1]];
+            let picture = given.as_ref().or(colours.as_ref().map(|own| &own.colours));
+            let views = ([&luma[0], &luma[1]], picture);
             let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
             let plan = match &config.parameters.aggregation {
                 Aggregation::Sad { search, compared, .. } => {
@@ -132,14 +143,15 @@ impl Matcher {
                 }
                 Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, views, limits),
             }?;
-            Ok(Self { gpu: gpu.clone(), size, luma, plan })
+            Ok(Self { gpu: gpu.clone(), size, reference: config.reference, luma, colours, plan })
         })
         .await
     }
 
     /// Device memory of this matcher, in bytes.
     pub fn memory(&self) -> u64 {
-        self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + self.plan.bytes
+        let colours = self.colours.as_ref().map_or(0, |own| own.colours.bytes());
+        self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + colours + self.plan.bytes
     }
 
     /// Number of bands of rows in which a pair is matched.
@@ -181,9 +193,13 @@ impl Matcher {
             }
         }
         let [left_luma, right_luma] = self.luma();
-        let left = input("the left view", left, left_luma).await?;
-        let right = input("the right view", right, right_luma).await?;
-        Ok(Inputs { views: [left, right], matcher: left_luma.clone() })
+        let views = [input("the left view", left, left_luma).await?, input("the right view", right, right_luma).await?];
+        let colours = match (&self.colours, self.reference) {
+            (None, _) => None,
+            (Some(own), View::Left) => own.input("the left view", &left).await?,
+            (Some(own), View::Right) => own.input("the right view", &right).await?,
+        };
+        Ok(Inputs { views, colours, matcher: left_luma.clone() })
     }
 
     /// Binds the destination of the disparities and, optionally, a buffer with `COPY_DST` for the confidences: one byte per
@@ -277,17 +293,26 @@ impl Matcher {
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
         inputs.assert_of(&self.luma[0]);
+        outputs.assert_of(&self.luma[0]);
         inputs.views.iter().for_each(|view| view.record(encoder));
-        self.record_luma(encoder, outputs);
+        self.colouring(Some(inputs)).iter().for_each(|one| one.record(encoder));
+        self.plan.record(encoder, outputs, None);
     }
 
-    /// Records the matching of the luma that the caller has written to [`Self::luma`].
+    /// Records the matching of the luma that the caller has written to [`Self::luma`]. Holes are filled without colours.
     ///
     /// # Panics
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
         outputs.assert_of(&self.luma[0]);
+        self.colouring(None).iter().for_each(|one| one.record(encoder));
         self.plan.record(encoder, outputs, None);
+    }
+
+    /// What writes the colours of the reference view, if holes are filled: those of `inputs`, or else grey levels.
+    fn colouring<'a>(&'a self, inputs: Option<&'a Inputs>) -> &'a [Dispatch] {
+        let of_inputs = inputs.and_then(|inputs| inputs.colours.as_deref());
+        of_inputs.or(self.colours.as_ref().map(ReferenceColours::grey)).unwrap_or_default()
     }
 
     /// Compiles what [`Self::record`], or [`Self::record_luma`] without `inputs`, would compile when the device first runs
@@ -304,9 +329,10 @@ impl Matcher {
             inputs.assert_of(&self.luma[0]);
         }
         outputs.assert_of(&self.luma[0]);
+        let colouring = self.colouring(inputs);
         let inputs = inputs.into_iter().flat_map(|inputs| &inputs.views).filter_map(Input::dispatch);
-        let dispatches = inputs.chain(self.plan.dispatches()).chain(outputs.disparities.dispatches()).collect();
-        warm_up(&self.gpu, "dense matching", dispatches).await
+        let matching = self.plan.dispatches().chain(outputs.disparities.dispatches());
+        warm_up(&self.gpu, "dense matching", inputs.chain(colouring).chain(matching).collect()).await
     }
 
     /// Submits the matching of [`Self::luma`], and waits for the result.
@@ -327,7 +353,7 @@ impl Matcher {
     }
 
     /// [`Self::run`], submitted part by part, with calls of `progress`.
-    async fn run_by_parts(&self, progress: impl FnMut(f32)) -> Result<Dense> {
+    pub(super) async fn run_by_parts(&self, progress: impl FnMut(f32)) -> Result<Dense> {
         let mut readback = self.readback().await?;
         self.plan.run_by_parts(readback.outputs(), progress).await?;
         readback.read().await
@@ -365,6 +391,7 @@ impl Matcher {
         let (gpu, mut readback) = (&self.gpu, self.readback().await?);
         guarded(gpu, "dense matching", || {
             let mut encoder = gpu.encoder("dense");
+            self.colouring(None).iter().for_each(|one| one.record(&mut encoder));
             self.plan.record(&mut encoder, readback.outputs(), stopwatch);
             if let Some(stopwatch) = stopwatch {
                 stopwatch.resolve(&mut encoder);
@@ -375,48 +402,4 @@ impl Matcher {
         .await?;
         readback.read().await
     }
-}
-
-/// Matches one pair on `gpu`, over a [`Pyramid`] where `config` asks for one.
-///
-/// # Errors
-/// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
-pub async fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
-    if left.size() != right.size() {
-        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
-    }
-    check_size(left.size())?;
-    check_limits(gpu)?;
-    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
-    compute_uploaded(gpu, left.size(), config, luma, |_| ()).await
-}
-
-/// [`compute`] for packed luma that is on the device, with calls of `progress` with the share of the work that is done, 0
-/// to 1, where the work has parts.
-pub(crate) async fn compute_uploaded(
-    gpu: &Gpu,
-    size: Size,
-    config: &DenseConfig,
-    luma: [wgpu::Buffer; 2],
-    progress: impl FnMut(f32),
-) -> Result<Dense> {
-    config.validate()?;
-    if let Some(pyramid) = Pyramid::of(config, size) {
-        check_limits(gpu)?;
-        return levels::compute(gpu, luma, config, &pyramid, u32::MAX, progress).await;
-    }
-    Matcher::build(gpu, size, config, Some(luma), u32::MAX).await?.run_by_parts(progress).await
-}
-
-/// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.
-#[cfg(feature = "verify")]
-pub(crate) async fn compute_over(
-    gpu: &Gpu,
-    [left, right]: [&Luma; 2],
-    config: &DenseConfig,
-    pyramid: &Pyramid,
-    band_rows: u32,
-) -> Result<Dense> {
-    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
-    levels::compute(gpu, luma, config, pyramid, band_rows, |_| ()).await
 }

@@ -9,6 +9,8 @@
 //! neighbours -> residuals and support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for
 //! bit.
 
+mod colours;
+mod compute;
 pub(crate) mod config;
 mod inputs;
 pub(crate) mod kernels;
@@ -20,16 +22,17 @@ pub(crate) mod pyramid;
 mod readback;
 mod word_copy;
 
+pub use compute::compute;
+#[cfg(feature = "verify")]
+pub(crate) use compute::compute_over;
+pub(crate) use compute::compute_uploaded;
 pub use config::{
     Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
-    Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
+    FILLED, Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
 };
 pub(crate) use config::{Direction, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;
-#[cfg(feature = "verify")]
-pub(crate) use matcher::compute_over;
-pub(crate) use matcher::compute_uploaded;
-pub use matcher::{Dense, Matcher, compute};
+pub use matcher::{Dense, Matcher};
 pub use outputs::{Destination, Outputs};
 pub use pyramid::Pyramid;
 pub use readback::MapReadback;

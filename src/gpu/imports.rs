@@ -11,11 +11,14 @@ macro_rules! parts {
 }
 
 const PARTS: &[(&str, &str)] = parts![
+    "bitmap_rows",
     "brightness",
     "cell_layout",
     "consistent",
     "edges",
+    "floor_div",
     "haar",
+    "halving",
     "keypoint",
     "line",
     "luma_words",
@@ -24,6 +27,7 @@ const PARTS: &[(&str, &str)] = parts![
     "path_step",
     "quotient",
     "selection",
+    "texel_bytes",
     "whole_layout",
     "words",
 ];

@@ -9,7 +9,7 @@ use super::{
     surface::{Sample, Surface},
 };
 use crate::{
-    dense::Dense,
+    dense::{Dense, FILLED},
     disparity::{DisparityRange, NONE, SCALE},
     image::{Plane, Size},
 };
@@ -101,12 +101,12 @@ fn confirmed(winners: &Plane<Winner>, own: &Plane<i32>, most: u32) -> Plane<bool
     })
 }
 
-/// The confidence of a pixel, 1 to 255, from three parts of 0 to 127: the agreement within its segment, the margin of
+/// The confidence of a pixel, above [`FILLED`], from three parts of 0 to 127: the agreement within its segment, the margin of
 /// its belief, and the similarity of both views there. No part suffices alone: whole segments can be wrong, beliefs
 /// spread across segments, and repeated texture looks similar.
 fn confidence(agreement: u8, certainty: u8, alikeness: u8) -> u8 {
     let sum = u32::from(agreement) + u32::from(certainty) + u32::from(alikeness);
-    1 + (2 * sum / 3) as u8
+    (1 + (2 * sum / 3) as u8).max(FILLED + 1)
 }
 
 /// The certainty of a belief, 0 to 127, from its `margin` to the best rival.

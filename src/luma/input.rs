@@ -24,6 +24,17 @@ pub enum Source<'a> {
     TextureAs(&'a wgpu::TextureView, wgpu::TextureFormat),
 }
 
+impl<'a> Source<'a> {
+    /// The view and its format; `None` for packed luma.
+    pub(crate) fn texture(&self) -> Option<(&'a wgpu::TextureView, wgpu::TextureFormat)> {
+        match *self {
+            Source::Luma(_) => None,
+            Source::Texture(view) => Some((view, view.texture().format())),
+            Source::TextureAs(view, format) => Some((view, format)),
+        }
+    }
+}
+
 /// A prepared conversion to packed luma.
 #[derive(Debug)]
 pub struct Input(Conversion);

@@ -3,10 +3,12 @@
 //! Pixel `x` of a row is byte `x % 4`, counted from the lowest, of the row's word `x / 4`; a row
 //! has `ceil(width / 4)` words, and what lies beyond the width is 0.
 
+mod colours;
 mod input;
 pub(crate) mod kernels;
 mod packed;
 
+pub(crate) use colours::Colours;
 pub use input::{Input, Source};
 pub use kernels::luma_texture::TexelFormat;
 pub use packed::{MAX_SIDE, pack, packed_bytes, unpack};

@@ -139,7 +139,7 @@ pub async fn run_with_progress(
     config.validate()?;
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
-    let views = Views::new(backend, left, right).await?;
+    let views = Views::new(backend, left, right, config).await?;
     let size = views.size();
 
     enter(Some(Step::Features));

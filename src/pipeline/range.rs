@@ -2,7 +2,7 @@
 
 use crate::{
     config::Config,
-    dense::Dense,
+    dense::{Dense, FILLED},
     disparity::{DisparityRange, NONE, SCALE},
     error::{Error, Result},
     seeding::{FoundRange, RangeEnd, Seeding, ThinSupport},
@@ -59,11 +59,11 @@ pub(super) fn is_at_end(disparity: i32, range: DisparityRange) -> [bool; 2] {
     [known && disparity <= low, known && disparity >= high]
 }
 
-/// The shares of the measured disparities, those with a confidence, within 1.5 px of the smallest and of the largest disparity
+/// The shares of the measured disparities within 1.5 px of the smallest and of the largest disparity
 /// of `range`, 0 to 1.
 pub(super) fn at_ends(dense: &Dense, range: DisparityRange) -> [f32; 2] {
     let confidences = dense.confidence.data().iter();
-    let measured = dense.disparity.data().iter().zip(confidences).filter(|&(_, &confidence)| confidence > 0);
+    let measured = dense.disparity.data().iter().zip(confidences).filter(|&(_, &confidence)| confidence > FILLED);
     let (mut count, mut ends) = (0, [0; 2]);
     for (&disparity, _) in measured {
         count += 1;
@@ -134,10 +134,10 @@ mod tests {
         // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not; the last one is filled.
         let dense = Dense {
             disparity: Plane::new((7, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920, 2 * SCALE]).unwrap(),
-            confidence: Plane::new((7, 1), vec![0, 1, 1, 1, 1, 255, 0]).unwrap(),
+            confidence: Plane::new((7, 1), vec![0, 16, 16, 16, 16, 255, FILLED]).unwrap(),
         };
         assert_eq!(at_ends(&dense, range), [0.4, 0.2]);
-        let nothing = Dense { confidence: dense.confidence.map(|_| 0), ..dense };
+        let nothing = Dense { confidence: dense.confidence.map(|_| FILLED), ..dense };
         assert_eq!(at_ends(&nothing, range), [0.0, 0.0]);
     }
 

@@ -20,7 +20,7 @@ const SEARCHES: u32 = 3;
 /// A task without its range.
 pub(super) struct Search<'a, 'b> {
     pub views: &'a Views<'b>,
-    /// The pictures as given, which Kamencay's method takes.
+    /// The pictures as given: their colours guide the filling of holes, and Kamencay's method takes them.
     pub pictures: [&'a Picture; 2],
     /// The map that resampled the right view, if one did.
     pub map: Option<&'a WarpMap>,
@@ -64,7 +64,7 @@ impl Search<'_, '_> {
             Method::Hsad(parameters) => {
                 let task = config.dense(parameters, range, brightness);
                 let range = task.searched(width)?;
-                (range, views.dense(&DenseConfig { range, ..task }, progress).await?)
+                (range, views.dense(self.pictures, &DenseConfig { range, ..task }, progress).await?)
             }
             Method::Kamencay(parameters) => {
                 let task = config.kamencay(parameters, range, brightness);

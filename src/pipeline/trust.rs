@@ -7,7 +7,7 @@
 use super::range::is_at_end;
 use crate::{
     config::{Config, Method},
-    dense::{Aggregation, Compared, Dense, View},
+    dense::{Aggregation, Compared, Dense, FILLED, View},
     disparity::{DisparityRange, pixels},
     image::Size,
     seeding::Seeding,
@@ -39,14 +39,14 @@ const FAR: (f32, u8, f32) = (2.0, 128, 0.002);
 /// twentieth of the picture 0.04.
 const IMBALANCE: f32 = 0.03;
 
-/// Trust in a map, 0 to 1: mean confidence, reduced by the share of the map that contradicts the coarse map, for a coarse map
+/// Trust in a map, 0 to 1: mean confidence, 0 where a pixel was filled, reduced by the share of the map that contradicts the coarse map, for a coarse map
 /// that shows little, and for few seeds.
 pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let around = seeding.coarse.around();
     let (mut known, mut sure, mut contradicted) = (0u64, 0u64, 0u64);
     for ((x, y), disparity) in known_pixels(dense) {
         known += 1;
-        sure += u64::from(dense.confidence.get(x, y));
+        sure += u64::from(Some(dense.confidence.get(x, y)).filter(|&value| value > FILLED).unwrap_or(0));
         let shift = if config.reference == View::Left { 0.0 } else { disparity };
         contradicted += u64::from(around.contradicts(x as f32 + shift, y, disparity));
     }
@@ -71,7 +71,7 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
 /// Whether a map shows no parallax: its measured disparities are 0 but for noise, which spreads to both sides alike.
 pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
     let measured: Vec<f32> = known_pixels(dense)
-        .filter(|&((x, y), _)| dense.confidence.get(x, y) > 0)
+        .filter(|&((x, y), _)| dense.confidence.get(x, y) > FILLED)
         .map(|(_, disparity)| disparity)
         .collect();
     let share = |wanted: &dyn Fn(f32) -> bool| {
@@ -106,7 +106,11 @@ pub(super) fn in_proportion(mut dense: Dense, trust: f32) -> Dense {
     if trust < TRUSTED {
         // In 1/256, so that the arithmetic is in integers.
         let factor = (256.0 * trust / TRUSTED) as u32;
-        dense.confidence.data_mut().iter_mut().for_each(|value| *value = (u32::from(*value) * factor / 256) as u8);
+        for value in dense.confidence.data_mut() {
+            let lowered = (u32::from(*value) * factor / 256) as u8;
+            // A measured pixel stays above the filled ones.
+            *value = if *value > FILLED { lowered.max(FILLED + 1) } else { lowered };
+        }
     }
     dense
 }
@@ -150,14 +154,15 @@ mod tests {
     fn confidences_follow_a_small_trust() {
         assert_eq!(in_proportion(map(200), 0.5).confidence.get(0, 0), 200);
         assert_eq!(in_proportion(map(200), 0.25).confidence.get(0, 0), 100);
-        assert_eq!(in_proportion(map(200), 0.0).confidence.get(0, 0), 0);
+        assert_eq!(in_proportion(map(200), 0.0).confidence.get(0, 0), FILLED + 1);
+        assert_eq!(in_proportion(map(FILLED), 0.25).confidence.get(0, 0), FILLED / 2);
     }
 
     #[test]
     fn parallax_is_what_noise_does_not_explain() {
         // Of 400 pixels with a disparity of a quarter of a pixel.
         let with = |others: &[(usize, i32)]| {
-            let mut dense = map(9);
+            let mut dense = map(90);
             dense.disparity.data_mut().fill(SCALE / 4);
             let mut pixels = dense.disparity.data_mut().iter_mut();
             for &(count, disparity) in others {
@@ -172,7 +177,7 @@ mod tests {
         for side in [-9 * SCALE, 9 * SCALE] {
             assert!(with(&[(12, side)]) && !with(&[(13, side)]));
         }
-        assert!(!shows_no_parallax(&map(9)) && !shows_no_parallax(&map(0)));
+        assert!(!shows_no_parallax(&map(90)) && !shows_no_parallax(&map(0)));
     }
 
     #[test]

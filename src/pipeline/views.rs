@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::{
     backend::Backend,
+    config::{Config, Method},
     cpu,
     dense::{Dense, DenseConfig, DenseParameters, View},
     error::Result,
@@ -20,6 +21,8 @@ use crate::{
 pub(super) struct Views<'b> {
     pub pair: Pair<'b>,
     pub masks: [Option<Mask>; 2],
+    /// Whether the right view was resampled.
+    is_resampled: bool,
     /// Pixels of the resampled right view that lie in the right view as given, if any do not.
     within: Option<Mask>,
     /// Whether the view was a raw mosaic, which the luma of its colours replaced.
@@ -27,9 +30,11 @@ pub(super) struct Views<'b> {
 }
 
 impl<'b> Views<'b> {
-    /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours.
-    pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
-        let pair = Pair::new(backend, left, right).await?;
+    /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours, for matching by `config`.
+    pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture, config: &Config) -> Result<Self> {
+        let fills = matches!(&config.method, Method::Hsad(parameters) if parameters.fills());
+        let coloured = View::ALL.map(|view| fills && view == config.reference);
+        let pair = Pair::with_colours(backend, [left, right], coloured).await?;
         let views = pair.views();
         // Before demosaicking, which mixes the edge of a border with the scene.
         let masks = [mask::mask_of(left, views.0), mask::mask_of(right, views.1)];
@@ -39,7 +44,7 @@ impl<'b> Views<'b> {
         let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
-        Ok(Self { pair: pair.with_views(extended).await?, masks, within: None, mosaics })
+        Ok(Self { pair: pair.with_views(extended).await?, masks, is_resampled: false, within: None, mosaics })
     }
 
     /// The interest points of both views downscaled by `factor`, in pixels of the downscaled views.
@@ -76,7 +81,7 @@ impl<'b> Views<'b> {
         let [left, right] = self.masks;
         let right = right.map(|mask| map.visible_through(&mask)).transpose()?;
         let within = Some(map.visible()).filter(|mask| mask.data().contains(&0));
-        Ok(Self { pair, masks: [left, right], within, ..self })
+        Ok(Self { pair, masks: [left, right], is_resampled: true, within, ..self })
     }
 
     /// The views ready for dense matching: unseen pixels correspond to nothing.
@@ -89,7 +94,7 @@ impl<'b> Views<'b> {
 
     /// The pictures of the views in colour, the right one resampled by `map`; grey for mosaics.
     pub fn pictures<'p>(&self, [left, right]: [&'p Picture; 2], map: Option<&WarpMap>) -> [Cow<'p, Picture>; 2] {
-        let grey = |luma: &Luma| Cow::Owned(luma.map(|&grey| [grey, grey, grey, 255]));
+        let grey = |luma: &Luma| Cow::Owned(cpu::luma::rgba(luma));
         let views = self.pair.views();
         [
             if self.mosaics[0] { grey(views.0) } else { Cow::Borrowed(left) },
@@ -101,12 +106,17 @@ impl<'b> Views<'b> {
         ]
     }
 
-    /// Matches the pair: a disparity and a confidence for each pixel of the reference view that both views show. Calls
-    /// `progress` with the share of the work that a device has done, 0 to 1.
+    /// Matches the pair, whose `pictures` are as given: a disparity and a confidence for each pixel of the reference view that
+    /// both views show. Calls `progress` with the share of the work that a device has done, 0 to 1.
     ///
     /// Unseen pixels must not take part in the refinement, which fills holes from their neighbours. The twins refine a masked
     /// pair; their results are the device's.
-    pub async fn dense(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
+    pub async fn dense(
+        &self,
+        pictures: [&Picture; 2],
+        config: &DenseConfig,
+        progress: impl FnMut(f32),
+    ) -> Result<Dense> {
         let masked = self.masks.iter().any(Option::is_some);
         let Some(refinement) = config.parameters.refinement.filter(|_| masked) else {
             return self.pair.dense_with_progress(config, progress).await;
@@ -115,7 +125,19 @@ impl<'b> Views<'b> {
         let raw = self.pair.dense_with_progress(&DenseConfig { parameters, ..config.clone() }, progress).await?;
         let (left, right) = self.pair.views();
         let seen = self.seen(raw, config.reference);
-        Ok(cpu::dense::refined([left, right], &seen, &refinement, config))
+        let picture = self.colours(pictures, config.reference);
+        Ok(cpu::dense::refined([left, right], &picture, &seen, &refinement, config))
+    }
+
+    /// The `reference` view in colour; grey for a mosaic and for a resampled view.
+    fn colours<'p>(&self, [left, right]: [&'p Picture; 2], reference: View) -> Cow<'p, Picture> {
+        let (left_luma, right_luma) = self.pair.views();
+        match reference {
+            View::Left if !self.mosaics[0] => Cow::Borrowed(left),
+            View::Left => Cow::Owned(cpu::luma::rgba(left_luma)),
+            View::Right if !self.mosaics[1] && !self.is_resampled => Cow::Borrowed(right),
+            View::Right => Cow::Owned(cpu::luma::rgba(right_luma)),
+        }
     }
 
     /// A map of the `reference` view without what the views do not show.

@@ -42,13 +42,7 @@ const PARAMETERS: DenseParameters = DenseParameters {
     uniqueness: 1,
     agreement: 0,
     consistency: Some(SCALE.cast_unsigned()),
-    refinement: Some(Refinement {
-        support: 10,
-        medians_before: 0,
-        fill: false,
-        median_of_filled: false,
-        medians_after: 0,
-    }),
+    refinement: Some(Refinement { support: 10, majority: false, medians_before: 0, fill: false, medians_after: 0 }),
 };
 
 /// The disparities of the surfaces that a downscaled pair shows.

@@ -7,15 +7,16 @@ use std::{
 
 use hsad::{
     config::Preset,
-    dense::{Brightness, Dense, DenseConfig, Destination, Matcher},
+    dense::{Brightness, Dense, DenseConfig, Destination, Matcher, View},
     disparity::DisparityRange,
     features::{Detector, FeatureConfig},
     gpu::block_on,
     image::{Luma, Size},
     internals::{
-        cpu::dense::{compute, map_texture},
+        cpu::dense::{compute, compute_in_colour, map_texture},
         dense::MapTexel,
     },
+    io::Picture,
     luma::{Source, pack},
     wgpu::{self, BufferUsages, TextureFormat, TextureUsages},
 };
@@ -76,6 +77,39 @@ fn textures_in_and_out_in_bands_and_not() {
                 }
             }
         }
+    }
+    application.assert_quiet();
+}
+
+/// Holes are filled by the colours of the reference view where it has some; the caller's luma has none.
+#[test]
+fn textures_bring_their_colours() {
+    let application = Application::new();
+    let (gpu, bench) = (&application.gpu, application.bench());
+    let [left, right] = pair(SIZE, 7);
+    // Red and blue differ where green does not.
+    let hue = |x: u32, y: u32| if (x / 9 + y / 7).is_multiple_of(2) { [200, 20] } else { [10, 250] };
+    let coloured = |view: &Luma| {
+        let colour = |x, y| [hue(x, y)[0], view.get(x, y), hue(x, y)[1], 255];
+        Picture::from_fn(SIZE, colour)
+    };
+    let pictures = [coloured(&left), coloured(&right)];
+    let lumas = pictures.each_ref().map(Picture::luma);
+    for (index, reference) in View::ALL.into_iter().enumerate() {
+        let config = DenseConfig { reference, ..Preset::Quality.dense_config(DisparityRange::new(0, 24).unwrap()) };
+        let grey = compute(&lumas[0], &lumas[1], &config).unwrap();
+        let expected = compute_in_colour([&lumas[0], &lumas[1]], &pictures[index], &config).unwrap();
+        assert_ne!(grey, expected);
+        let matcher = block_on(Matcher::with_band_rows(gpu, SIZE, &config, 30)).unwrap();
+        let textures =
+            pictures.each_ref().map(|picture| bench.texture(TextureFormat::Rgba8Unorm, SIZE, picture.rgba()));
+        let [left, right] = textures.each_ref().map(Source::Texture);
+        let inputs = matcher.inputs(left, right).unwrap();
+        let mut readback = block_on(matcher.readback()).unwrap();
+        bench.run(|encoder| matcher.record(encoder, &inputs, readback.outputs()));
+        assert_eq!(block_on(readback.read()).unwrap(), expected, "{reference}");
+        // The same luma without colours: what the matcher still holds.
+        assert_eq!(matcher.run().unwrap(), grey, "{reference}");
     }
     application.assert_quiet();
 }
@@ -249,17 +283,18 @@ fn memory_is_what_the_device_gives() {
 fn matchers_take_the_memory_that_is_told() {
     let benchmarks = include_str!("../../docs/benchmarks.md");
     let gpu = &Application::new().gpu;
+    let [mut told, mut measured] = [vec![], vec![]];
     for (size, count) in [((640, 480), 128), ((768, 512), 64), ((1920, 1080), 256)] {
         let start = format!("| {}x{}, {count} | ", size.0, size.1);
         let row = benchmarks.lines().find_map(|line| line.strip_prefix(&start)).expect("the row of the size");
-        let told: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+        told.extend(row.split('|').filter_map(|cell| cell.trim().parse::<f64>().ok()));
         let range = DisparityRange::new(0, count).unwrap();
-        let measured = [Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
+        measured.extend([Preset::Fast, Preset::Balanced, Preset::Quality].map(|preset| {
             let matcher = Matcher::new(gpu, size, &preset.dense_config(range)).unwrap();
             (matcher.memory() as f64 / 1e6).round()
-        });
-        assert_eq!(told, measured, "{start}");
+        }));
     }
+    assert_eq!(told, measured);
 }
 
 #[test]

@@ -122,7 +122,7 @@ impl Matched {
         self.outcome.dense.disparity.data().to_vec()
     }
 
-    /// Confidence of each disparity, 1 to 255; 0 for no disparity or a filled one.
+    /// Confidence of each disparity: 16 to 255 where it was measured, 1 to 15 where it was filled, 0 for none.
     pub fn confidences(&self) -> Vec<u8> {
         self.outcome.dense.confidence.data().to_vec()
     }

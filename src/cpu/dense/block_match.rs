@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::CellPlane;
 use crate::{
-    dense::{Dense, DenseConfig, Interpolation, View, kernels::CELL},
+    dense::{Dense, DenseConfig, FILLED, Interpolation, View, kernels::CELL},
     disparity::{DisparityMap, NONE, SCALE},
     image::{Luma, Plane, Size},
 };
@@ -99,6 +99,7 @@ pub(super) fn decide(costs: &[Option<u32>], config: &DenseConfig) -> (i32, u8) {
         Some(rival) if rival > 0 => 1 + 254 * (rival - best) / rival,
         _ => 1,
     };
+    let confidence = confidence.max(u32::from(FILLED) + 1);
     ((config.range.min + winner as i32) * SCALE + between, confidence as u8)
 }
 

@@ -3,17 +3,19 @@
 use rayon::prelude::*;
 
 use super::{
-    Transforms, agreement, block_match, box_mean, cell_ranges, claim, consistency, cost, fill, half_consistency, halve,
-    path, path_winners, pyramid, residual, select, soft_rank, support, weighted_median, winners,
+    Surroundings, Transforms, agreement, block_match, box_mean, cell_ranges, claim, consistency, cost, fill,
+    half_consistency, halve, path, path_winners, pyramid, residual, select, soft_rank, support, weighted_median,
+    winners,
 };
 use crate::{
+    cpu::luma::rgba,
     dense::{
         Aggregation, Compared, CostAggregation, CrossCheck, Dense, DenseConfig, Pyramid, Refinement, Search,
         SemiGlobal, View, kernels::halved_config,
     },
     disparity::{NONE, SCALE},
     error::{Error, Result},
-    image::Luma,
+    image::{Luma, Plane},
 };
 
 /// [`crate::dense::compute`] on the CPU.
@@ -21,11 +23,20 @@ use crate::{
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`].
 pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
-    if left.size() != right.size() {
-        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+    compute_in_colour([left, right], &grey([left, right], config), config)
+}
+
+/// [`compute`], with holes filled by the colours of `picture`, the reference view.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], [`Error::Parameter`].
+pub fn compute_in_colour(views: [&Luma; 2], picture: &Plane<[u8; 4]>, config: &DenseConfig) -> Result<Dense> {
+    let [left, right] = views.map(Plane::size);
+    if left != right {
+        return Err(Error::SizesDiffer { left, right });
     }
     config.validate()?;
-    compute_over(left, right, config, Pyramid::of(config, left.size()).as_ref())
+    computed(views, picture, config, Pyramid::of(config, left).as_ref())
 }
 
 /// [`compute`] over the levels of a pyramid, if there is one.
@@ -33,6 +44,21 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
 /// # Errors
 /// [`Error::Parameter`] if no pixel has a partner.
 pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Option<&Pyramid>) -> Result<Dense> {
+    computed([left, right], &grey([left, right], config), config, levels)
+}
+
+/// The reference view as a picture without colours.
+fn grey([left, right]: [&Luma; 2], config: &DenseConfig) -> Plane<[u8; 4]> {
+    rgba(if config.reference == View::Left { left } else { right })
+}
+
+/// The map of a pair, with holes filled by the colours of `picture`.
+fn computed(
+    [left, right]: [&Luma; 2],
+    picture: &Plane<[u8; 4]>,
+    config: &DenseConfig,
+    levels: Option<&Pyramid>,
+) -> Result<Dense> {
     let config = DenseConfig { range: config.searched(left.width())?, ..config.clone() };
     let view = config.reference;
     let mut dense;
@@ -73,7 +99,7 @@ pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Opt
         agreement(&mut dense, config.parameters.agreement);
     }
     match &config.parameters.refinement {
-        Some(refinement) => Ok(refined([left, right], &dense, refinement, &config)),
+        Some(refinement) => Ok(refined([left, right], picture, &dense, refinement, &config)),
         None => Ok(dense),
     }
 }
@@ -103,23 +129,30 @@ fn coarse_to_fine(views: [&Luma; 2], compared: Compared, config: &DenseConfig) -
     dense
 }
 
-/// The map of the pair `views`, before the change of brightness, after all steps of `refinement`.
-pub fn refined([left, right]: [&Luma; 2], dense: &Dense, refinement: &Refinement, config: &DenseConfig) -> Dense {
+/// The map of a pair, before the change of brightness, after all steps of `refinement`; `picture` has the colours of the
+/// reference view.
+pub fn refined(
+    [left, right]: [&Luma; 2],
+    picture: &Plane<[u8; 4]>,
+    dense: &Dense,
+    refinement: &Refinement,
+    config: &DenseConfig,
+) -> Dense {
     let equalised = right.map(|&luma| config.brightness.apply(luma));
     let residuals = residual([left, &equalised], config.reference, &dense.disparity);
     let luma = if config.reference == View::Left { left } else { right };
-    let Dense { disparity: mut map, confidence } = support(dense, &residuals, refinement.support);
+    let mut refined = support(dense, &residuals, refinement.support, refinement.majority);
     for median in refinement.before() {
-        map = weighted_median(luma, &map, &map, median);
+        refined.disparity = weighted_median(luma, &refined.disparity, median);
     }
-    let before = map.clone();
     if refinement.fill {
-        map = fill(&map, config.range);
+        let surroundings = Surroundings::new(&refined.disparity, config.reference, picture);
+        refined = fill(&refined, &surroundings, config.reference, config.range);
     }
     for median in refinement.after() {
-        map = weighted_median(luma, &map, &before, median);
+        refined.disparity = weighted_median(luma, &refined.disparity, median);
     }
-    Dense { disparity: map, confidence }
+    refined
 }
 
 /// The costs along all paths through one view; without paths, the matching costs themselves.

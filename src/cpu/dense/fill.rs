@@ -1,64 +1,107 @@
-//! Filling of holes along rows, from the definition.
+//! Filling of holes along rays, from the definition.
 
+use rayon::prelude::*;
+
+use super::{
+    project::{partner, project},
+    tangent::{Tangent, rgb, tangents},
+    weighted_median::{halving_weight, least_with_half},
+};
 use crate::{
-    dense::kernels::surface::{FARTHEST, RUN, SHORTEST, STEEPEST},
+    dense::{
+        Dense, FILLED, View,
+        kernels::{
+            fit::SLOPE_UNITS,
+            rays::{COLOUR, COLOUR_LIMIT, FARTHEST, HALVING_BITS, HIDING, LONGEST, PRICE_BITS, UNCLAIMED},
+        },
+    },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     image::{Plane, Size},
 };
 
-/// Fills the holes of each row: of the surfaces at both ends of a hole, the one further away is continued.
-pub fn fill(disparities: &DisparityMap, range: DisparityRange) -> DisparityMap {
-    let Size { width, height } = disparities.size();
-    Plane::from_fn((width, height), |x, y| {
-        let row = disparities.row(y);
-        let x = x as usize;
-        if row[x] != NONE {
-            return row[x];
+/// Column and row steps of the rays.
+const DIRECTIONS: [[i64; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
+
+/// What the disparities of a map tell about its holes.
+#[derive(Clone, Debug)]
+pub struct Surroundings<'p> {
+    /// The colours of its view.
+    pub picture: &'p Plane<[u8; 4]>,
+    /// The tangent planes beside holes.
+    pub tangents: Plane<Option<Tangent>>,
+    /// The map in the other view.
+    pub projected: DisparityMap,
+}
+
+impl<'p> Surroundings<'p> {
+    /// The surroundings of the holes of a map of `view`; `picture` shows the colours of that view.
+    pub fn new(disparities: &DisparityMap, view: View, picture: &'p Plane<[u8; 4]>) -> Self {
+        Self { picture, tangents: tangents(disparities, picture), projected: project(disparities, view) }
+    }
+}
+
+/// Fills the holes of a map of `view` with disparities within `range`: the weighted median of the planes that a ray in
+/// each of eight directions reaches first. The weight of a plane halves with every 2^[`HALVING_BITS`] that its price
+/// exceeds the least. Filled pixels get a confidence of 1 to [`FILLED`], less for a larger least price.
+pub fn fill(dense: &Dense, surroundings: &Surroundings<'_>, view: View, range: DisparityRange) -> Dense {
+    let Size { width, height } = dense.disparity.size();
+    let filled = |x: u32, y: u32| {
+        let disparity = dense.disparity.get(x, y);
+        if disparity != NONE {
+            return (disparity, dense.confidence.get(x, y));
         }
-        // Disparities on either side of the hole, starting at the hole.
-        let left: Vec<i32> = row[..x].iter().rev().copied().skip_while(|&d| d == NONE).collect();
-        let right: Vec<i32> = row[x + 1..].iter().copied().skip_while(|&d| d == NONE).collect();
-        let ends = [(x - left.len().min(x), &left), (row.len() - x - 1 - right.len(), &right)];
-        let ends = ends.into_iter().filter(|(_, surface)| !surface.is_empty());
-        ends.map(|(gap, surface)| continued(surface, gap as i32 + 1, range)).min().unwrap_or(NONE)
-    })
+        let candidates: Vec<(i32, u32)> = DIRECTIONS
+            .iter()
+            .filter_map(|&direction| reached(&dense.disparity, [x, y], direction))
+            .map(|source| candidate(surroundings, [x, y], source, view, range))
+            .collect();
+        let Some(least) = candidates.iter().map(|&(_, price)| price).min() else { return (NONE, 0) };
+        let weighted = candidates.iter().map(|&(d, price)| (d, halving_weight(price - least, HALVING_BITS)));
+        let median = least_with_half(weighted.collect()).expect("the least price has a weight");
+        (median, FILLED - (least >> PRICE_BITS).min(u32::from(FILLED) - 1) as u8)
+    };
+    let rows: Vec<Vec<(i32, u8)>> =
+        (0..height).into_par_iter().map(|y| (0..width).map(|x| filled(x, y)).collect()).collect();
+    let both = Plane::from_fn((width, height), |x, y| rows[y as usize][x as usize]);
+    Dense { disparity: both.map(|&(disparity, _)| disparity), confidence: both.map(|&(_, confidence)| confidence) }
 }
 
-/// The disparity `distance` pixels in front of the first pixel of a surface.
-fn continued(surface: &[i32], distance: i32, range: DisparityRange) -> i32 {
-    let first = surface[0];
-    let steady = |pair: &&[i32]| pair[1] != NONE && (pair[1] - pair[0]).abs() <= SCALE;
-    let count = (1 + surface.windows(2).take_while(steady).count() as i32).min(RUN);
-    if count < SHORTEST {
-        return first;
-    }
-    let relative = || (0..count).map(|place| (place, surface[place as usize] - first));
-    let sum: i32 = relative().map(|(_, d)| d).sum();
-    // Twice the covariance of positions and disparities, times the count.
-    let covariance: i32 = relative().map(|(place, d)| (2 * place - (count - 1)) * d).sum();
-    let slope = (96 * covariance).div_euclid(count * (count * count - 1)).clamp(-16 * STEEPEST, 16 * STEEPEST);
-    let change = sum.div_euclid(count) - ((slope * (2 * distance + count - 1)) >> 5);
-    (first + change.clamp(-FARTHEST, FARTHEST)).clamp(range.min * SCALE, range.last() * SCALE)
+/// The first pixel with a disparity on the ray from a hole. Rays along the row have no limit.
+fn reached(disparities: &DisparityMap, [x, y]: [u32; 2], [i, j]: [i64; 2]) -> Option<[u32; 2]> {
+    let Size { width, height } = disparities.size();
+    let longest = if j == 0 { width } else { LONGEST };
+    let ray = (1..=i64::from(longest)).map(|steps| [i64::from(x) + steps * i, i64::from(y) + steps * j]);
+    let inside = |&[x, y]: &[i64; 2]| (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
+    ray.take_while(inside).map(|[x, y]| [x as u32, y as u32]).find(|&[x, y]| disparities.get(x, y) != NONE)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Disparity and price of the plane of the pixel `source` at the pixel `hole`.
+fn candidate(
+    Surroundings { picture, tangents, projected }: &Surroundings<'_>,
+    hole: [u32; 2],
+    source: [u32; 2],
+    view: View,
+    range: DisparityRange,
+) -> (i32, u32) {
+    let way = [0, 1].map(|axis| hole[axis].wrapping_sub(source[axis]).cast_signed());
+    let tangent = tangents.get(source[0], source[1]);
+    let Tangent { height, slopes, colour } = tangent.expect("a ray ends beside a hole");
+    let change = (slopes[0] * way[0] + slopes[1] * way[1] + SLOPE_UNITS / 2).div_euclid(SLOPE_UNITS);
+    let continued = height + change.clamp(-FARTHEST, FARTHEST);
+    let disparity = continued.clamp(range.min * SCALE, range.last() * SCALE);
 
-    #[test]
-    fn background_goes_on_behind_what_hides_it() {
-        let range = DisparityRange::new(0, 20).unwrap();
-        let map = Plane::new((5, 1), vec![NONE, 512, NONE, 1024, NONE]).unwrap();
-        assert_eq!(fill(&map, range).data(), [512, 512, 512, 1024, 1024]);
-        // A slope of 16/256 px per pixel is continued.
-        let slanted = Plane::from_fn((40, 1), |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
-        let filled = fill(&slanted, range);
-        assert_eq!(filled.get(35, 0), 256 + 16 * 35);
-    }
-
-    #[test]
-    fn an_empty_row_stays_empty() {
-        let map = Plane::filled((4, 2), NONE);
-        assert_eq!(fill(&map, DisparityRange::new(0, 4).unwrap()), map);
-    }
+    let own = rgb(picture, hole[0], hole[1]);
+    let contrast = (0..3).map(|channel| own[channel].abs_diff(colour[channel])).max().unwrap_or(0);
+    let price = way[0].abs() + way[1].abs() + COLOUR * i32::from(contrast).min(COLOUR_LIMIT);
+    let partner = partner(hole[0], disparity, view);
+    let penalty = if !(0..i64::from(projected.width())).contains(&partner) {
+        0
+    } else {
+        match projected.get(partner as u32, hole[1]) {
+            NONE => UNCLAIMED,
+            claimed if claimed < disparity - SCALE => HIDING,
+            _ => 0,
+        }
+    };
+    (disparity, (price + penalty).cast_unsigned())
 }

@@ -6,6 +6,7 @@ use super::{Transforms, cell_cost, cell_path, cell_select, claim, consistency, h
 use crate::{
     dense::{
         CostAggregation, Dense, DenseConfig, SemiGlobal, View,
+        config::Filters,
         pyramid::{CellTable, Pyramid, filters},
     },
     image::Luma,
@@ -26,7 +27,8 @@ pub fn pyramid(views: [&Luma; 2], config: &DenseConfig, costs: &CostAggregation,
         let [left, right] = pair;
         let equalised = right.map(|&luma| config.brightness.apply(luma));
         let residuals = residual([left, &equalised], config.reference, &dense.disparity);
-        let map = support(&dense, &residuals, filters().support).disparity;
+        let Filters { support: least, majority, .. } = filters();
+        let map = support(&dense, &residuals, least, majority).disparity;
         table = CellTable::below(&map, levels[number - 1].size, levels[number - 1].range);
     }
     matched(&pictures[0], &levels[0].finest(config), costs, &table)

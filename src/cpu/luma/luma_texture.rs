@@ -26,7 +26,7 @@ pub fn luma_texture(texels: &Texels) -> Luma {
 }
 
 /// Converts a binary16 to the nearest byte of 255 times its value, halves up, clamped to 0..1.
-fn level(half: u16) -> u8 {
+pub(super) fn level(half: u16) -> u8 {
     let (exponent, fraction) = (half >> 10 & 31, f64::from(half & 1023) / 1024.0);
     let magnitude = match exponent {
         0 => fraction * 2f64.powi(-14),

@@ -18,7 +18,7 @@ pub use interpolation::Interpolation;
 pub use paths::{Direction, Paths};
 pub use penalties::Penalties;
 pub(crate) use refinement::Filters;
-pub use refinement::{Median, Refinement};
+pub use refinement::{FILLED, Median, Refinement};
 pub use view::View;
 
 use crate::{
@@ -208,6 +208,11 @@ impl DenseParameters {
     /// Whether half-size maps give the ranges of cells and confirm matches.
     pub(crate) fn is_coarse_to_fine(&self) -> bool {
         matches!(self.aggregation, Aggregation::Sad { search: Search::CoarseToFine, .. })
+    }
+
+    /// Whether holes are filled.
+    pub(crate) fn fills(&self) -> bool {
+        self.refinement.is_some_and(|refinement| refinement.fill)
     }
 
     /// Bits of a 32-bit key that the largest cost of the window leaves to the disparity's index.

@@ -2,6 +2,9 @@
 
 use crate::error::{Result, check_range};
 
+/// Largest confidence of a filled pixel; that of a measured one is larger.
+pub const FILLED: u8 = 15;
+
 /// A weighted median filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Median {
@@ -10,8 +13,6 @@ pub struct Median {
     /// Falloff of the weights: a neighbour whose luma differs by 2^`halving_bits` weighs half; 31 gives all neighbours
     /// the same weight.
     pub halving_bits: u32,
-    /// Whether the filter changes filled pixels only.
-    pub holes_only: bool,
 }
 
 /// The refinement of a map after its checks.
@@ -20,12 +21,15 @@ pub struct Refinement {
     /// Least support: the number of pixels of the 7x7 window, the centre included, whose disparities must lie within 1
     /// px of the centre's for the centre to keep its disparity, 0 to 49.
     pub support: u32,
+    /// Whether at least half of that window, as far as it lies within the picture, must have a disparity that is at most 2 px
+    /// larger than the centre's, too: whatever is beside holes, or just behind something nearer, is filled more reliably than
+    /// it was measured. Thin things in front of others stay.
+    pub majority: bool,
     /// Number of passes of a 5x5 weighted median before filling, 0 to 100.
     pub medians_before: u32,
-    /// Whether holes are filled.
+    /// Whether holes are filled, from the surfaces that rays in eight directions reach, by the colours of the reference view
+    /// and by what the other view shows.
     pub fill: bool,
-    /// Whether filled pixels are filtered by a 9x9 weighted median.
-    pub median_of_filled: bool,
     /// Number of passes of a 5x5 weighted median over all pixels after filling, 0 to 100; a plain 3x3 median follows.
     pub medians_after: u32,
 }
@@ -35,6 +39,8 @@ pub struct Refinement {
 pub(crate) struct Filters {
     /// See [`Refinement::support`].
     pub(crate) support: u32,
+    /// See [`Refinement::majority`].
+    pub(crate) majority: bool,
     /// The medians before filling.
     pub(crate) before: Vec<Median>,
     /// Whether holes are filled.
@@ -47,6 +53,7 @@ impl From<&Refinement> for Filters {
     fn from(refinement: &Refinement) -> Self {
         Self {
             support: refinement.support,
+            majority: refinement.majority,
             before: refinement.before().collect(),
             fill: refinement.fill,
             after: refinement.after().collect(),
@@ -64,15 +71,13 @@ impl Refinement {
 
     /// The filters before filling.
     pub fn before(&self) -> impl Iterator<Item = Median> + use<> {
-        (0..self.medians_before).map(|_| Median { radius: 2, halving_bits: 3, holes_only: false })
+        (0..self.medians_before).map(|_| Median { radius: 2, halving_bits: 3 })
     }
 
     /// The filters after filling.
     pub fn after(&self) -> impl Iterator<Item = Median> + use<> {
-        let filled = Median { radius: 4, halving_bits: 3, holes_only: true };
-        let all = Median { radius: 2, halving_bits: 3, holes_only: false };
-        let plain = Median { radius: 1, halving_bits: 31, holes_only: false };
-        let medians_after = (0..self.medians_after).map(move |_| all);
-        (self.fill && self.median_of_filled).then_some(filled).into_iter().chain(medians_after).chain([plain])
+        let weighted = Median { radius: 2, halving_bits: 3 };
+        let plain = Median { radius: 1, halving_bits: 31 };
+        (0..self.medians_after).map(move |_| weighted).chain([plain])
     }
 }

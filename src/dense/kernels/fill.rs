@@ -1,23 +1,38 @@
-//! Filling of holes along rows. `shaders/dense/fill.wgsl`.
+//! Filling of holes along rays. `shaders/dense/fill.wgsl`.
 
+use super::{
+    bitmap::Bitmaps,
+    map_buffer::{MapBuffer, MapLayout},
+    tangent::fit,
+};
 use crate::{
+    dense::config::{FILLED, View},
     disparity::{DisparityRange, NONE, SCALE},
-    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
-    image::Size,
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
-const WORKGROUP: [u32; 2] = [16, 4];
+const WORKGROUP: u32 = 64;
+/// Words of the bitmap per row of a workgroup's tile, and rows of the tile.
+const TILE: [u32; 2] = [2, 8];
 
-/// The slope of a surface that is extrapolated into a hole, and its bounds.
-pub mod surface {
-    /// Most disparities from which a slope is estimated.
-    pub const RUN: i32 = 32;
-    /// Fewest disparities for a slope; with fewer the last disparity is repeated.
-    pub const SHORTEST: i32 = 12;
-    /// The steepest extrapolated slope, in 1/256 px per pixel.
-    pub const STEEPEST: i32 = 32;
-    /// The largest change along an extrapolated slope, in 1/256 px.
+/// The rays, and the prices of what they find.
+pub mod rays {
+    /// Longest ray, in rows; rays along the row have no limit.
+    pub const LONGEST: u32 = 128;
+    /// The largest change by continuation of a plane, in 1/256 px.
     pub const FARTHEST: i32 = 1024;
+    /// Price of a difference of 1 in the channel that differs most.
+    pub const COLOUR: i32 = 4;
+    /// Largest difference in colour that counts.
+    pub const COLOUR_LIMIT: i32 = 64;
+    /// Price of a partner at which no disparity points.
+    pub const UNCLAIMED: i32 = 32;
+    /// Price of a partner at which a smaller disparity points.
+    pub const HIDING: i32 = 256;
+    /// Base-2 logarithm of the price that halves the weight.
+    pub const HALVING_BITS: u32 = 3;
+    /// Base-2 logarithm of the price that lowers the confidence by 1.
+    pub const PRICE_BITS: u32 = 4;
 }
 
 shader_struct! {
@@ -26,7 +41,20 @@ shader_struct! {
         height: u32,
         least: i32,
         most: i32,
+        direction: i32,
+        confidence_offset: u32,
     }
+}
+
+/// What the filling reads beside the map.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'b> {
+    /// From [`super::Tangents`].
+    pub tangents: &'b wgpu::Buffer,
+    /// From [`super::Project`].
+    pub projected: &'b wgpu::Buffer,
+    /// From [`super::Bitmaps`].
+    pub bitmaps: &'b wgpu::Buffer,
 }
 
 /// The kernel that fills holes.
@@ -39,18 +67,26 @@ impl Fill {
         Stage {
             name: "fill",
             source: include_str!("../../../shaders/dense/fill.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
-                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-                ("RUN", surface::RUN.into()),
-                ("SHORTEST", surface::SHORTEST.into()),
-                ("STEEPEST", surface::STEEPEST.into()),
-                ("FARTHEST", surface::FARTHEST.into()),
+                ("WORKGROUP_WIDTH", WORKGROUP.into()),
+                ("TILE_WORDS", TILE[0].into()),
+                ("TILE_ROWS", TILE[1].into()),
+                ("RAY", rays::LONGEST.into()),
+                ("MARGIN", Bitmaps::MARGIN.into()),
+                ("SLOPE_BITS", fit::SLOPE_UNITS.ilog2().into()),
+                ("FARTHEST", rays::FARTHEST.into()),
+                ("COLOUR", rays::COLOUR.into()),
+                ("COLOUR_LIMIT", rays::COLOUR_LIMIT.into()),
+                ("UNCLAIMED", rays::UNCLAIMED.into()),
+                ("HIDING", rays::HIDING.into()),
+                ("HALVING_BITS", rays::HALVING_BITS.into()),
+                ("FILLED", FILLED.into()),
+                ("PRICE_BITS", rays::PRICE_BITS.into()),
                 ("SCALE", SCALE.into()),
+                ("SCALE_BITS", SCALE.ilog2().into()),
                 ("NONE", NONE.into()),
-                ("ROW_BITS", ROW_BITS.into()),
-                ("NOTHING", i32::MAX.into()),
+                ("ABOVE", i32::MAX.into()),
             ],
         }
     }
@@ -60,16 +96,25 @@ impl Fill {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Copies `disparities` to `filled` and fills the holes of each row with disparities within `range`.
+    /// Fills the holes of a map of `view`, whose confidences are 0 there, with disparities within `range`.
     pub fn prepare(
         &self,
-        Size { width, height }: Size,
         range: DisparityRange,
-        disparities: &WordTexture,
-        filled: &wgpu::Buffer,
+        view: View,
+        Surroundings { tangents, projected, bitmaps }: Surroundings<'_>,
+        map: MapBuffer<'_>,
     ) -> Dispatch {
-        let params = Params { width, height, least: range.min * SCALE, most: range.last() * SCALE };
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
-        self.0.dispatch(&params, &[&disparities.view, filled], groups)
+        let MapBuffer { buffer, layout } = map;
+        let MapLayout { width, rows: height } = layout;
+        let params = Params {
+            width,
+            height,
+            least: range.min * SCALE,
+            most: range.last() * SCALE,
+            direction: view.direction(),
+            confidence_offset: layout.confidence_offset(),
+        };
+        let groups = [width.div_ceil(32 * TILE[0]), height.div_ceil(TILE[1]), 1];
+        self.0.dispatch(&params, &[tangents, projected, bitmaps, buffer], groups)
     }
 }

@@ -1,6 +1,7 @@
 //! The kernels of dense matching, one per stage, and the layouts of their shared buffers.
 
 mod agreement;
+mod bitmap;
 mod block_match;
 mod box_mean;
 mod cell_cost;
@@ -20,17 +21,20 @@ mod map_buffer;
 mod map_texture;
 mod pad;
 mod path;
+mod project;
 mod residual;
 mod rows_per_thread;
 mod select;
 mod selection;
 mod soft_rank;
 mod support;
+mod tangent;
 mod volume_band;
 mod weighted_median;
 mod wide_census;
 
 pub use agreement::{AGREEMENT_REACH, AGREEMENT_TOLERANCE, Agreement, AgreementTile};
+pub use bitmap::Bitmaps;
 pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
 pub use cell_cost::CellCost;
@@ -45,19 +49,21 @@ pub use census::Census;
 pub use claim::Claim;
 pub use consistency::{CheckedAgainst, Consistency};
 pub use cost::CostVolume;
-pub use fill::{Fill, surface};
+pub use fill::{Fill, Surroundings, rays};
 pub use halve::Halve;
 pub use line_buffers::{LineBuffers, PathVolumes};
 pub use map_buffer::{MapBuffer, MapLayout};
 pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
 pub use path::Path;
+pub use project::Project;
 pub use residual::{ComparedViews, MAX_RESIDUAL, Residual};
 pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
 pub use select::{Select, Selection};
 pub use selection::ResultKind;
 pub use soft_rank::{SOFT_RANK_LIMIT, SOFT_RANK_MIDDLE, SoftRank};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
+pub use tangent::{Tangents, fit};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
 pub use wide_census::WideCensus;
@@ -121,8 +127,8 @@ pub fn stages() -> Vec<Stage> {
             );
         }
     }
-    stages.extend([Residual::stage(), Fill::stage()]);
-    let refinement = Refinement { support: 5, medians_before: 1, fill: true, median_of_filled: true, medians_after: 1 };
+    stages.extend([Residual::stage(), Project::stage(), Bitmaps::stage(), Tangents::stage(), Fill::stage()]);
+    let refinement = Refinement { support: 5, majority: true, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     stages.extend([AgreementTile::SOFTWARE, AgreementTile::HARDWARE].map(Agreement::stage));
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
@@ -130,7 +136,8 @@ pub fn stages() -> Vec<Stage> {
             SoftRank::stage(rows),
             Census::stage(rows),
             WideCensus::stage(1, rows),
-            Support::stage(5, rows),
+            Support::stage(5, false, rows),
+            Support::stage(5, true, rows),
         ]);
         stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
     }

@@ -1,7 +1,7 @@
 //! Selection of a pixel's disparity, common to SAD and aggregated costs. `shaders/shared/selection.wgsl`.
 
 use crate::{
-    dense::config::Interpolation,
+    dense::config::{FILLED, Interpolation},
     disparity::{NONE, SCALE},
 };
 
@@ -19,7 +19,7 @@ pub(super) fn selection_constants(
     interpolation: Interpolation,
     kind: ResultKind,
     index_bits: u32,
-) -> [(&'static str, i64); 7] {
+) -> [(&'static str, i64); 8] {
     const PARABOLA: i64 = 1;
     const EQUIANGULAR: i64 = 2;
     let method = match interpolation {
@@ -31,6 +31,7 @@ pub(super) fn selection_constants(
         ("SHIFT", index_bits.into()),
         ("SCALE", SCALE.into()),
         ("NONE", NONE.into()),
+        ("MEASURED", i64::from(FILLED) + 1),
         ("FULL", (kind == ResultKind::Matches).into()),
         ("PARABOLA", PARABOLA),
         ("EQUIANGULAR", EQUIANGULAR),

@@ -5,6 +5,7 @@ use super::{
     rows_per_thread::rows_per_thread,
 };
 use crate::{
+    dense::config::FILLED,
     disparity::{NONE, SCALE},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
@@ -17,7 +18,7 @@ pub const SUPPORT_RADIUS: u32 = 3;
 /// Largest difference of disparities that support each other, in 1/256 px.
 pub const SUPPORT_TOLERANCE: i32 = SCALE;
 
-/// A sentinel that differs from every disparity by more than the tolerance.
+/// A sentinel that differs from every disparity by more than twice the tolerance.
 const FAR: i64 = 1 << 30;
 
 shader_struct! {
@@ -36,9 +37,9 @@ pub struct Support {
 }
 
 impl Support {
-    /// Source, bindings and constants of the kernel, where `least` pixels of the window must agree, with `rows` rows
-    /// per thread.
-    pub fn stage(least: u32, rows: u32) -> Stage {
+    /// Source, bindings and constants of the kernel, where `least` pixels of the window must agree, and with
+    /// `majority` half of the window must not be nearer, with `rows` rows per thread.
+    pub fn stage(least: u32, majority: bool, rows: u32) -> Stage {
         let side = 2 * SUPPORT_RADIUS + 1;
         Stage {
             name: "support",
@@ -54,6 +55,8 @@ impl Support {
                 ("ROWS", rows.into()),
                 ("TOLERANCE", SUPPORT_TOLERANCE.into()),
                 ("LEAST", least.into()),
+                ("MAJORITY", majority.into()),
+                ("MEASURED", i64::from(FILLED) + 1),
                 ("NONE", NONE.into()),
                 ("FAR", FAR),
             ],
@@ -61,9 +64,9 @@ impl Support {
     }
 
     /// Compiles the kernel.
-    pub fn new(gpu: &Gpu, least: u32) -> Self {
+    pub fn new(gpu: &Gpu, least: u32, majority: bool) -> Self {
         let rows = rows_per_thread(gpu);
-        Self { kernel: Kernel::new(gpu, &Self::stage(least, rows)), rows }
+        Self { kernel: Kernel::new(gpu, &Self::stage(least, majority, rows)), rows }
     }
 
     /// Copies `matches` to `supported`, a map of the same layout, and drops disparities that too few neighbours share.

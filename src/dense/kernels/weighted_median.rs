@@ -35,7 +35,7 @@ impl WeightedMedian {
         Stage {
             name: "weighted_median",
             source: include_str!("../../../shaders/dense/weighted_median.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Read, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
@@ -44,7 +44,6 @@ impl WeightedMedian {
                 ("KEPT", (side - 1).into()),
                 ("SPAN", (side + 3).into()),
                 ("HALVING_BITS", median.halving_bits.into()),
-                ("HOLES_ONLY", median.holes_only.into()),
                 ("ROWS", rows.into()),
                 ("FARTHEST", FARTHEST),
                 ("NONE", NONE.into()),
@@ -59,16 +58,16 @@ impl WeightedMedian {
     }
 
     /// Filters `disparities` into `filtered`, weighted by packed `luma` of their view; `first_row` is the row of the
-    /// luma of their first row, `before` the map before its holes were filled.
+    /// luma of their first row.
     pub fn prepare(
         &self,
         Size { width, height }: Size,
         (luma, first_row): (&wgpu::Buffer, u32),
-        [disparities, before]: [&wgpu::Buffer; 2],
+        disparities: &wgpu::Buffer,
         filtered: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, height, luma_start: first_row * width.div_ceil(4) };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
-        self.kernel.dispatch(&params, &[luma, disparities, before, filtered], groups)
+        self.kernel.dispatch(&params, &[luma, disparities, filtered], groups)
     }
 }

@@ -20,6 +20,7 @@ use crate::{
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
     image::Size,
+    luma::Colours,
 };
 
 /// Most rows of a band, to stay below 65,535 workgroups.
@@ -29,13 +30,14 @@ const MAX_BAND_ROWS: u32 = 8192;
 /// the watchdog of a GPU that drives a display.
 const MAX_BAND_WORK: u64 = 1 << 30;
 
-/// Plans block matching of packed `left` and `right` of `size`, in bands within `limits`.
+/// Plans block matching of packed `left` and `right` of `size`, in bands within `limits`; holes are filled by the `colours` of
+/// the reference view.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
     config: &DenseConfig,
     (search, compared): (Search, Compared),
-    [left, right]: [&wgpu::Buffer; 2],
+    ([left, right], colours): ([&wgpu::Buffer; 2], Option<&Colours>),
     limits: BandLimits,
 ) -> Result<Plan> {
     let Size { width, height } = size;
@@ -80,7 +82,7 @@ pub(in crate::dense) fn plan(
         let views = ComparedViews { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
         let after = After::of(&config.parameters);
-        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views }, limits)?;
+        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views, colours }, limits)?;
     }
     Ok(plan)
 }

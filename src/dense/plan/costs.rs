@@ -26,15 +26,17 @@ use crate::{
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu},
     image::Size,
+    luma::Colours,
 };
 
-/// Plans the matching of packed `luma` of `size`, left and right, in bands within `limits`.
+/// Plans the matching of packed `luma` of `size`, left and right, in bands within `limits`; holes are filled by the `colours`
+/// of the reference view.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
     config: &DenseConfig,
     costs: &CostAggregation,
-    luma: [&wgpu::Buffer; 2],
+    (luma, colours): ([&wgpu::Buffer; 2], Option<&Colours>),
     limits: BandLimits,
 ) -> Result<Plan> {
     let width = size.width;
@@ -109,7 +111,7 @@ pub(in crate::dense) fn plan(
         let map = &reference.matches;
         let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
         let after = After::of(&config.parameters);
-        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views }, limits)?;
+        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views, colours }, limits)?;
     }
     Ok(plan)
 }

@@ -23,6 +23,7 @@ use crate::{
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu},
     image::Size,
+    luma::Colours,
 };
 
 /// Rows of a band are a multiple of these where a band can have so many: software drivers follow as many lines at once.
@@ -52,6 +53,8 @@ pub(in crate::dense) struct LevelTask<'a> {
     pub(in crate::dense) filters: Option<&'a Filters>,
     /// Packed luma, left and right.
     pub(in crate::dense) luma: [&'a wgpu::Buffer; 2],
+    /// The colours of the reference view, if the filters fill holes.
+    pub(in crate::dense) colours: Option<&'a Colours>,
 }
 
 impl LevelKernels {
@@ -81,7 +84,7 @@ impl LevelKernels {
 
     /// Plans the matching of a level in bands within `limits`, with a checkpoint after each.
     pub(in crate::dense) fn plan(&self, gpu: &Gpu, task: LevelTask<'_>, limits: BandLimits) -> Result<Plan> {
-        let LevelTask { config, table, filters, luma } = task;
+        let LevelTask { config, table, filters, luma, colours } = task;
         let (size, range) = (table.size, table.range);
         let volumes = Volumes::new(table, self.directions.len() as u64, limits)?;
         let mut plan = Plan::new(gpu, config, volumes.bands.len());
@@ -117,7 +120,7 @@ impl LevelKernels {
                 gpu,
                 &mut plan,
                 &after,
-                Unrefined { matches: &level.matches, size, range, views },
+                Unrefined { matches: &level.matches, size, range, views, colours },
                 limits,
             )?;
         }

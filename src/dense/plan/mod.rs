@@ -4,6 +4,7 @@ pub(super) mod blocks;
 mod coarse_to_fine;
 mod compared;
 pub(super) mod costs;
+mod filling;
 mod level;
 mod other_winners;
 mod refine;

@@ -1,22 +1,23 @@
 //! What follows when all bands are matched: the plan from a map with holes and speckles to a complete one.
 //!
-//! agreement of neighbours -> residuals and support -> weighted medians of the supported disparities -> filling -> a
-//! weighted median of the filled pixels -> weighted medians of all pixels -> a plain median.
+//! agreement of neighbours -> residuals and support -> weighted medians of the supported disparities -> filling ->
+//! weighted medians of all pixels -> a plain median.
 
-use super::{BandLimits, Kept, Plan, WholeMap};
+use super::{BandLimits, Kept, Plan, WholeMap, filling::Filling};
 use crate::{
     dense::{
         config::{DenseParameters, Filters, Median, View},
         kernels::{
-            AGREEMENT_REACH, Agreement, ComparedViews, Fill, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
-            WeightedMedian,
+            AGREEMENT_REACH, Agreement, ComparedViews, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
+            Tangents, WeightedMedian,
         },
         word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Gpu, WordTexture, most_words},
+    gpu::{BUFFER_LIMITS, Gpu, most_words},
     image::Size,
+    luma::Colours,
 };
 
 /// What is done to a map of all bands.
@@ -37,12 +38,18 @@ impl After {
         }
     }
 
+    /// Whether holes are filled.
+    fn fills(&self) -> bool {
+        self.filters.as_ref().is_some_and(|filters| filters.fill)
+    }
+
     /// Rows above and below a pixel that its checks and filters read.
     fn halo(&self) -> u32 {
         let agreement = if self.agreement.is_some() { AGREEMENT_REACH } else { 0 };
         let radii =
             |filters: &Filters| filters.before.iter().chain(&filters.after).map(|median| median.radius).sum::<u32>();
-        agreement + self.filters.as_ref().map_or(0, |filters| SUPPORT_RADIUS + radii(filters))
+        let filling = if self.fills() { Filling::HALO } else { 0 };
+        agreement + filling + self.filters.as_ref().map_or(0, |filters| SUPPORT_RADIUS + radii(filters))
     }
 }
 
@@ -56,6 +63,8 @@ pub(super) struct Unrefined<'a> {
     pub(super) range: DisparityRange,
     /// Both views, and the reference view, to which the map belongs.
     pub(super) views: ComparedViews<'a>,
+    /// The colours of the reference view, if holes are filled.
+    pub(super) colours: Option<&'a Colours>,
 }
 
 /// The weighted-median kernels of a refinement. Most filters share their parameters, and each kernel is compiled once.
@@ -79,35 +88,33 @@ impl Medians {
 }
 
 /// The kernels of a refinement, and its memory besides the maps.
-struct Refining {
+struct Refining<'a> {
     filters: Filters,
     residual: Residual,
     support: Support,
-    fill: Fill,
+    filling: Option<Filling<'a>>,
     medians: Medians,
     residuals: wgpu::Buffer,
     supported: wgpu::Buffer,
-    with_holes: Option<WordTexture>,
-    filtered: wgpu::Buffer,
 }
 
-impl Refining {
+impl<'a> Refining<'a> {
     /// Compiles and allocates for maps of up to `largest`.
-    fn new(gpu: &Gpu, plan: &mut Plan, filters: Filters, largest: MapLayout) -> Result<Self> {
-        let pixels = u64::from(largest.pixels());
+    fn new(
+        gpu: &Gpu,
+        plan: &mut Plan,
+        filters: &Filters,
+        colours: Option<&'a Colours>,
+        largest: MapLayout,
+    ) -> Result<Self> {
         Ok(Self {
             residual: Residual::new(gpu),
-            support: Support::new(gpu, filters.support),
-            fill: Fill::new(gpu),
-            medians: Medians::new(gpu, &filters),
+            support: Support::new(gpu, filters.support, filters.majority),
+            filling: colours.map(|colours| Filling::new(gpu, plan, colours, largest)).transpose()?,
+            medians: Medians::new(gpu, filters),
             residuals: plan.buffer("residuals", u64::from(largest.width.div_ceil(4)) * u64::from(largest.rows))?,
             supported: plan.buffer("supported disparities", largest.words())?,
-            with_holes: match filters.fill {
-                true => Some(plan.word_texture("disparities with holes", pixels)?),
-                false => None,
-            },
-            filtered: plan.buffer("filtered disparities", pixels)?,
-            filters,
+            filters: filters.clone(),
         })
     }
 
@@ -127,26 +134,31 @@ impl Refining {
         plan.run(self.residual.prepare(size, top, views, unrefined.buffer, &self.residuals));
         plan.run(self.support.prepare(unrefined, &self.residuals, &self.supported));
 
-        // The map that the next filter reads, and two more. Confidences stay behind the supported disparities.
-        let mut maps = [&self.supported, unrefined.buffer, &self.filtered];
-        let filter = |median: Median, [disparities, before, to]: [&wgpu::Buffer; 3]| {
-            self.medians.get(median).prepare(size, (luma, top), [disparities, before], to)
+        // The map that the next filter reads, and the one that it writes. Medians leave confidences where they are.
+        let mut maps = [&self.supported, unrefined.buffer];
+        let mut confidences = &self.supported;
+        let filter = |median: Median, [from, to]: [&wgpu::Buffer; 2]| {
+            self.medians.get(median).prepare(size, (luma, top), from, to)
         };
         for &median in &self.filters.before {
-            plan.run(filter(median, [maps[0], maps[0], maps[1]]));
+            plan.run(filter(median, maps));
             maps.swap(0, 1);
         }
-        if let Some(with_holes) = &self.with_holes {
-            plan.fill_texture(maps[0], with_holes);
-            plan.run(self.fill.prepare(size, range, with_holes, maps[1]));
-            // Later filters read the map with holes to recognise filled pixels.
-            maps.swap(0, 1);
+        if let Some(filling) = &self.filling {
+            if maps[0] != confidences {
+                let words = u64::from(layout.width.div_ceil(4)) * u64::from(layout.rows);
+                let (from, to) = (confidences.clone(), CopyTarget::Buffer(maps[0].clone()));
+                let (from_word, to_word) = (layout.confidence_offset().into(), layout.confidence_offset().into());
+                plan.copy(WordCopy { from, from_word, to, to_word, words });
+                confidences = maps[0];
+            }
+            filling.plan(plan, (range, views.reference), top, MapBuffer { buffer: maps[0], layout });
         }
         for &median in &self.filters.after {
             plan.run(filter(median, maps));
-            maps.swap(0, 2);
+            maps.swap(0, 1);
         }
-        [maps[0], &self.supported]
+        [maps[0], confidences]
     }
 }
 
@@ -158,12 +170,13 @@ pub(super) fn plan_after_bands(
     gpu: &Gpu,
     plan: &mut Plan,
     after: &After,
-    Unrefined { matches, size, range, views }: Unrefined<'_>,
+    Unrefined { matches, size, range, views, colours }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
     let Size { width, height } = size;
     let halo = after.halo();
-    let rows = window_rows(gpu, size, halo, limits)?;
+    let colours = after.fills().then(|| colours.expect("the colours of the reference view"));
+    let rows = window_rows(gpu, size, halo, after.fills(), limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
     let map = StoredMap::new(plan, matches, size);
     // A map that lies whole in the buffer of the matches stays there.
@@ -174,7 +187,7 @@ pub(super) fn plan_after_bands(
         None => None,
     };
     let refining = match &after.filters {
-        Some(filters) => Some(Refining::new(gpu, plan, filters.clone(), largest)?),
+        Some(filters) => Some(Refining::new(gpu, plan, filters, colours, largest)?),
         None => None,
     };
 
@@ -244,8 +257,9 @@ impl StoredMap {
 }
 
 /// The most rows of the result per window, with `halo` rows on either side.
-fn window_rows(gpu: &Gpu, Size { width, height }: Size, halo: u32, limits: BandLimits) -> Result<u32> {
-    let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words();
+fn window_rows(gpu: &Gpu, Size { width, height }: Size, halo: u32, fills: bool, limits: BandLimits) -> Result<u32> {
+    let tangents = |rows: u32| if fills { Tangents::words(Size::new(width, rows)) } else { 0 };
+    let row_bytes = |rows: u32| 4 * MapLayout { width, rows }.words().max(tangents(rows));
     // The map is also copied to a texture.
     let fitting = (limits.bytes / row_bytes(1)).min(most_words(gpu) / MapLayout { width, rows: 1 }.words());
     let fitting = u32::try_from(fitting).unwrap_or(u32::MAX);

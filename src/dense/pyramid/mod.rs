@@ -102,7 +102,7 @@ impl Level {
 
 /// The filters of the maps of all levels but the finest.
 pub(crate) fn filters() -> Filters {
-    Filters { support: SUPPORT, before: Vec::new(), fill: false, after: Vec::new() }
+    Filters { support: SUPPORT, majority: false, before: Vec::new(), fill: false, after: Vec::new() }
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
-//! Colour to luma.
+//! Colour to luma, and pictures to RGBA8.
 
 use crate::{
-    cpu::luma::{Texels, luma, luma_texture},
+    cpu::luma::{Texels, luma, luma_texture, rgba, rgba_texture},
     error::{Error, Result},
     gpu::storage_buffer,
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
     luma::{
         TexelFormat,
-        kernels::{luma::RgbaToLuma, luma_texture::LumaTexture},
+        kernels::{luma::RgbaToLuma, luma_texture::LumaTexture, rgba::LumaToRgba, rgba_texture::RgbaTexture},
         pack, packed_bytes,
     },
     verify::trial::{Array, Bench, Dice, Subject, Trial},
@@ -16,6 +16,8 @@ use crate::{
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("luma", |size, dice| Box::new(LumaTrial::draw(size, dice))),
     Subject::kernel("luma_texture", |size, dice| Box::new(LumaTextureTrial::draw(size, dice))),
+    Subject::kernel("rgba", |size, dice| Box::new(RgbaTrial::draw(size, dice))),
+    Subject::kernel("rgba_texture", |size, dice| Box::new(RgbaTextureTrial::draw(size, dice))),
 ];
 
 /// An RGBA picture to be converted to luma.
@@ -132,4 +134,91 @@ impl Trial for LumaTextureTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         Ok(vec![Array::exact("luma", pack(&luma_texture(&self.texels)))])
     }
+}
+
+/// A grey picture to be converted to RGBA8.
+#[derive(Clone, Debug)]
+pub struct RgbaTrial {
+    /// The picture.
+    pub luma: Luma,
+    /// First row that is converted.
+    pub first_row: u32,
+}
+
+impl RgbaTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { luma: dice.picture(size), first_row: dice.below(size.height) }
+    }
+}
+
+impl Trial for RgbaTrial {
+    fn parameters(&self) -> String {
+        format!("from row {} on", self.first_row)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("luma", self.luma.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Size { width, height } = self.luma.size();
+        let size = Size::new(width, height - self.first_row);
+        let (luma, pixels) = (bench.upload_luma(&self.luma)?, bench.output(size.pixels() as u32)?);
+        let dispatch = LumaToRgba::new(bench.gpu).prepare(size, self.first_row, &luma, &pixels);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("pixels", bench.download::<u32>(&pixels)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![rows_from(&rgba(&self.luma), self.first_row)])
+    }
+}
+
+/// A picture in a texture, to be converted to RGBA8.
+#[derive(Clone, Debug)]
+pub struct RgbaTextureTrial {
+    /// The picture.
+    pub texture: LumaTextureTrial,
+    /// First row that is converted.
+    pub first_row: u32,
+}
+
+impl RgbaTextureTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let texture = LumaTextureTrial::draw(size, dice);
+        Self { first_row: dice.below(texture.size().height), texture }
+    }
+}
+
+impl Trial for RgbaTextureTrial {
+    fn parameters(&self) -> String {
+        format!("{} from row {} on", self.texture.parameters(), self.first_row)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        self.texture.input()
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let LumaTextureTrial { format, .. } = self.texture;
+        let Size { width, height } = self.texture.size();
+        let size = Size::new(width, height - self.first_row);
+        let texel = TexelFormat::new(format)
+            .ok_or_else(|| Error::Unsupported(format!("no colours of textures of format {format:?}")))?;
+        let picture = bench.texture(format, (width, height), &self.texture.bytes());
+        let pixels = bench.output(size.pixels() as u32)?;
+        let dispatch = RgbaTexture::new(bench.gpu).prepare(size, self.first_row, texel, &picture, &pixels);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("pixels", bench.download::<u32>(&pixels)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![rows_from(&rgba_texture(&self.texture.texels), self.first_row)])
+    }
+}
+
+/// The words of a picture from a row on.
+fn rows_from(picture: &Plane<[u8; 4]>, first_row: u32) -> Array {
+    let first = picture.width() as usize * first_row as usize;
+    Array::exact("pixels", picture.data()[first..].iter().map(|&pixel| u32::from_le_bytes(pixel)).collect::<Vec<_>>())
 }

@@ -8,16 +8,17 @@ mod pipelines;
 mod rectify;
 
 pub use dense::{
-    AgreementTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial, CellSelectTrial,
-    CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial, MedianTrial,
-    PadTrial, PathTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial, WideCensusTrial,
+    AgreementTrial, BitmapTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial,
+    CellSelectTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial,
+    MedianTrial, PadTrial, PathTrial, ProjectTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial,
+    TangentTrial, WideCensusTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,
     WorkgroupsTrial,
 };
 pub use kamencay::{BeliefCostTrial, BeliefReduceTrial, BeliefSelectTrial, BeliefTrial, KamencayTrial, MeanShiftTrial};
-pub use luma::{LumaTextureTrial, LumaTrial};
+pub use luma::{LumaTextureTrial, LumaTrial, RgbaTextureTrial, RgbaTrial};
 pub use pipelines::{DenseTrial, PyramidTrial};
 pub use rectify::WarpTrial;
 

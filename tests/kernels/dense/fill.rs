@@ -1,37 +1,116 @@
-//! Filling of holes along rows.
+//! Filling of holes along rays.
 
 use hsad::{
-    disparity::{DisparityRange, NONE},
+    dense::{Dense, FILLED, View},
+    disparity::{DisparityMap, DisparityRange, NONE},
     image::{Plane, Size},
+    luma::unpack,
     verify::{Values, trials::FillTrial},
 };
 
 use crate::common::*;
 
+fn dense(disparity: DisparityMap) -> Dense {
+    let confidence = disparity.map(|&disparity| if disparity == NONE { 0 } else { 200 });
+    Dense { disparity, confidence }
+}
+
+/// A trial of a grey picture of one brightness.
+fn plain(disparity: DisparityMap) -> FillTrial {
+    let picture = Plane::filled(disparity.size(), [90, 90, 90, 255]);
+    let range = DisparityRange::new(0, 60).unwrap();
+    FillTrial { dense: dense(disparity), picture, view: View::Left, range }
+}
+
+/// Disparities and confidences of the filled map.
+fn filled(trial: &FillTrial) -> (Vec<i32>, Vec<u8>) {
+    let found = leaves(trial);
+    let [Values::I32(disparities), Values::U32(confidences)] = &found[..] else { panic!("a map") };
+    (disparities.clone(), unpack(trial.dense.disparity.size(), confidences).into_data())
+}
+
 #[test]
 fn the_twin_fills_the_same() {
+    let range = DisparityRange::new(-12, 41).unwrap();
     for Size { width, height } in SIZES {
-        for (holes, slope) in [(0, 0), (5, 30), (200, -70), (255, 9)] {
+        for (holes, slope, view) in
+            [(0, 0, View::Left), (60, 30, View::Right), (200, -70, View::Left), (255, 9, View::Left)]
+        {
             let (coarse, fine) = (picture((width.div_ceil(40), height), 101), picture((width, height), 102));
-            // Slanted surfaces with noise, of all lengths.
+            let gaps = picture((width.div_ceil(7), height.div_ceil(7)), 103);
             let disparities = Plane::from_fn((width, height), |x, y| match fine.get(x, y) {
-                value if value < holes && (holes > 250 || x % 3 == 0) => NONE,
+                value if gaps.get(x / 7, y / 7) < holes && (holes > 250 || value > 3) => NONE,
                 value => i32::from(coarse.get(x / 40, y)) * 40 - 3000 + slope * x as i32 + i32::from(value % 64),
             });
-            let range = DisparityRange::new(-12, 41).unwrap();
-            assert_twin(&format!("{width}x{height}, {holes} {slope}"), &FillTrial { disparities, range });
+            let channels = [1, 2, 3, 4].map(|seed| picture((width, height), seed));
+            let picture = Plane::from_fn((width, height), |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
+            let trial = FillTrial { dense: dense(disparities), picture, view, range };
+            assert_twin(&format!("{width}x{height}, {holes} {slope} {view:?}"), &trial);
         }
     }
 }
 
 #[test]
-fn by_hand() {
-    let range = DisparityRange::new(0, 20).unwrap();
-    let map = Plane::new((5, 1), vec![NONE, 512, NONE, 1024, NONE]).unwrap();
-    assert_eq!(leaves(&FillTrial { disparities: map, range }), [vec![512, 512, 512, 1024, 1024].into()]);
-    // A slope of 16/256 px per pixel is continued beyond the end of its surface.
-    let slanted = Plane::from_fn((40, 1), |x, _| if x < 30 { 256 + 16 * x as i32 } else { NONE });
-    let filled = leaves(&FillTrial { disparities: slanted, range });
-    let [Values::I32(filled)] = &filled[..] else { panic!("a disparity a pixel") };
-    assert_eq!(filled[35], 256 + 16 * 35);
+fn a_slope_goes_on_into_the_hole() {
+    // A slope of 16/256 px per pixel along the row, up to the edge of the picture, which the other view does not show.
+    let slanted = Plane::from_fn((50, 40), |x, _| if (5..45).contains(&x) { 256 * 20 + 16 * x as i32 } else { NONE });
+    let (disparities, confidences) = filled(&plain(slanted));
+    for x in 0..50 {
+        assert_eq!(disparities[20 * 50 + x], 256 * 20 + 16 * x as i32, "column {x}");
+    }
+    // The confidence of measured pixels stays, and filled ones have less, the farther the less.
+    assert_eq!(confidences[20 * 50 + 5..20 * 50 + 45], [200; 40]);
+    assert_eq!((confidences[20 * 50 + 4], confidences[20 * 50]), (FILLED, FILLED));
+    let wide = Plane::from_fn((300, 3), |x, _| if x < 30 { 512 } else { NONE });
+    let (_, confidences) = filled(&plain(wide));
+    assert_eq!([30, 99, 299].map(|x| confidences[300 + x]), [FILLED - 2, FILLED - 6, 1]);
+}
+
+#[test]
+fn colour_tells_the_surface() {
+    // Between two surfaces, a hole of the colours of one of them, pixel by pixel.
+    let map = Plane::from_fn((64, 3), |x, _| match x {
+        0..24 => 2560,
+        40.. => 2304,
+        _ => NONE,
+    });
+    let colour = |x: u32| if x < 35 { [200, 30, 30, 255] } else { [30, 30, 200, 255] };
+    let trial = FillTrial { picture: Plane::from_fn((64, 3), |x, _| colour(x)), ..plain(map) };
+    let (disparities, _) = filled(&trial);
+    assert_eq!(disparities[64 + 24..64 + 40], [[2560; 11].as_slice(), &[2304; 5]].concat());
+}
+
+#[test]
+fn what_the_other_view_shows_is_not_hidden() {
+    // A foreground of 20 px and a background of 4 px; the hole between them is hidden in the right view by the foreground. The
+    // foreground's disparity would hide the background's pixels there, and the background wins although it is farther away.
+    let map = Plane::from_fn((90, 3), |x, _| match x {
+        0..40 => 4 * 256,
+        56.. => 20 * 256,
+        _ => NONE,
+    });
+    let (disparities, _) = filled(&plain(map));
+    assert_eq!(disparities[90 + 40..90 + 56], [4 * 256; 16]);
+}
+
+#[test]
+fn a_row_without_disparities_is_filled_from_others_within_reach() {
+    let map = |rows: u32| Plane::from_fn((5, rows), |x, y| if y == 0 && x < 4 { 512 } else { NONE });
+    let (disparities, confidences) = filled(&plain(map(130)));
+    assert_eq!((disparities[128 * 5 + 1], disparities[129 * 5 + 1]), (512, NONE));
+    assert_eq!(confidences[129 * 5 + 1], 0);
+    // Along the row there is no limit.
+    let (disparities, _) = filled(&plain(Plane::from_fn((400, 1), |x, _| if x == 0 { 512 } else { NONE })));
+    assert_eq!(disparities, [512; 400]);
+    let nothing = Plane::filled((4, 2), NONE);
+    assert_eq!(filled(&plain(nothing.clone())), (nothing.into_data(), vec![0; 8]));
+}
+
+#[test]
+fn filled_disparities_lie_in_the_range() {
+    let steep = Plane::from_fn((60, 40), |x, _| if x < 30 { 3 * 256 - 40 * (29 - x as i32) } else { NONE });
+    let trial = FillTrial { range: DisparityRange::new(0, 5).unwrap(), ..plain(steep) };
+    let (disparities, _) = filled(&trial);
+    assert_eq!(disparities[20 * 60 + 35], 3 * 256 + 40 * 6);
+    assert_eq!(disparities[20 * 60 + 59], 4 * 256);
 }

@@ -93,7 +93,7 @@ fn wires_found(thick: u32, search: Search) -> f64 {
 
 #[test]
 fn thin_wires_survive_coarse_levels() {
-    for thick in [3, 4] {
+    for thick in [2, 3, 4] {
         let [whole, pyramid] = [Search::Whole, Search::CoarseToFine].map(|search| wires_found(thick, search));
         assert!(
             whole > 0.8 && pyramid > whole - 0.1,

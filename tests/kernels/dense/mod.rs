@@ -1,6 +1,7 @@
 //! The kernels of dense matching.
 
 mod agreement;
+mod bitmap;
 mod block_match;
 mod box_mean;
 mod cell_cost;
@@ -18,9 +19,11 @@ mod map_texture;
 mod matcher;
 mod pad;
 mod path;
+mod project;
 mod residual;
 mod select;
 mod soft_rank;
 mod support;
+mod tangent;
 mod weighted_median;
 mod wide_census;

@@ -4,7 +4,7 @@ use glam::DVec2;
 use hsad::{
     Backend, Result,
     config::{self, Config, Preset},
-    dense::Dense,
+    dense::{Dense, FILLED},
     disparity::pixels,
     eval::PointMatch,
     gpu::block_on,
@@ -115,7 +115,7 @@ fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
     let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
     let confidence = dense.confidence.get(x, y);
-    let disparity = pixels(dense.disparity.get(x, y)).filter(|_| confidence > 0)?;
+    let disparity = pixels(dense.disparity.get(x, y)).filter(|_| confidence > FILLED)?;
     let second = at - DVec2::new(disparity.into(), 0.0);
     Some(PointMatch { first: at, second, confidence: confidence.into(), points: None })
 }
@@ -129,12 +129,12 @@ mod tests {
     #[test]
     fn a_map_answers_where_it_was_measured() {
         let disparity = Plane::from_fn((4, 1), |x, _| [256, 384, NONE, 512][x as usize]);
-        let confidence = Plane::from_fn((4, 1), |x, _| [0, 7, 0, 9][x as usize]);
+        let confidence = Plane::from_fn((4, 1), |x, _| [FILLED, 70, 0, 90][x as usize]);
         let dense = Dense { disparity, confidence };
         let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| match_at(&dense, DVec2::new(x, 0.3)));
         let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));
-        let second = Some((3.4 - 2.0, 0.3, 9.0));
-        assert_eq!(found, [None, Some((-0.75, 0.3, 7.0)), Some((-0.25, 0.3, 7.0)), None, second]);
+        let second = Some((3.4 - 2.0, 0.3, 90.0));
+        assert_eq!(found, [None, Some((-0.75, 0.3, 70.0)), Some((-0.25, 0.3, 70.0)), None, second]);
     }
 
     #[test]

@@ -47,7 +47,7 @@ Three methods match the same interest points of the first view to the second vie
   balanced  dense matching, as in hsad match by default
 
 The points are those that sparse detects in the first view, matched or not. A dense method answers with the disparity and \
-the confidence of the pixel that a point lies in; with a confidence of 0, where the disparity was not measured or only \
+the confidence of the pixel that a point lies in; with a confidence of at most 15, where the disparity was not measured or only \
 filled in, there is no answer. An answer is right within --tolerance of the true position in the second view, and wrong if \
 the point is occluded there; answers without ground truth do not count. Right and wrong answers of equal confidence are \
 interleaved evenly, as in random order. Precision over coverage is also given for all pixels of the picture; a match of \

@@ -1,16 +1,16 @@
-//! Map kernels: residuals, support, filling, medians, textures.
+//! Map kernels: residuals, support, medians, textures.
 
 use super::blocks::signed;
 use crate::{
-    cpu::dense::{fill, map_texture, residual, support, weighted_median},
+    cpu::dense::{map_texture, residual, support, weighted_median},
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            ComparedViews, Fill, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual, Support,
+            ComparedViews, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual, Support,
             WeightedMedian,
         },
     },
-    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
+    disparity::{DisparityMap, NONE, SCALE},
     error::Result,
     gpu::uniform_buffer,
     image::{Luma, Plane, Size},
@@ -21,7 +21,6 @@ use crate::{
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("residual", |size, dice| Box::new(ResidualTrial::draw(size, dice))),
     Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
-    Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
     Subject::kernel("map_texture", |size, dice| Box::new(MapTextureTrial::draw(size, dice))),
     Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
 ];
@@ -130,19 +129,21 @@ pub struct SupportTrial {
     pub residuals: Plane<u8>,
     /// Least number of pixels that must agree.
     pub least: u32,
+    /// Whether half of the window must nearly agree.
+    pub majority: bool,
 }
 
 impl SupportTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let most = dice.pick(&[1, 8, u32::from(MAX_RESIDUAL) + 1]);
         let residuals = Plane::from_fn(size, |_, _| dice.below(most) as u8);
-        Self { least: dice.pick(&[0, 1, 9, 25, 49]), dense: dense(size, dice), residuals }
+        Self { least: dice.pick(&[0, 1, 9, 25, 49]), majority: dice.coin(), dense: dense(size, dice), residuals }
     }
 }
 
 impl Trial for SupportTrial {
     fn parameters(&self) -> String {
-        format!("at least {}", self.least)
+        format!("at least {}, majority {}", self.least, self.majority)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -155,61 +156,15 @@ impl Trial for SupportTrial {
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
         let residuals = bench.upload_luma(&self.residuals)?;
-        let dispatch = Support::new(gpu, self.least).prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
+        let dispatch =
+            Support::new(gpu, self.least, self.majority).prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(arrays(&bench.download(&to)?, layout.pixels() as usize))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let dense = support(&self.dense, &self.residuals, self.least);
+        let dense = support(&self.dense, &self.residuals, self.least, self.majority);
         Ok(arrays(&matches(&dense), dense.disparity.data().len()))
-    }
-}
-
-/// A map whose holes are filled.
-#[derive(Clone, Debug)]
-pub struct FillTrial {
-    /// The map.
-    pub disparities: DisparityMap,
-    /// Range of the filled disparities.
-    pub range: DisparityRange,
-}
-
-impl FillTrial {
-    fn draw(Size { width, height }: Size, dice: &mut Dice) -> Self {
-        // Slanted surfaces with noise, of all lengths.
-        let coarse = dice.picture((width.div_ceil(40), height));
-        let (holes, noise) = (dice.pick(&[0, 5, 200, 256]), 1 + dice.below(100));
-        let (slope, every) = (dice.between(-70, 70), 1 + dice.below(4));
-        let disparities = Plane::from_fn((width, height), |x, y| {
-            if x % every == 0 && dice.below(256) < holes {
-                return NONE;
-            }
-            i32::from(coarse.get(x / 40, y)) * 40 - 3000 + slope * x as i32 + dice.below(noise) as i32
-        });
-        Self { disparities, range: DisparityRange { min: dice.between(-20, 0), count: 1 + dice.below(60) } }
-    }
-}
-
-impl Trial for FillTrial {
-    fn parameters(&self) -> String {
-        format!("{:?}", self.range)
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("disparities", self.disparities.data().to_vec())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, size) = (bench.gpu, self.disparities.size());
-        let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(size.width * size.height)?);
-        let dispatch = Fill::new(gpu).prepare(size, self.range, &from, &to);
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(vec![Array::exact("filled disparities", bench.download::<i32>(&to)?)])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("filled disparities", fill(&self.disparities, self.range).into_data())])
     }
 }
 
@@ -277,19 +232,14 @@ pub struct MedianTrial {
     pub luma: Luma,
     /// The map.
     pub disparities: DisparityMap,
-    /// The map before its holes were filled.
-    pub before: DisparityMap,
     /// The filter.
     pub median: Median,
 }
 
 impl MedianTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let median =
-            Median { radius: 1 + dice.below(4), halving_bits: dice.pick(&[0, 3, 5, 31]), holes_only: dice.coin() };
-        let luma = dice.picture(size);
-        let [disparities, before] = [0; 2].map(|_| map(size, dice, -40 * SCALE, 60 * SCALE));
-        Self { luma, disparities, before, median }
+        let median = Median { radius: 1 + dice.below(4), halving_bits: dice.pick(&[0, 3, 5, 31]) };
+        Self { luma: dice.picture(size), disparities: map(size, dice, -40 * SCALE, 60 * SCALE), median }
     }
 }
 
@@ -302,21 +252,20 @@ impl Trial for MedianTrial {
         vec![
             Array::exact("luma", self.luma.data().to_vec()),
             Array::exact("disparities", self.disparities.data().to_vec()),
-            Array::exact("before", self.before.data().to_vec()),
         ]
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let (gpu, size) = (bench.gpu, self.disparities.size());
-        let maps = [&bench.upload(self.disparities.data())?, &bench.upload(self.before.data())?];
+        let from = bench.upload(self.disparities.data())?;
         let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.width * size.height)?);
-        let dispatch = WeightedMedian::new(gpu, self.median).prepare(size, (&luma, 0), maps, &to);
+        let dispatch = WeightedMedian::new(gpu, self.median).prepare(size, (&luma, 0), &from, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filtered disparities", bench.download::<i32>(&to)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let filtered = weighted_median(&self.luma, &self.disparities, &self.before, self.median);
+        let filtered = weighted_median(&self.luma, &self.disparities, self.median);
         Ok(vec![Array::exact("filtered disparities", filtered.into_data())])
     }
 }

@@ -4,6 +4,7 @@ mod blocks;
 mod cells;
 mod checks;
 mod costs;
+mod filling;
 mod levels;
 mod maps;
 mod paths;
@@ -14,14 +15,15 @@ pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
 pub use checks::{AgreementTrial, ConsistencyTrial};
 pub use costs::{BoxMeanTrial, CensusTrial, CostTrial, WideCensusTrial};
+pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
-pub use maps::{FillTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
+pub use maps::{MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
 pub use paths::{ClaimTrial, PathTrial, SelectTrial};
 pub use planes::{PadTrial, SoftRankTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const SUBJECTS: [&[Subject]; 8] = [
+pub(super) const SUBJECTS: [&[Subject]; 9] = [
     planes::SUBJECTS,
     blocks::SUBJECTS,
     cells::SUBJECTS,
@@ -30,4 +32,5 @@ pub(super) const SUBJECTS: [&[Subject]; 8] = [
     levels::SUBJECTS,
     checks::SUBJECTS,
     maps::SUBJECTS,
+    filling::SUBJECTS,
 ];

@@ -1,0 +1,58 @@
+//! Dense matching of one pair on a device.
+
+use super::{Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, pyramid::Pyramid};
+use crate::{
+    error::{Error, Result},
+    gpu::{Gpu, check_limits},
+    image::{Luma, Size},
+    luma::{Colours, check_size, upload},
+};
+
+/// Matches one pair on `gpu`, over a [`Pyramid`] where `config` asks for one.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], and as [`Matcher::new`]; [`Error::DeviceLost`].
+pub async fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
+    if left.size() != right.size() {
+        return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+    }
+    check_size(left.size())?;
+    check_limits(gpu)?;
+    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
+    compute_uploaded(gpu, left.size(), config, (luma, None), |_| ()).await
+}
+
+/// [`compute`] for packed luma, and for the colours of the reference view if it has any, that are on the device. Calls
+/// `progress` with the share of the work that is done, 0 to 1, where the work has parts.
+pub(crate) async fn compute_uploaded(
+    gpu: &Gpu,
+    size: Size,
+    config: &DenseConfig,
+    (luma, colours): ([wgpu::Buffer; 2], Option<Colours>),
+    progress: impl FnMut(f32),
+) -> Result<Dense> {
+    config.validate()?;
+    check_limits(gpu)?;
+    let colours = match colours {
+        Some(colours) => Some(colours),
+        None => ReferenceColours::without_colours(gpu, size, config, luma.each_ref()).await?,
+    };
+    if let Some(pyramid) = Pyramid::of(config, size) {
+        return levels::compute(gpu, (luma, colours.as_ref()), config, &pyramid, u32::MAX, progress).await;
+    }
+    Matcher::build(gpu, size, config, Some((luma, colours)), u32::MAX).await?.run_by_parts(progress).await
+}
+
+/// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.
+#[cfg(feature = "verify")]
+pub(crate) async fn compute_over(
+    gpu: &Gpu,
+    [left, right]: [&Luma; 2],
+    config: &DenseConfig,
+    pyramid: &Pyramid,
+    band_rows: u32,
+) -> Result<Dense> {
+    let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
+    let colours = ReferenceColours::without_colours(gpu, left.size(), config, luma.each_ref()).await?;
+    levels::compute(gpu, (luma, colours.as_ref()), config, pyramid, band_rows, |_| ()).await
+}

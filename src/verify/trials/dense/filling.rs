@@ -1,0 +1,249 @@
+//! Filling of holes: projection to the other view, bitmaps, tangent planes, rays.
+
+use super::{
+    blocks::signed,
+    maps::{arrays, matches},
+};
+use crate::{
+    cpu::dense::{Surroundings, Tangent, bitmaps, fill, project, tangents},
+    dense::{
+        Dense, FILLED, View,
+        kernels::{self, Bitmaps, Fill, MapBuffer, MapLayout, Project, Tangents},
+    },
+    disparity::{DisparityMap, DisparityRange, NONE},
+    error::Result,
+    image::{Plane, Size},
+    verify::trial::{Array, Bench, Dice, Subject, Trial},
+};
+
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("project", |size, dice| Box::new(ProjectTrial::draw(size, dice))),
+    Subject::kernel("bitmap", |size, dice| Box::new(BitmapTrial::draw(size, dice))),
+    Subject::kernel("tangent", |size, dice| Box::new(TangentTrial::draw(size, dice))),
+    Subject::kernel("fill", |size, dice| Box::new(FillTrial::draw(size, dice))),
+];
+
+/// Draws slanted surfaces with noise, of all lengths, and with holes of all sizes.
+fn surfaces(Size { width, height }: Size, dice: &mut Dice) -> DisparityMap {
+    let [coarse, gaps] = [40, 9].map(|side| dice.picture((width.div_ceil(side), height.div_ceil(side))));
+    let (holes, dots, noise) = (dice.pick(&[0, 90, 200, 255]), dice.pick(&[0, 20, 250]), 1 + dice.below(100));
+    let [across, down] = [70, 150].map(|most| dice.between(-most, most));
+    Plane::from_fn((width, height), |x, y| {
+        if gaps.get(x / 9, y / 9) < holes || dice.below(256) < dots {
+            return NONE;
+        }
+        let level = i32::from(coarse.get(x / 40, y / 40)) * 40 - 3000;
+        level + across * (x as i32 % 256) + down * (y as i32 % 256) + dice.below(noise) as i32
+    })
+}
+
+/// Draws a picture in colour.
+fn picture(size: Size, dice: &mut Dice) -> Plane<[u8; 4]> {
+    let channels = [0; 4].map(|_| dice.picture(size));
+    Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
+}
+
+/// The words of projected disparities.
+fn projected_words(projected: &DisparityMap) -> Vec<u32> {
+    projected.data().iter().map(|disparity| disparity.cast_unsigned() ^ 1 << 31).collect()
+}
+
+/// The words of tangent planes, height, slopes and colour each; 0 where there is none.
+fn tangent_words(tangents: &Plane<Option<Tangent>>) -> Vec<u32> {
+    let slopes = |[x, y]: [i32; 2]| x.cast_unsigned() & 0xffff | y.cast_unsigned() << 16;
+    let colour = |[red, green, blue]: [u8; 3]| u32::from_le_bytes([red, green, blue, 0]);
+    let words = |plane: &Option<Tangent>| {
+        plane.map_or([0; 3], |plane| [plane.height.cast_unsigned(), slopes(plane.slopes), colour(plane.colour)])
+    };
+    tangents.data().iter().flat_map(words).collect()
+}
+
+/// The words of a picture.
+fn picture_words(picture: &Plane<[u8; 4]>) -> Vec<u32> {
+    picture.data().iter().map(|&pixel| u32::from_le_bytes(pixel)).collect()
+}
+
+/// A map to be projected to the other view.
+#[derive(Clone, Debug)]
+pub struct ProjectTrial {
+    /// The map.
+    pub disparities: DisparityMap,
+    /// The view of the map.
+    pub view: View,
+}
+
+impl ProjectTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { disparities: surfaces(size, dice), view: dice.view() }
+    }
+}
+
+impl Trial for ProjectTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}", self.view)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("disparities", self.disparities.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.disparities.size();
+        let (from, to) = (bench.upload(self.disparities.data())?, bench.output(size.pixels() as u32)?);
+        let dispatch = Project::new(bench.gpu).prepare(size, self.view, &from, &to);
+        bench.run(|encoder| {
+            encoder.clear_buffer(&to, 0, None);
+            dispatch.record(encoder);
+        });
+        Ok(vec![Array::exact("projected", bench.download::<u32>(&to)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("projected", projected_words(&project(&self.disparities, self.view)))])
+    }
+}
+
+/// A map of which bitmaps are made.
+#[derive(Clone, Debug)]
+pub struct BitmapTrial {
+    /// The map.
+    pub disparities: DisparityMap,
+}
+
+impl BitmapTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { disparities: surfaces(size, dice) }
+    }
+}
+
+impl Trial for BitmapTrial {
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![Array::exact("disparities", self.disparities.data().to_vec())]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.disparities.size();
+        let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(Bitmaps::words(size) as u32)?);
+        let dispatch = Bitmaps::new(bench.gpu).prepare(size, &from, &to);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(vec![Array::exact("bitmaps", bench.download::<u32>(&to)?)])
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(vec![Array::exact("bitmaps", bitmaps(&self.disparities))])
+    }
+}
+
+/// A map whose surfaces end at holes.
+#[derive(Clone, Debug)]
+pub struct TangentTrial {
+    /// The map.
+    pub disparities: DisparityMap,
+    /// Colours of its view.
+    pub picture: Plane<[u8; 4]>,
+}
+
+impl TangentTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        Self { disparities: surfaces(size, dice), picture: picture(size, dice) }
+    }
+}
+
+impl Trial for TangentTrial {
+    fn parameters(&self) -> String {
+        String::new()
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![
+            Array::exact("disparities", self.disparities.data().to_vec()),
+            Array::exact("picture", self.picture.data().as_flattened().to_vec()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.disparities.size();
+        let (from, marks) = (bench.upload_words(self.disparities.data())?, bench.upload(&bitmaps(&self.disparities))?);
+        // Pixels beside no hole stay as they are, and so does the picture.
+        let before = vec![0; 3 * size.pixels() as usize];
+        let to = bench.upload(&[before, picture_words(&self.picture)].concat())?;
+        let dispatch = Tangents::new(bench.gpu).prepare(size, &from, &marks, &to);
+        bench.run(|encoder| dispatch.record(encoder));
+        let words = bench.download::<u32>(&to)?;
+        Ok(tangent_arrays(&words[..3 * size.pixels() as usize]))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        Ok(tangent_arrays(&tangent_words(&tangents(&self.disparities, &self.picture))))
+    }
+}
+
+fn tangent_arrays(words: &[u32]) -> Vec<Array> {
+    let part = |first: usize| words.iter().skip(first).step_by(3).copied().collect::<Vec<_>>();
+    vec![Array::exact("heights", signed(&part(0))), Array::exact("slopes", part(1)), Array::exact("colours", part(2))]
+}
+
+/// A map whose holes are filled.
+#[derive(Clone, Debug)]
+pub struct FillTrial {
+    /// The map.
+    pub dense: Dense,
+    /// Colours of its view.
+    pub picture: Plane<[u8; 4]>,
+    /// The view of the map.
+    pub view: View,
+    /// Range of the filled disparities.
+    pub range: DisparityRange,
+}
+
+impl FillTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let disparity = surfaces(size, dice);
+        let measured = u32::from(u8::MAX - FILLED);
+        let confidence = disparity.map(|&d| if d == NONE { 0 } else { FILLED + 1 + dice.below(measured) as u8 });
+        let range = DisparityRange { min: dice.between(-20, 0), count: 1 + dice.below(60) };
+        Self { dense: Dense { disparity, confidence }, picture: picture(size, dice), view: dice.view(), range }
+    }
+
+    fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings::new(&self.dense.disparity, self.view, &self.picture)
+    }
+}
+
+impl Trial for FillTrial {
+    fn parameters(&self) -> String {
+        format!("{:?}, {:?}", self.view, self.range)
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![
+            Array::exact("matches", matches(&self.dense)),
+            Array::exact("picture", self.picture.data().as_flattened().to_vec()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let size = self.dense.disparity.size();
+        let layout = MapLayout { width: size.width, rows: size.height };
+        let Surroundings { picture, tangents, projected } = self.surroundings();
+        let words = matches(&self.dense);
+        let tangents = bench.upload(&[tangent_words(&tangents), picture_words(picture)].concat())?;
+        let projected = bench.upload(&projected_words(&projected))?;
+        let bitmaps = bench.upload(&bitmaps(&self.dense.disparity))?;
+        let buffer = bench.upload(&words)?;
+        let surroundings = kernels::Surroundings { tangents: &tangents, projected: &projected, bitmaps: &bitmaps };
+        let map = MapBuffer { buffer: &buffer, layout };
+        let dispatch = Fill::new(bench.gpu).prepare(self.range, self.view, surroundings, map);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(arrays(&bench.download(&buffer)?, layout.pixels() as usize))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let filled = fill(&self.dense, &self.surroundings(), self.view, self.range);
+        Ok(arrays(&matches(&filled), filled.disparity.data().len()))
+    }
+}
