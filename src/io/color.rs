@@ -11,13 +11,37 @@ const FAR: f32 = 0.05;
 /// Disparity range for [`disparity_colors`], in 1/256 px: the 1st and the 99th percentile of `map`, so that a few
 /// outliers do not take up all colours. `None` if the map has no disparity.
 pub fn disparity_range(map: &DisparityMap) -> Option<(i32, i32)> {
-    let mut known: Vec<i32> = map.data().iter().copied().filter(|&d| d != NONE).collect();
-    let last = known.len().checked_sub(1)?;
+    let last = known(map).count().checked_sub(1)?;
     // Rounded outwards, so that a map of a few pixels keeps its extremes.
-    let (low, high) = (last / 100, last - last / 100);
-    let smallest = *known.select_nth_unstable(low).1;
-    let largest = *known.select_nth_unstable(high).1;
-    Some((smallest, largest))
+    Some((at_place(map, last / 100), at_place(map, last - last / 100)))
+}
+
+fn known(map: &DisparityMap) -> impl Iterator<Item = i32> {
+    map.data().iter().copied().filter(|&d| d != NONE)
+}
+
+/// The disparity at `place` of the sorted known disparities, counted by their upper and then by their lower 16 bits, since a
+/// sorted copy takes as much memory as the map.
+fn at_place(map: &DisparityMap, place: usize) -> i32 {
+    /// Skips the counts before `place`, and leaves the place within the count that holds it.
+    fn holder(counts: &[usize], place: &mut usize) -> i32 {
+        let holds = |&count: &usize| {
+            let holds = *place < count;
+            if !holds {
+                *place -= count;
+            }
+            holds
+        };
+        counts.iter().position(holds).map_or(0, |index| index as i32)
+    }
+    let mut place = place;
+    let mut counts = vec![0; 1 << 16];
+    let upper = |d: i32| (d >> 16) + (1 << 15);
+    known(map).for_each(|d| counts[upper(d) as usize] += 1);
+    let above = holder(&counts, &mut place);
+    counts.fill(0);
+    known(map).filter(|&d| upper(d) == above).for_each(|d| counts[(d & 0xFFFF) as usize] += 1);
+    ((above - (1 << 15)) << 16) + holder(&counts, &mut place)
 }
 
 /// Colours `map` by Turbo: blue at the smallest (far) and red at the largest (near) disparity of `range`, in 1/256 px;
@@ -134,5 +158,7 @@ mod tests {
         assert_eq!(disparity_range(&map), Some((2, 198)));
         assert_eq!(disparity_range(&DisparityMap::new((3, 1), vec![5, -7, 6]).unwrap()), Some((-7, 6)));
         assert_eq!(disparity_range(&DisparityMap::filled((3, 1), NONE)), None);
+        let wide = DisparityMap::new((4, 1), vec![i32::MAX, -(1 << 28), NONE, i32::MIN + 1]).unwrap();
+        assert_eq!(disparity_range(&wide), Some((i32::MIN + 1, i32::MAX)));
     }
 }

@@ -70,23 +70,24 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
 
 /// Whether a map shows no parallax: its measured disparities are 0 but for noise, which spreads to both sides alike.
 pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
-    let measured: Vec<f32> = known_pixels(dense)
-        .filter(|&((x, y), _)| dense.confidence.get(x, y) > FILLED)
-        .map(|(_, disparity)| disparity)
-        .collect();
-    let share = |wanted: &dyn Fn(f32) -> bool| {
-        measured.iter().filter(|&&disparity| wanted(disparity)).count() as f32 / measured.len().max(1) as f32
-    };
-    let within = |magnitude: f32| share(&|disparity| disparity.abs() <= magnitude);
-    let (above, below) = (share(&|disparity| disparity > NOISE.0), share(&|disparity| disparity < -NOISE.0));
-    // Noise leaves no sure disparity far from 0.
-    let sure = known_pixels(dense)
-        .filter(|&((x, y), disparity)| disparity.abs() > FAR.0 && dense.confidence.get(x, y) >= FAR.1)
-        .count();
-    sure as f32 <= FAR.2 * measured.len() as f32
-        && within(ZERO) >= 0.5
-        && within(NOISE.0) >= NOISE.1
-        && (above - below).abs() <= IMBALANCE
+    let [mut measured, mut at_zero, mut near_zero, mut above, mut below, mut sure] = [0_u64; 6];
+    for ((x, y), disparity) in known_pixels(dense) {
+        let confidence = dense.confidence.get(x, y);
+        if confidence > FILLED {
+            measured += 1;
+            at_zero += u64::from(disparity.abs() <= ZERO);
+            near_zero += u64::from(disparity.abs() <= NOISE.0);
+            above += u64::from(disparity > NOISE.0);
+            below += u64::from(disparity < -NOISE.0);
+        }
+        // Noise leaves no sure disparity far from 0.
+        sure += u64::from(disparity.abs() > FAR.0 && confidence >= FAR.1);
+    }
+    let share = |count: u64| count as f32 / measured.max(1) as f32;
+    sure as f32 <= FAR.2 * measured as f32
+        && share(at_zero) >= 0.5
+        && share(near_zero) >= NOISE.1
+        && (share(above) - share(below)).abs() <= IMBALANCE
 }
 
 /// The map with confidence 0 where a disparity lies at an end of `range`, beyond which it may go on.
