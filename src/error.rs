@@ -47,6 +47,21 @@ pub enum Error {
         way_out: String,
     },
 
+    /// The memory of the host does not suffice; told before the work begins.
+    #[error("{what} needs {} MiB of memory, and {by} leaves {} MiB: {way_out}", needed.div_ceil(1 << 20), available >> 20)]
+    NotEnoughMemory {
+        /// The work.
+        what: String,
+        /// Memory that is needed, in bytes.
+        needed: u64,
+        /// Memory that is left, in bytes.
+        available: u64,
+        /// What limits the memory: the machine, a container, or a limit of the process.
+        by: &'static str,
+        /// The way out.
+        way_out: String,
+    },
+
     /// A parameter lies outside its range.
     #[error("{name} is {value}, but {expected}")]
     Parameter {

@@ -1,5 +1,7 @@
 //! Planes of values, and luma, the picture format of the kernels.
 
+use std::ops::Range;
+
 use crate::error::{Error, Result};
 pub use crate::size::Size;
 
@@ -66,7 +68,12 @@ impl<T> Plane<T> {
         let size = size.into();
         let Size { width, height } = size;
         assert!(width > 0 && height > 0, "a plane of {width}x{height} is empty");
-        let data = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| f(x, y)).collect();
+        // Not collected: an iterator over rows of pixels does not tell their number, and a list that grows takes twice the
+        // memory.
+        let mut data = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            data.extend((0..width).map(|x| f(x, y)));
+        }
         Self { size, data }
     }
 
@@ -113,6 +120,17 @@ impl<T> Plane<T> {
 }
 
 impl<T: Copy> Plane<T> {
+    /// The given rows as a plane of their own.
+    ///
+    /// # Panics
+    /// Without rows, or for rows beyond the last.
+    pub(crate) fn cut(&self, rows: Range<u32>) -> Self {
+        assert!(!rows.is_empty(), "a plane without rows is empty");
+        let width = self.size.width as usize;
+        let data = self.data[rows.start as usize * width..rows.end as usize * width].to_vec();
+        Self { size: Size::new(self.size.width, rows.end - rows.start), data }
+    }
+
     /// A plane with `value` everywhere.
     ///
     /// # Panics
@@ -151,6 +169,13 @@ mod tests {
         // 11 / 4 = 2.75; 30 / 2; 15 / 2 = 7.5, up; 9.
         assert_eq!(reduced(&luma, 2), Luma::new((2, 2), vec![3, 15, 8, 9]).unwrap());
         assert_eq!(reduced(&luma, 1), luma);
+    }
+
+    #[test]
+    fn rows_are_cut_out() {
+        let luma = Luma::new((2, 3), vec![1, 2, 3, 4, 5, 6]).unwrap();
+        assert_eq!(luma.cut(1..3), Luma::new((2, 2), vec![3, 4, 5, 6]).unwrap());
+        assert_eq!(luma.cut(0..3), luma);
     }
 
     #[test]

@@ -141,6 +141,7 @@ pub mod kamencay;
 pub mod luma;
 mod mask;
 pub mod matching;
+mod memory;
 mod mosaic;
 mod names;
 mod pair;

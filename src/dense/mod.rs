@@ -30,9 +30,10 @@ pub use config::{
     Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
     FILLED, Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
 };
-pub(crate) use config::{Direction, MAX_COST, WEIGHT_BITS};
+pub(crate) use config::{Direction, Filters, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;
 pub use matcher::{Dense, Matcher};
 pub use outputs::{Destination, Outputs};
+pub(crate) use plan::After;
 pub use pyramid::Pyramid;
 pub use readback::MapReadback;

@@ -126,7 +126,7 @@ impl<'b> Views<'b> {
         let (left, right) = self.pair.views();
         let seen = self.seen(raw, config.reference);
         let picture = self.colours(pictures, config.reference);
-        Ok(cpu::dense::refined([left, right], &picture, &seen, &refinement, config))
+        Ok(cpu::dense::refined([left, right], &picture, seen, &refinement, config))
     }
 
     /// The `reference` view in colour; grey for a mosaic and for a resampled view.

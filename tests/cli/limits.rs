@@ -14,7 +14,7 @@ use std::{
 
 use tempfile::TempDir;
 
-use crate::common::{folder, grey_png, names, views};
+use crate::common::{folder, grey_png, names, noise, report, views};
 
 /// The user without any rights; `root` may start as many threads as it likes.
 const NOBODY: libc::uid_t = 65_534;
@@ -135,6 +135,24 @@ fn refused(command: Command, folder: &Path) -> String {
 }
 
 #[test]
+fn a_task_that_memory_does_not_hold_is_refused_beforehand() {
+    let folder = folder();
+    let [left, right] = ["left.png", "right.png"].map(|name| folder.path().join(name));
+    let scene = noise(6400, 40, 3);
+    grey_png(&left, &scene);
+    grey_png(&right, &scene);
+    let out = folder.path().join("out");
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hsad"));
+    command.arg("match").args([&left, &right]).arg("-o").arg(&out);
+    // The costs of a single row take 41 MB, and those of its paths several times as much.
+    command.args(["--device", "cpu", "--disparities", "6400", "--whole-range"]);
+    let text = refused(limited(command, libc::RLIMIT_AS, 400 << 20), &out);
+    for part in ["6400x40 pixels over 6400 disparities", "MiB", "ulimit -v", "search fewer disparities"] {
+        assert!(text.contains(part), "'{part}' is not in: {text}");
+    }
+}
+
+#[test]
 fn memory_that_the_system_refuses_is_an_error_that_leaves_nothing() {
     let folder = folder();
     let view = folder.path().join("view.png");
@@ -145,4 +163,18 @@ fn memory_that_the_system_refuses_is_an_error_that_leaves_nothing() {
     let text = refused(limited(command, libc::RLIMIT_AS, 256 << 20), &out);
     assert!(text.contains("refuses") && text.contains("bytes of memory"), "{text}");
     assert!(!folder.path().join("a").exists());
+}
+
+#[test]
+fn little_memory_gives_the_same_map() {
+    let installed = Installed::new();
+    // In one piece the costs along all paths would take 265 MB.
+    let arguments = ["--paths", "8", "--disparities", "340"];
+    succeeded(&installed.matching("free", &arguments).output().unwrap());
+    let mut command = installed.matching("little", &arguments);
+    command.env("RAYON_NUM_THREADS", "1");
+    succeeded(&limited(command, libc::RLIMIT_AS, 160 << 20).output().unwrap());
+    let map = |name: &str| fs::read(installed.path(name).join("disparity.pfm")).unwrap();
+    assert_eq!(map("little"), map("free"));
+    assert_eq!(report(&installed.path("little"))["device"]["backend"], "none");
 }

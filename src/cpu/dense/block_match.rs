@@ -1,24 +1,39 @@
 //! Block matching, from the definition.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::CellPlane;
 use crate::{
     dense::{Dense, DenseConfig, FILLED, Interpolation, View, kernels::CELL},
     disparity::{DisparityMap, NONE, SCALE},
-    image::{Luma, Plane, Size},
+    image::{Luma, Size},
 };
+
+/// Columns whose costs are in memory at a time.
+const COLUMNS: u32 = 256;
+
+/// Memory of the costs of all threads, in bytes.
+pub(super) fn bytes(config: &DenseConfig) -> u64 {
+    let pixel = size_of::<Vec<Option<u32>>>() + config.range.count as usize * size_of::<Option<u32>>();
+    rayon::current_num_threads() as u64 * u64::from(COLUMNS) * pixel as u64
+}
 
 /// The disparity of least cost for each pixel of `view`, unless its best rival is too close. Ties go to the smaller
 /// disparity. With `ranges`, only the range of the pixel's cell is searched.
 pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, ranges: Option<&CellPlane>) -> Dense {
-    let Size { width, height } = left.size();
-    let rows: Vec<Vec<(i32, u8)>> = (0..height)
-        .into_par_iter()
-        .map(|y| {
-            let mut costs = row_costs(left, right, view, y, config);
-            for (x, costs) in (0..).zip(&mut costs) {
-                if let Some((first, count)) = ranges.map(|ranges| ranges.get(x / CELL, y / CELL)) {
+    let Size { width, .. } = left.size();
+    let mut disparity = left.map(|_| NONE);
+    let mut confidence = left.map(|_| 0);
+    let disparities = disparity.data_mut().par_chunks_mut(width as usize);
+    let confidences = confidence.data_mut().par_chunks_mut(width as usize);
+    disparities.zip(confidences).enumerate().for_each(|(y, (disparities, confidences))| {
+        for first in (0..width).step_by(COLUMNS as usize) {
+            let columns = first..(first + COLUMNS).min(width);
+            let mut costs = costs_of(left, right, view, (columns.clone(), y as u32), config);
+            for (x, costs) in columns.zip(&mut costs) {
+                if let Some((first, count)) = ranges.map(|ranges| ranges.get(x / CELL, y as u32 / CELL)) {
                     let searched = first as usize..(first + count) as usize;
                     costs
                         .iter_mut()
@@ -26,15 +41,11 @@ pub fn block_match(left: &Luma, right: &Luma, view: View, config: &DenseConfig, 
                         .filter(|(index, _)| !searched.contains(index))
                         .for_each(|(_, c)| *c = None);
                 }
+                (disparities[x as usize], confidences[x as usize]) = decide(costs, config);
             }
-            costs.iter().map(|costs| decide(costs, config)).collect()
-        })
-        .collect();
-    let pixels = |x: u32, y: u32| rows[y as usize][x as usize];
-    Dense {
-        disparity: Plane::from_fn((width, height), |x, y| pixels(x, y).0),
-        confidence: Plane::from_fn((width, height), |x, y| pixels(x, y).1),
-    }
+        }
+    });
+    Dense { disparity, confidence }
 }
 
 /// The whole disparity of least cost for each pixel of `view`. Ties go to the smaller disparity.
@@ -52,16 +63,23 @@ pub fn winners(
     block_match(left, right, view, &config, ranges).disparity
 }
 
-/// The cost of each pixel of row `y` at each disparity of the range: the sum of absolute differences between the
-/// windows around the pixel and around its partner, where edge pixels are repeated beyond the pictures. `None` where
+/// The cost of each pixel of row `y` in `columns` at each disparity of the range: the sum of absolute differences between
+/// the windows around the pixel and around its partner, where edge pixels are repeated beyond the pictures. `None` where
 /// the partner lies outside the other picture.
-fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig) -> Vec<Vec<Option<u32>>> {
+fn costs_of(
+    left: &Luma,
+    right: &Luma,
+    view: View,
+    (columns, y): (Range<u32>, u32),
+    config: &DenseConfig,
+) -> Vec<Vec<Option<u32>>> {
     let (width, radius, y) = (i64::from(left.width()), i64::from(config.parameters.radius()), i64::from(y));
+    let columns = i64::from(columns.start)..i64::from(columns.end);
     let (reference, searched, direction) = match view {
         View::Left => (left, right, -1),
         View::Right => (right, left, 1),
     };
-    let mut costs = vec![vec![None; config.range.count as usize]; width as usize];
+    let mut costs = vec![vec![None; config.range.count as usize]; (columns.end - columns.start) as usize];
     for index in 0..config.range.count {
         let shift = direction * (i64::from(config.range.min) + i64::from(index));
         // One column of a window; windows of neighbouring pixels share all columns but two.
@@ -69,11 +87,12 @@ fn row_costs(left: &Luma, right: &Luma, view: View, y: u32, config: &DenseConfig
             let difference = |row| reference.get_clamped(x, row).abs_diff(searched.get_clamped(x + shift, row));
             (y - radius..=y + radius).map(|row| u32::from(difference(row))).sum()
         };
-        // First and last pixel with a partner in the picture.
-        let (first, last) = ((-shift).max(0), width - 1 - shift.max(0));
-        let columns: Vec<u32> = (first - radius..=last + radius).map(column).collect();
-        for (x, window) in (first..).zip(columns.windows(config.parameters.window() as usize)) {
-            costs[x as usize][index as usize] = Some(window.iter().sum());
+        // First and last of the pixels with a partner in the picture.
+        let first = (-shift).max(columns.start);
+        let last = (width - 1 - shift.max(0)).min(columns.end - 1);
+        let sums: Vec<u32> = (first - radius..=last + radius).map(column).collect();
+        for (x, window) in (first..=last).zip(sums.windows(config.parameters.window() as usize)) {
+            costs[(x - columns.start) as usize][index as usize] = Some(window.iter().sum());
         }
     }
     costs
@@ -132,7 +151,7 @@ mod tests {
         // 3x3 windows around (0, 0) and (1, 0) of a single row, with repeated edge pixels: 5 5 9 against 5 9 2, three
         // times.
         let row = Luma::new((3, 1), vec![5, 9, 2]).unwrap();
-        let costs = row_costs(&row, &row, View::Left, 0, &config(-1, 1).with_window(3));
+        let costs = costs_of(&row, &row, View::Left, (0..3, 0), &config(-1, 1).with_window(3));
         assert_eq!(costs[0], [Some(3 * (4 + 7))]);
     }
 

@@ -21,6 +21,8 @@ pub fn cell_path(
         if step < 0 { (0..length).rev().collect() } else { (0..length).collect() }
     };
     let mut values = costs.values.clone();
+    // Costs of the pixel before on the path at the disparities of a pixel, between those at one less and at one more.
+    let mut before = Vec::new();
     for &y in &ordered(height, direction.dy) {
         for &x in &ordered(width, direction.dx) {
             let (qx, qy) = (x.wrapping_add_signed(-direction.dx), y.wrapping_add_signed(-direction.dy));
@@ -30,15 +32,16 @@ pub fn cell_path(
             let p2 = penalties.p2_at(luma(x, y).abs_diff(luma(qx, qy)));
             let place = |x: u32, y: u32| (y * width + x) as usize;
             let (disparities, others) = (costs.table.at(x, y).disparities(), costs.table.at(qx, qy).disparities());
-            let before = values[starts[place(qx, qy)]..starts[place(qx, qy) + 1]].to_vec();
-            let least = before.iter().copied().min().map_or(0, u32::from);
-            let at = |disparity: u32| match disparity.checked_sub(others.start) {
-                Some(index) if disparity < others.end => before[index as usize].into(),
-                _ => NO_COST,
-            };
-            for (cost, d) in values[starts[place(x, y)]..].iter_mut().zip(disparities) {
-                let step = at(d.wrapping_sub(1)).min(at(d + 1)) + penalties.p1;
-                let cheapest = at(d).min(step).min(least + p2);
+            let costs_before = &values[starts[place(qx, qy)]..starts[place(qx, qy) + 1]];
+            let least = costs_before.iter().copied().min().map_or(0, u32::from);
+            before.clear();
+            before.extend((disparities.start..disparities.end + 2).map(|behind| {
+                let cost = behind.checked_sub(1 + others.start).and_then(|index| costs_before.get(index as usize));
+                cost.map_or(NO_COST, |&cost| cost.into())
+            }));
+            for (cost, near) in values[starts[place(x, y)]..].iter_mut().zip(before.windows(3)) {
+                let step = near[0].min(near[2]) + penalties.p1;
+                let cheapest = near[1].min(step).min(least + p2);
                 *cost = (u32::from(*cost) + cheapest - least) as u8;
             }
         }

@@ -8,7 +8,7 @@ use super::{census, wide_census};
 use crate::{
     dense::{Cost, MAX_COST, View, WEIGHT_BITS},
     disparity::DisparityRange,
-    image::{Luma, Plane, Size},
+    image::{Luma, Plane},
 };
 
 /// The census transforms of a view.
@@ -25,50 +25,65 @@ impl Transforms {
     pub fn new(luma: &Luma, cost: &Cost) -> Self {
         Self { census: census(luma), wide: cost.weak.map(|weak| wide_census(luma, weak.spread)) }
     }
+
+    /// The given rows.
+    pub(super) fn cut(&self, rows: Range<u32>) -> Self {
+        Self { census: self.census.cut(rows.clone()), wide: self.wide.as_ref().map(|wide| wide.cut(rows)) }
+    }
 }
 
 /// The matching costs of each pixel of `reference`, padded to a multiple of four disparities; a pixel without a partner
 /// is compared with the nearest pixel of the row. Texture counts as weak where both views have wide census transforms.
 pub fn cost(views: [&Transforms; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
-    let Size { width, height } = views[0].census.size();
+    let size = views[0].census.size();
     let disparities = 0..range.count.next_multiple_of(4);
-    let pixel = |x: u32, y: u32| costs_of_pixel(views, view, cost, (x, y), range.min, disparities.clone());
-    (0..height).into_par_iter().flat_map_iter(|y| (0..width).flat_map(move |x| pixel(x, y))).collect()
+    let row_bytes = size.width as usize * disparities.len();
+    let mut costs = vec![0; row_bytes * size.height as usize];
+    costs.par_chunks_mut(row_bytes).zip(0..size.height).for_each(|(row, y)| {
+        write_row(row, views, view, cost, (y, range.min), |_| disparities.clone());
+    });
+    costs
 }
 
-/// The matching costs of pixel (`x`, `y`) at `disparities` from `min` px on.
-pub(super) fn costs_of_pixel<'a>(
-    [reference, other]: [&'a Transforms; 2],
+/// Writes the matching costs of the pixels of row `y`, each at its `disparities` from `min` px on.
+pub(super) fn write_row(
+    mut costs: &mut [u8],
+    [reference, other]: [&Transforms; 2],
     view: View,
-    cost: &'a Cost,
-    (x, y): (u32, u32),
-    min: i32,
-    disparities: Range<u32>,
-) -> impl Iterator<Item = u8> + use<'a> {
-    let x = i64::from(x);
-    let at = move |plane: &Plane<u32>, x: i64| plane.get_clamped(x, i64::from(y));
+    cost: &Cost,
+    (y, min): (u32, i32),
+    disparities: impl Fn(u32) -> Range<u32>,
+) {
+    let at = |row: &[u32], x: i64| row[x.clamp(0, row.len() as i64 - 1) as usize];
     let luma = |word: u32| i64::from(word & 255);
-    let gradient = move |plane: &Plane<u32>, x: i64| luma(at(plane, x + 1)) - luma(at(plane, x - 1));
+    let gradient = |row: &[u32], x: i64| luma(at(row, x + 1)) - luma(at(row, x - 1));
     let hamming = |a: u32, b: u32| ((a ^ b) >> 8).count_ones();
-    let (a, slope) = (at(&reference.census, x), gradient(&reference.census, x));
-    let weak_texture = cost.weak.zip(reference.wide.as_ref()).zip(other.wide.as_ref());
-    let weak = weak_texture.filter(|((_, wide), _)| at(wide, x) & 255 != 0);
-    disparities.map(move |index| {
-        let disparity = i64::from(min) + i64::from(index);
-        let partner = if view == View::Left { x - disparity } else { x + disparity };
-        let b = at(&other.census, partner);
-        let distance = hamming(a, b);
-        let change = slope.abs_diff(gradient(&other.census, partner)) as u32;
-        let texture = match weak {
-            Some(((weak, reference), other)) => {
-                weak.census * distance + weak.wide_census * hamming(at(reference, x), at(other, partner))
-            }
-            None => {
-                let difference = luma(a).abs_diff(luma(b)) as u32;
-                cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
-            }
-        };
-        let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);
-        (sum >> WEIGHT_BITS).min(MAX_COST) as u8
-    })
+    let (own, others) = (reference.census.row(y), other.census.row(y));
+    let wide = reference.wide.as_ref().zip(other.wide.as_ref()).map(|(own, others)| (own.row(y), others.row(y)));
+    let weak_texture = cost.weak.zip(wide);
+    for column in 0..reference.census.width() {
+        let x = i64::from(column);
+        let (a, slope) = (at(own, x), gradient(own, x));
+        let weak = weak_texture.filter(|(_, (wide, _))| at(wide, x) & 255 != 0);
+        let disparities = disparities(column);
+        let of_pixel = costs.split_off_mut(..disparities.len()).expect("room for each pixel");
+        for (place, index) in of_pixel.iter_mut().zip(disparities) {
+            let disparity = i64::from(min) + i64::from(index);
+            let partner = if view == View::Left { x - disparity } else { x + disparity };
+            let b = at(others, partner);
+            let distance = hamming(a, b);
+            let change = slope.abs_diff(gradient(others, partner)) as u32;
+            let texture = match weak {
+                Some((weak, (own, others))) => {
+                    weak.census * distance + weak.wide_census * hamming(at(own, x), at(others, partner))
+                }
+                None => {
+                    let difference = luma(a).abs_diff(luma(b)) as u32;
+                    cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
+                }
+            };
+            let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);
+            *place = (sum >> WEIGHT_BITS).min(MAX_COST) as u8;
+        }
+    }
 }

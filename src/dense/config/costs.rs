@@ -92,20 +92,24 @@ impl CostAggregation {
     }
 
     /// Radius of the averaging window, (side - 1) / 2, in pixels.
-    pub(in crate::dense) fn radius(&self) -> u32 {
+    pub(crate) fn radius(&self) -> u32 {
         self.window / 2
     }
 
     /// Penalties of the path kernels. Without semi-global aggregation the selection kernel follows one path without
     /// penalties, which leaves all costs unchanged.
-    pub(in crate::dense) fn followed_with(&self) -> Penalties {
+    pub(crate) fn followed_with(&self) -> Penalties {
         self.semi_global.map_or(Penalties::NONE, |semi_global| semi_global.penalties)
+    }
+
+    /// The directions of all paths; none without semi-global aggregation.
+    pub(crate) fn directions(&self) -> &'static [Direction] {
+        self.semi_global.map_or(&[], |semi_global| semi_global.paths.directions())
     }
 
     /// The direction of the last path, which the selection kernel follows, and those of the stored paths. The last path
     /// runs along the rows: it carries nothing from band to band, and its memory accesses are sequential.
     pub(in crate::dense) fn last_and_stored(&self) -> (Direction, &'static [Direction]) {
-        let directions = self.semi_global.map_or(&[][..], |semi_global| semi_global.paths.directions());
-        directions.split_first().map_or((Direction::ALL[0], &[]), |(&last, stored)| (last, stored))
+        self.directions().split_first().map_or((Direction::ALL[0], &[]), |(&last, stored)| (last, stored))
     }
 }

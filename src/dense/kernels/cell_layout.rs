@@ -73,7 +73,7 @@ impl CellLayout {
 
 /// Words of each row of pixels.
 pub(in crate::dense) fn row_words(table: &CellTable) -> Vec<u32> {
-    (0..table.size.height).map(|y| table.row_words(y / SIDE) as u32).collect()
+    (0..table.size.height).map(|y| table.row_words(y) as u32).collect()
 }
 
 /// Constants of `cell_layout.wgsl`.

@@ -9,7 +9,7 @@ use crate::{
 const WORKGROUP: [u32; 2] = [16, 4];
 /// Words of four pixels on either side of a row, and rows above and below the picture, as far as the wide census looks.
 const HALO_WORDS: u32 = 2;
-const HALO_ROWS: u32 = 5;
+pub(crate) const HALO_ROWS: u32 = 5;
 
 shader_struct! {
     struct Params {

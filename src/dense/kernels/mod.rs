@@ -46,6 +46,7 @@ pub use cell_select::CellSelect;
 pub use cells::{CELL, CellBand, Ranges};
 pub(crate) use cells::{HALF_GRAIN, REACH, halved, halved_config};
 pub use census::Census;
+pub(crate) use census::HALO_ROWS;
 pub use claim::Claim;
 pub use consistency::{CheckedAgainst, Consistency};
 pub use cost::CostVolume;

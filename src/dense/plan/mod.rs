@@ -11,6 +11,7 @@ mod refine;
 mod transform;
 
 pub(super) use level::{LevelKernels, LevelTask};
+pub(crate) use refine::After;
 
 use super::{
     config::{Brightness, DenseConfig, View},

@@ -22,16 +22,16 @@ use crate::{
 
 /// What is done to a map of all bands.
 #[derive(Clone, Debug)]
-pub(super) struct After {
+pub(crate) struct After {
     /// Least number of agreeing pixels, if that is checked.
-    pub(super) agreement: Option<u32>,
+    pub(crate) agreement: Option<u32>,
     /// Filters of the refinement, if there is one.
-    pub(super) filters: Option<Filters>,
+    pub(crate) filters: Option<Filters>,
 }
 
 impl After {
     /// What `parameters` ask for.
-    pub(super) fn of(parameters: &DenseParameters) -> Self {
+    pub(crate) fn of(parameters: &DenseParameters) -> Self {
         Self {
             agreement: parameters.checks_agreement().then_some(parameters.agreement),
             filters: parameters.refinement.as_ref().map(Into::into),
@@ -39,12 +39,12 @@ impl After {
     }
 
     /// Whether holes are filled.
-    fn fills(&self) -> bool {
+    pub(crate) fn fills(&self) -> bool {
         self.filters.as_ref().is_some_and(|filters| filters.fill)
     }
 
     /// Rows above and below a pixel that its checks and filters read.
-    fn halo(&self) -> u32 {
+    pub(crate) fn halo(&self) -> u32 {
         let agreement = if self.agreement.is_some() { AGREEMENT_REACH } else { 0 };
         let radii =
             |filters: &Filters| filters.before.iter().chain(&filters.after).map(|median| median.radius).sum::<u32>();

@@ -1,5 +1,7 @@
 //! The disparities of each cell of a level.
 
+use std::ops::Range;
+
 use crate::{
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     image::{Plane, Size},
@@ -33,6 +35,8 @@ pub struct CellTable {
     pub range: DisparityRange,
     /// The cells, each a part of the whole range rounded up to whole sixteens.
     pub cells: Plane<CellRange>,
+    /// Rows of the uppermost cells that lie above the first row of pixels: 0 for a whole level.
+    pub above: u32,
 }
 
 impl CellRange {
@@ -55,7 +59,7 @@ impl CellRange {
     }
 
     /// Number of the first disparity of the whole range, and number behind the last.
-    pub fn disparities(&self) -> std::ops::Range<u32> {
+    pub fn disparities(&self) -> Range<u32> {
         4 * self.first..4 * (self.first + self.words)
     }
 
@@ -70,7 +74,7 @@ impl CellRange {
 impl CellTable {
     /// The whole range for all cells of a level of `size`.
     pub fn whole(size: Size, range: DisparityRange) -> Self {
-        Self { size, range, cells: Plane::filled(cells_of(size), CellRange::whole(range.count)) }
+        Self { size, range, cells: Plane::filled(cells_of(size), CellRange::whole(range.count)), above: 0 }
     }
 
     /// The cells of a level of `size`, from the complete map of the level above, of half the size.
@@ -85,24 +89,37 @@ impl CellTable {
                 range.count,
             ),
         };
-        Self { size, range, cells: bounds.map(cell) }
+        Self { size, range, cells: bounds.map(cell), above: 0 }
+    }
+
+    /// The table of the given rows.
+    pub fn cut(&self, rows: Range<u32>) -> Self {
+        let (first, end) = (rows.start + self.above, rows.end + self.above);
+        Self {
+            size: Size::new(self.size.width, rows.end - rows.start),
+            range: self.range,
+            cells: self.cells.cut(first / SIDE..end.div_ceil(SIDE)),
+            above: first % SIDE,
+        }
     }
 
     /// The cell of a pixel.
     pub fn at(&self, x: u32, y: u32) -> CellRange {
-        self.cells.get(x / SIDE, y / SIDE)
+        self.cells.get(x / SIDE, (y + self.above) / SIDE)
     }
 
-    /// Words of a row of pixels in row `row` of the cells.
-    pub fn row_words(&self, row: u32) -> u64 {
+    /// Words of row `y` of the pixels.
+    pub fn row_words(&self, y: u32) -> u64 {
         let width = |column: u32| SIDE.min(self.size.width - SIDE * column);
-        (0..).zip(self.cells.row(row)).map(|(column, cell)| u64::from(cell.words * width(column))).sum()
+        (0..)
+            .zip(self.cells.row((y + self.above) / SIDE))
+            .map(|(column, cell)| u64::from(cell.words * width(column)))
+            .sum()
     }
 
     /// Pixel-disparities of all cells, as a share of those of the whole range, 0 to 1 and a little more.
     pub fn share(&self) -> f64 {
-        let rows = |row: u32| u64::from(SIDE.min(self.size.height - SIDE * row));
-        let words: u64 = (0..self.cells.height()).map(|row| rows(row) * self.row_words(row)).sum();
+        let words: u64 = (0..self.size.height).map(|y| self.row_words(y)).sum();
         4.0 * words as f64 / self.size.pixels() as f64 / f64::from(self.range.count)
     }
 }
@@ -209,7 +226,25 @@ mod tests {
         let expected = [(18 + 4, 43 + 4), (18 + 4, 43 + 4), (38 + 4, 43 + 4), (38 + 4, 43 + 4), (38 + 4, 43 + 4)];
         assert_eq!(table.cells.data(), expected.map(|(low, high)| CellRange::around(low, high, 100)));
         assert_eq!(table.row_words(0), 2 * 32 * 8 + 2 * 32 * 4 + 12 * 4);
+        assert_eq!(table.share(), table.row_words(0) as f64 * 4.0 / 140.0 / 100.0);
         let blind = CellTable::below(&map.map(|_| NONE), Size::new(140, 20), range);
         assert_eq!(blind, CellTable::whole(Size::new(140, 20), range));
+    }
+
+    #[test]
+    fn rows_are_cut_out_of_cells() {
+        let whole = CellTable::whole(Size::new(40, 100), DisparityRange::new(0, 64).unwrap());
+        let cells = Plane::from_fn(whole.cells.size(), |x, y| CellRange { first: x + 2 * y, words: 4 });
+        let table = CellTable { cells, ..whole };
+        for rows in [0..100, 5..6, 31..33, 64..100, 96..97] {
+            // Also of what was cut already.
+            let (once, twice) = (table.cut(rows.clone()), table.cut(3.min(rows.start)..100));
+            assert_eq!(once, twice.cut(rows.start - 3.min(rows.start)..rows.end - 3.min(rows.start)));
+            assert_eq!(once.cells.height(), (rows.end - 1) / 32 - rows.start / 32 + 1, "{rows:?}");
+            for (y, row) in (0..).zip(rows) {
+                assert_eq!([0, 39].map(|x| once.at(x, y)), [0, 39].map(|x| table.at(x, row)));
+                assert_eq!(once.row_words(y), table.row_words(row));
+            }
+        }
     }
 }

@@ -39,7 +39,7 @@ fn a_cell_has_its_part_of_the_whole_costs() {
     let range = DisparityRange::new(-5, 48).unwrap();
     let whole = CostTrial { views: views.clone(), view: View::Left, cost: COST, range, rows: 0..3 };
     let ranges = [CellRange { first: 2, words: 4 }, CellRange { first: 0, words: 8 }];
-    let table = CellTable { size, range, cells: Plane::new((2, 1), ranges.to_vec()).unwrap() };
+    let table = CellTable { size, range, cells: Plane::new((2, 1), ranges.to_vec()).unwrap(), above: 0 };
     let of_cells = CellCostTrial { views, view: View::Left, cost: COST, table, band_rows: 3 };
     let (all, part) = (values(&whole), values(&of_cells));
     // 48 values per pixel; the first cell has 32 pixels with numbers 8 to 23, the second 8 with 0 to 31.

@@ -59,7 +59,7 @@ fn a_border_of_cells_by_hand() {
     let ranges = [CellRange { first: 0, words: 4 }, CellRange { first: 1, words: 4 }];
     let size = Size::new(33, 1);
     let range = DisparityRange::new(0, 20).unwrap();
-    let table = CellTable { size, range, cells: Plane::new((2, 1), ranges.to_vec()).unwrap() };
+    let table = CellTable { size, range, cells: Plane::new((2, 1), ranges.to_vec()).unwrap(), above: 0 };
     let mut values = vec![10_u8; 32 * 16];
     values[31 * 16 + 15] = 5;
     values.extend([1; 16]);

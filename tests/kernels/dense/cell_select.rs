@@ -32,7 +32,7 @@ fn the_twin_selects_the_same() {
 fn selected(first: u32, costs: [u8; 16]) -> (i32, u32, u32) {
     let range = DisparityRange::new(-2, 40).unwrap();
     let cells = Plane::filled((1, 1), CellRange { first: first / 4, words: 4 });
-    let table = CellTable { size: Size::new(1, 1), range, cells };
+    let table = CellTable { size: Size::new(1, 1), range, cells, above: 0 };
     let paths = vec![CellVolume { table: table.clone(), values: costs.to_vec() }; 2];
     let found = leaves(&CellSelectTrial { paths, interpolation: Interpolation::Parabola, uniqueness: 0 });
     match &found[..] {
