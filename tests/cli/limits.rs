@@ -173,7 +173,7 @@ fn little_memory_gives_the_same_map() {
     succeeded(&installed.matching("free", &arguments).output().unwrap());
     let mut command = installed.matching("little", &arguments);
     command.env("RAYON_NUM_THREADS", "1");
-    succeeded(&limited(command, libc::RLIMIT_AS, 160 << 20).output().unwrap());
+    succeeded(&limited(command, libc::RLIMIT_AS, 176 << 20).output().unwrap());
     let map = |name: &str| fs::read(installed.path(name).join("disparity.pfm")).unwrap();
     assert_eq!(map("little"), map("free"));
     assert_eq!(report(&installed.path("little"))["device"]["backend"], "none");
