@@ -17,7 +17,9 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{Dispatch, Gpu, Readback, check_limits, guarded, refused, storage_buffer, try_recording, warm_up},
+    gpu::{
+        Dispatch, Gpu, Readback, check_limits, guarded, record_run, refused, storage_buffer, try_recording, warm_up,
+    },
     image::{Luma, Size},
     luma::{check_packed, check_size, upload},
 };
@@ -172,7 +174,7 @@ impl Detector {
         self.assert_own(input);
         encoder.clear_buffer(self.list.count(), 0, None);
         input.dispatch.record(encoder);
-        self.finding.iter().chain(&self.describing).for_each(|dispatch| dispatch.record(encoder));
+        record_run(encoder, self.finding.iter().chain(&self.describing), None);
     }
 
     /// Compiles what [`Self::record`] would compile when the device first runs it, and waits for that: see
@@ -275,7 +277,7 @@ impl Detector {
             strongest(&ranked, self.size, room as usize).into_iter().map(|index| keypoints[index]).collect();
         gpu.queue.write_buffer(self.list.count(), 0, bytemuck::bytes_of(&room));
         gpu.queue.write_buffer(self.list.keypoints(), 0, bytemuck::cast_slice(&kept));
-        submit(gpu, |encoder| self.describing.iter().for_each(|dispatch| dispatch.record(encoder))).await
+        submit(gpu, |encoder| record_run(encoder, &self.describing, None)).await
     }
 
     /// Copies the first `keypoint_count` keypoints of the list and their descriptors to the host.

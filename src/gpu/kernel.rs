@@ -99,23 +99,9 @@ impl Dispatch {
 
     /// Records the dispatch, in a compute pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.record_timed(encoder, None);
+        record_run(encoder, [self], None);
     }
 
-    /// Records the dispatch, with timestamps at the beginning and the end of its pass.
-    pub(crate) fn record_timed(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
-    ) {
-        let label = Some(self.name());
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-        self.bind_to(&mut pass);
-        match &self.groups {
-            Groups::Known([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
-            Groups::Indirect(groups) => pass.dispatch_workgroups_indirect(groups, 0),
-        }
-    }
     /// Records the dispatch without any workgroup: drivers compile the kernel, and nothing runs.
     pub(super) fn record_empty(&self, encoder: &mut wgpu::CommandEncoder) {
         let descriptor = wgpu::ComputePassDescriptor { label: Some(self.name()), timestamp_writes: None };
@@ -127,5 +113,22 @@ impl Dispatch {
     fn bind_to(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(self.kernel.pipeline.compiled(&self.kernel.gpu));
         pass.set_bind_group(0, &self.bind_group, &[]);
+    }
+}
+
+/// Records `dispatches` one after the other in one compute pass, with timestamps at its beginning and its end. Each sees what
+/// those before it have written.
+pub(crate) fn record_run<'d>(
+    encoder: &mut wgpu::CommandEncoder,
+    dispatches: impl IntoIterator<Item = &'d Dispatch>,
+    timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("hsad"), timestamp_writes });
+    for dispatch in dispatches {
+        dispatch.bind_to(&mut pass);
+        match &dispatch.groups {
+            Groups::Known([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+            Groups::Indirect(groups) => pass.dispatch_workgroups_indirect(groups, 0),
+        }
     }
 }

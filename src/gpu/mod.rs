@@ -40,7 +40,7 @@ pub(crate) use buffers::{buffer_limit, buffer_of, storage_buffer, store, uniform
 pub use device::{DeviceChoice, list_adapters};
 pub(crate) use guard::{guarded, try_recording};
 pub use handle::Gpu;
-pub(crate) use kernel::{Bindable, Dispatch, Kernel};
+pub(crate) use kernel::{Bindable, Dispatch, Kernel, record_run};
 pub(crate) use limits::{BUFFER_LIMITS, check_limits};
 pub use limits::{Limit, REQUIRED_LIMITS};
 #[cfg(all(feature = "files", not(target_arch = "wasm32")))]

@@ -21,7 +21,10 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Dispatch, Gpu, Readback, Stopwatch, WordTexture, guarded, in_rows, storage_buffer, store, uniform_buffer},
+    gpu::{
+        Dispatch, Gpu, Readback, Stopwatch, WordTexture, guarded, in_rows, record_run, storage_buffer, store,
+        uniform_buffer,
+    },
     image::Size,
 };
 
@@ -47,6 +50,12 @@ pub(super) enum Step {
     Clear(wgpu::Buffer),
     /// The end of a part that can be submitted by itself.
     Checkpoint,
+}
+
+impl Step {
+    fn dispatch(&self) -> Option<&Dispatch> {
+        if let Self::Run(dispatch) = self { Some(dispatch) } else { None }
+    }
 }
 
 /// The disparities and confidences of a whole view, laid out as the caller gets them. The buffers are only copied,
@@ -179,10 +188,7 @@ impl Plan {
 
     /// The dispatches, in order.
     pub(super) fn dispatches(&self) -> impl Iterator<Item = &Dispatch> {
-        self.steps.iter().filter_map(|step| match step {
-            Step::Run(dispatch) => Some(dispatch),
-            _ => None,
-        })
+        self.steps.iter().filter_map(Step::dispatch)
     }
 
     /// Records all steps, and the timestamps of the kernels if there is a `stopwatch`.
@@ -218,10 +224,14 @@ impl Plan {
         stopwatch: Option<&Stopwatch>,
     ) {
         let (mut kernel, mut output) = (0, 0);
-        for step in steps {
-            match step {
-                Step::Run(dispatch) => {
-                    dispatch.record_timed(encoder, stopwatch.and_then(|stopwatch| stopwatch.writes(kernel)));
+        // A run of dispatches is one pass, unless each is timed.
+        let is_run =
+            |one: &Step, next: &Step| matches!((one, next), (Step::Run(_), Step::Run(_))) && stopwatch.is_none();
+        for run in steps.chunk_by(is_run) {
+            match &run[0] {
+                Step::Run(_) => {
+                    let dispatches = run.iter().filter_map(Step::dispatch);
+                    record_run(encoder, dispatches, stopwatch.and_then(|stopwatch| stopwatch.writes(kernel)));
                     kernel += 1;
                 }
                 Step::ToTexture(buffer, texture) => texture.record(encoder, buffer),
