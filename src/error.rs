@@ -103,6 +103,13 @@ pub enum Error {
         diagnosis: String,
     },
 
+    /// No warp brings the rows of the views to correspond.
+    #[error("the pair cannot be rectified: {reason}")]
+    NotRectifiable {
+        /// How the cameras stand or what the views show, and what to do about it.
+        reason: String,
+    },
+
     /// No disparity range: too few matches, or a range below [`crate::Config::least`].
     #[error("the disparity range could not be found: {reason}; name the range to search")]
     NoRange {

@@ -140,6 +140,24 @@ impl<'b> Pair<'b> {
         Ok(Self { backend: self.backend, left: self.left.clone(), right, pictures, device })
     }
 
+    /// The pair with `source` resampled by `map`, without colours, in place of its right view; the left view stays. The same bytes on
+    /// every backend.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub(crate) async fn with_right_from(mut self, source: &Luma, map: &WarpMap) -> Result<Self> {
+        debug_assert_eq!((map.size(), map.source_size()), (self.size(), source.size()));
+        match &mut self.device {
+            None => self.right = cpu::rectify::warp(source, map),
+            Some(OnDevice { gpu, luma: [_, right], colours: [_, colours] }) => {
+                (*right, self.right) = warp(gpu, &upload(gpu, source).await?, map).await?;
+                *colours = None;
+            }
+        }
+        self.pictures[1] = None;
+        Ok(self)
+    }
+
     /// Width and height of both views, in pixels.
     pub fn size(&self) -> Size {
         self.left.size()

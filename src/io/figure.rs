@@ -55,6 +55,21 @@ pub fn matches(left: &Picture, right: &Picture, pairs: &[PointPair]) -> Plane<[u
     canvas.0
 }
 
+/// Draws both pictures of a rectified pair in grey, side by side, with the epipolar line of each pair of points: the row of the
+/// left point, through both pictures, and a circle around each point.
+pub fn epipolar_lines(left: &Picture, right: &Picture, pairs: &[PointPair]) -> Plane<[u8; 3]> {
+    let start = left.width() + GAP;
+    let mut canvas = Canvas(side_by_side(&[&grey(left), &grey(right)]));
+    let end = canvas.0.width() as f32 - 1.0;
+    for (index, &(from, to)) in (0..).zip(pairs) {
+        let color = distinct(index);
+        canvas.line([0.0, from[1]], [end, from[1]], color);
+        canvas.circle(from, MATCH_RADIUS, color);
+        canvas.circle([to[0] + start as f32, to[1]], MATCH_RADIUS, color);
+    }
+    canvas.0
+}
+
 fn grey(picture: &Picture) -> Plane<[u8; 3]> {
     picture.luma().map(|&grey| [grey; 3])
 }
@@ -247,6 +262,17 @@ mod tests {
         assert_eq!((figure.get(0, 0), figure.get(0, 13), figure.get(39, 13)), ([50; 3], [0; 3], [90; 3]));
         assert!((5..=34).all(|x| figure.get(x, 5) == distinct(0)));
         assert_ne!(figure.get(37, 5), [90; 3], "on the circle around the right point");
+    }
+
+    #[test]
+    fn an_epipolar_line_runs_through_both_pictures() {
+        let picture = Picture::filled((20, 30), [50, 50, 50, 255]);
+        let figure = epipolar_lines(&picture, &picture, &[([15.0, 8.0], [3.0, 20.0])]);
+        assert_eq!(figure.size(), (20 + GAP + 20, 30));
+        assert!((0..48).all(|x| figure.get(x, 8) == distinct(0)));
+        let right = 20 + GAP + 3;
+        assert_eq!(figure.get(right + 3, 20), distinct(0), "on the circle around the right point");
+        assert_eq!(figure.get(right, 20), [50; 3]);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use std::io::{self, Write};
 
 use super::{Calibration, Picture};
 use crate::{
-    error::{Error, Result},
-    image::Plane,
+    error::{Result, check},
+    image::{Plane, Size},
 };
 
 /// A coloured point.
@@ -24,15 +24,9 @@ pub struct Point {
 /// left out.
 ///
 /// # Errors
-/// [`Error::Parameter`] if depth map and picture differ in size.
+/// [`crate::Error::Parameter`] if depth map and picture differ in size.
 pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
-    if depth.size() != picture.size() {
-        return Err(Error::Parameter {
-            name: "the depth map",
-            value: format!("{}x{}", depth.width(), depth.height()),
-            expected: format!("its picture is {}x{}: both need one size", picture.width(), picture.height()),
-        });
-    }
+    check_size("the depth map", depth.size(), picture)?;
     let Calibration { focal, cx, cy, .. } = *calibration;
     let mut points = Vec::new();
     for y in 0..depth.height() {
@@ -45,6 +39,21 @@ pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) 
         }
     }
     Ok(points)
+}
+
+/// The points of a picture's pixels, in metres, in raster order. Points that are not finite are left out.
+///
+/// # Errors
+/// [`crate::Error::Parameter`] if points and picture differ in size.
+pub fn colored(positions: &Plane<[f32; 3]>, picture: &Picture) -> Result<Vec<Point>> {
+    check_size("the points", positions.size(), picture)?;
+    let pixels = positions.data().iter().zip(picture.data());
+    let finite = pixels.filter(|(position, _)| position.iter().all(|coordinate| coordinate.is_finite()));
+    Ok(finite.map(|(&position, &[red, green, blue, _])| Point { position, color: [red, green, blue] }).collect())
+}
+
+fn check_size(name: &'static str, size: Size, picture: &Picture) -> Result<()> {
+    check(size == picture.size(), name, size, format!("its picture is {}: both need one size", picture.size()))
 }
 
 /// Writes `points` as a binary little-endian PLY.
@@ -87,6 +96,14 @@ mod tests {
                 Point { position: [0.0, 0.125, 2.0], color: [0, 1, 7] },
             ]
         );
+    }
+
+    #[test]
+    fn points_that_are_none_are_left_out() {
+        let positions = Plane::new((2, 1), vec![[f32::NAN; 3], [1.0, 2.0, 3.0]]).unwrap();
+        let picture = Picture::from_fn((2, 1), |x, _| [x as u8, 5, 6, 0]);
+        let expected = [Point { position: [1.0, 2.0, 3.0], color: [1, 5, 6] }];
+        assert_eq!(colored(&positions, &picture).unwrap(), expected);
     }
 
     #[test]

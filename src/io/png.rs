@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use ::image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
 
+use super::Picture;
 use crate::image::{Luma, Plane, Size};
 
 /// Writes an 8-bit RGB PNG.
@@ -12,6 +13,14 @@ use crate::image::{Luma, Plane, Size};
 /// The errors of `out`.
 pub fn write_rgb8(out: &mut impl Write, picture: &Plane<[u8; 3]>) -> io::Result<()> {
     encode(out, picture.data().as_flattened(), picture.size(), ExtendedColorType::Rgb8)
+}
+
+/// Writes an 8-bit RGB PNG with alpha.
+///
+/// # Errors
+/// The errors of `out`.
+pub fn write_rgba8(out: &mut impl Write, picture: &Picture) -> io::Result<()> {
+    encode(out, picture.rgba(), picture.size(), ExtendedColorType::Rgba8)
 }
 
 /// Writes an 8-bit grey PNG.

@@ -1,11 +1,21 @@
 //! The pipeline from two pictures to a disparity map.
 
+mod back;
+mod metric;
 mod range;
+mod rectified;
+mod reduction;
 mod search;
+mod taken;
 mod trust;
 mod views;
 
+pub use back::WayBack;
 pub use range::RangeSource;
+pub use rectified::{RectifiedPair, rectify_async, rectify_by_async};
+#[cfg(not(target_arch = "wasm32"))]
+pub use rectified::{rectify, rectify_by};
+pub use reduction::reduction;
 pub use trust::TRUSTED;
 
 use web_time::{Duration, Instant};
@@ -33,9 +43,6 @@ use crate::{
 
 /// Largest row difference that is matched without alignment, in pixels.
 const LARGEST_AS_IS: f32 = 1.5;
-/// Largest number of pixels of a picture in which interest points are detected; larger pictures are downscaled first.
-const MAX_SPARSE_PIXELS: u64 = 1 << 21;
-
 /// A step of the pipeline, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
@@ -124,6 +131,38 @@ pub async fn run_with_progress(
     backend: &Backend,
     (left, right): (&Picture, &Picture),
     config: &Config,
+    begin: impl FnMut(Step),
+    progress: impl FnMut(f32),
+) -> Result<Outcome> {
+    run_on(backend, Given { pictures: [left, right], rectified: None }, config, begin, progress).await
+}
+
+/// [`run_with_progress`] on a rectified pair. Where its rows are still slightly off, the right view is resampled from the view as it
+/// was taken, and not a second time.
+///
+/// # Errors
+/// See [`run`].
+pub async fn run_rectified(
+    backend: &Backend,
+    pair: &RectifiedPair,
+    config: &Config,
+    begin: impl FnMut(Step),
+    progress: impl FnMut(f32),
+) -> Result<Outcome> {
+    let pictures = pair.pictures.each_ref();
+    run_on(backend, Given { pictures, rectified: Some(pair) }, config, begin, progress).await
+}
+
+/// What is matched: two pictures, those of a rectified pair or others.
+struct Given<'a> {
+    pictures: [&'a Picture; 2],
+    rectified: Option<&'a RectifiedPair>,
+}
+
+async fn run_on(
+    backend: &Backend,
+    given: Given<'_>,
+    config: &Config,
     mut begin: impl FnMut(Step),
     progress: impl FnMut(f32),
 ) -> Result<Outcome> {
@@ -137,9 +176,13 @@ pub async fn run_with_progress(
     };
 
     config.validate()?;
+    let [left, right] = given.pictures;
     check_window(left.size(), config)?;
     enter(Some(Step::Luma));
-    let views = Views::new(backend, left, right, config).await?;
+    let views = match given.rectified {
+        Some(pair) => Views::of_rectified(backend, pair, config).await?,
+        None => Views::new(backend, [left, right], config).await?,
+    };
     let size = views.size();
 
     enter(Some(Step::Features));
@@ -157,11 +200,7 @@ pub async fn run_with_progress(
     if !config.force && (rows.rows_differ() || !config.align && rows.largest > LARGEST_AS_IS) {
         return Err(Error::NotRectified { diagnosis: rows.to_string() });
     }
-    let map = rows.rows.warp(size)?;
-    let views = match &map {
-        Some(map) => views.aligned(map).await?,
-        None => views,
-    };
+    let views = views.aligned(&rows.rows).await?;
     let seeding = {
         let [left, right] = views.reduced(factor);
         let [seen, _] = views.masks(factor);
@@ -177,7 +216,7 @@ pub async fn run_with_progress(
 
     enter(Some(Step::Dense));
     let views = views.drowned().await?;
-    let search = Search { views: &views, pictures: [left, right], map: map.as_ref(), config, brightness };
+    let search = Search { views: &views, pictures: given.pictures, config, brightness };
     let Found { range, dense, at_ends } = search.widening(range, range_source, progress).await?;
     let dense = without_ends(dense, range, range_source.ends_at_zero());
     let trust = trust(&dense, config, &seeding);
@@ -225,13 +264,6 @@ async fn matched(
     Ok((detected, matches))
 }
 
-/// The integer factor by which a pair is downscaled before interest points are detected. A few thousand points determine
-/// range, rectification and brightness, and the time to match points grows with the square of their number.
-pub fn reduction(size: impl Into<Size>) -> u32 {
-    let pixels = size.into().pixels();
-    (1..).find(|&factor| pixels <= MAX_SPARSE_PIXELS * u64::from(factor).pow(2)).unwrap_or(1)
-}
-
 fn check_window(size: Size, config: &Config) -> Result<()> {
     if size.width.min(size.height) >= config.smallest_side() {
         return Ok(());
@@ -241,18 +273,4 @@ fn check_window(size: Size, config: &Config) -> Result<()> {
         what: format!("a window of {0}x{0}", config.smallest_side()),
         way_out: "use a larger picture or a smaller window".into(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn large_pictures_are_reduced() {
-        assert_eq!(reduction((1, 1)), 1);
-        assert_eq!(reduction((2048, 1024)), 1);
-        assert_eq!(reduction((2048, 1025)), 2);
-        // 24 megapixels in blocks of 16 are 1.5.
-        assert_eq!(reduction((6000, 4000)), 4);
-    }
 }

@@ -11,7 +11,6 @@ use crate::{
     error::Result,
     io::Picture,
     kamencay::KamencayConfig,
-    rectify::WarpMap,
 };
 
 /// Largest number of searches, each over a wider range than the one before.
@@ -22,8 +21,6 @@ pub(super) struct Search<'a, 'b> {
     pub views: &'a Views<'b>,
     /// The pictures as given: their colours guide the filling of holes, and Kamencay's method takes them.
     pub pictures: [&'a Picture; 2],
-    /// The map that resampled the right view, if one did.
-    pub map: Option<&'a WarpMap>,
     pub config: &'a Config,
     pub brightness: Brightness,
 }
@@ -69,7 +66,7 @@ impl Search<'_, '_> {
             Method::Kamencay(parameters) => {
                 let task = config.kamencay(parameters, range, brightness);
                 let range = task.searched(width)?;
-                let [left, right] = views.pictures(self.pictures, self.map);
+                let [left, right] = views.pictures(self.pictures);
                 let backend = views.pair.backend();
                 (range, backend.kamencay(&left, &right, &KamencayConfig { range, ..task }).await?)
             }

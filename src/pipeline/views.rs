@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::rectified::RectifiedPair;
 use crate::{
     backend::Backend,
     config::{Config, Method},
@@ -14,37 +15,54 @@ use crate::{
     mask::{self, Mask},
     mosaic::demosaicked,
     pair::Pair,
-    rectify::WarpMap,
+    rectify::{RowModel, WarpMap},
 };
 
 /// A pair, with what was found about its left and its right view.
 pub(super) struct Views<'b> {
     pub pair: Pair<'b>,
     pub masks: [Option<Mask>; 2],
-    /// Whether the right view was resampled.
-    is_resampled: bool,
     /// Pixels of the resampled right view that lie in the right view as given, if any do not.
     within: Option<Mask>,
     /// Whether the view was a raw mosaic, which the luma of its colours replaced.
     pub mosaics: [bool; 2],
+    /// The rectified pair whose pictures the views are, if they are.
+    rectified: Option<&'b RectifiedPair>,
+    /// The map that resampled the right view, from the picture as given or, of a rectified pair, as it was taken.
+    map: Option<WarpMap>,
+}
+
+/// The pair of two pictures, with the colours that `config` fills holes by.
+async fn with_colours<'b>(backend: &'b Backend, pictures: [&Picture; 2], config: &Config) -> Result<Pair<'b>> {
+    let fills = matches!(&config.method, Method::Hsad(parameters) if parameters.fills());
+    Pair::with_colours(backend, pictures, View::ALL.map(|view| fills && view == config.reference)).await
 }
 
 impl<'b> Views<'b> {
+    /// The views of a rectified pair, of which only alpha tells what is seen: the scene goes on up to there.
+    pub async fn of_rectified(backend: &'b Backend, pair: &'b RectifiedPair, config: &Config) -> Result<Self> {
+        let views = with_colours(backend, pair.pictures.each_ref(), config).await?;
+        let masks = pair.masks().map(|mask| Some(mask).filter(|mask| mask.data().contains(&0)));
+        Ok(Self { rectified: Some(pair), ..Self::extended(views, masks, [false; 2]).await? })
+    }
+
     /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours, for matching by `config`.
-    pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture, config: &Config) -> Result<Self> {
-        let fills = matches!(&config.method, Method::Hsad(parameters) if parameters.fills());
-        let coloured = View::ALL.map(|view| fills && view == config.reference);
-        let pair = Pair::with_colours(backend, [left, right], coloured).await?;
+    pub async fn new(backend: &'b Backend, [left, right]: [&Picture; 2], config: &Config) -> Result<Self> {
+        let pair = with_colours(backend, [left, right], config).await?;
         let views = pair.views();
         // Before demosaicking, which mixes the edge of a border with the scene.
         let masks = [mask::mask_of(left, views.0), mask::mask_of(right, views.1)];
         let lumas = [demosaicked(left, views.0), demosaicked(right, views.1)];
         let mosaics = lumas.each_ref().map(Option::is_some);
-        let pair = pair.with_views(lumas).await?;
+        Self::extended(pair.with_views(lumas).await?, masks, mosaics).await
+    }
+
+    async fn extended(pair: Pair<'b>, masks: [Option<Mask>; 2], mosaics: [bool; 2]) -> Result<Self> {
         let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
-        Ok(Self { pair: pair.with_views(extended).await?, masks, is_resampled: false, within: None, mosaics })
+        let pair = pair.with_views(extended).await?;
+        Ok(Self { pair, masks, within: None, mosaics, rectified: None, map: None })
     }
 
     /// The interest points of both views downscaled by `factor`, in pixels of the downscaled views.
@@ -75,33 +93,48 @@ impl<'b> Views<'b> {
         })
     }
 
-    /// The views with the right one resampled by `map`.
-    pub async fn aligned(self, map: &WarpMap) -> Result<Self> {
-        let pair = self.pair.with_right_warped(map).await?;
+    /// The views with the rows of the right one brought to the left ones, which `rows` says. The right view of a rectified pair is
+    /// resampled once, from the view as it was taken.
+    pub async fn aligned(self, rows: &RowModel) -> Result<Self> {
+        let Some(map) = rows.warp(self.pair.size())? else { return Ok(self) };
         let [left, right] = self.masks;
+        if let Some(RectifiedPair { rectification, right: taken, .. }) = self.rectified {
+            let map = rectification.right_map_along(rows)?;
+            let visible = taken.visible(&map)?;
+            let right = Some(visible).filter(|mask| mask.data().contains(&0));
+            let pair = self.pair.with_right_from(&taken.seen.luma, &map).await?;
+            return Ok(Self { pair, masks: [left, right], map: Some(map), ..self });
+        }
+        let pair = self.pair.with_right_warped(&map).await?;
         let right = right.map(|mask| map.visible_through(&mask)).transpose()?;
         let within = Some(map.visible()).filter(|mask| mask.data().contains(&0));
-        Ok(Self { pair, masks: [left, right], is_resampled: true, within, ..self })
+        Ok(Self { pair, masks: [left, right], within, map: Some(map), ..self })
     }
 
-    /// The views ready for dense matching: unseen pixels correspond to nothing.
+    /// The views ready for dense matching: unseen pixels correspond to nothing. Those of a rectified pair lie beyond its edges, where
+    /// the views go on as any view does beyond its edge; noise there would cost the pixels beside it their disparities.
     pub async fn drowned(self) -> Result<Self> {
+        if self.rectified.is_some() {
+            return Ok(self);
+        }
         let (left, right) = self.pair.views();
         let shown = [(left, &self.masks[0], 0), (right, &self.masks[1], 1)];
         let drowned = shown.map(|(view, mask, seed)| mask.as_ref().map(|mask| mask::drowned(view, mask, seed)));
         Ok(Self { pair: self.pair.with_views(drowned).await?, ..self })
     }
 
-    /// The pictures of the views in colour, the right one resampled by `map`; grey for mosaics.
-    pub fn pictures<'p>(&self, [left, right]: [&'p Picture; 2], map: Option<&WarpMap>) -> [Cow<'p, Picture>; 2] {
+    /// The pictures of the views in colour, the right one with its rows aligned; grey for mosaics. `left` and `right` are the pictures
+    /// as given.
+    pub fn pictures<'p>(&self, [left, right]: [&'p Picture; 2]) -> [Cow<'p, Picture>; 2] {
         let grey = |luma: &Luma| Cow::Owned(cpu::luma::rgba(luma));
         let views = self.pair.views();
         [
             if self.mosaics[0] { grey(views.0) } else { Cow::Borrowed(left) },
-            match map {
+            match (&self.map, self.rectified) {
                 _ if self.mosaics[1] => grey(views.1),
-                Some(map) => Cow::Owned(cpu::rectify::warp_picture(right, map)),
-                None => Cow::Borrowed(right),
+                (Some(map), Some(pair)) => Cow::Owned(cpu::rectify::warp_picture(&pair.right.picture, map)),
+                (Some(map), None) => Cow::Owned(cpu::rectify::warp_picture(right, map)),
+                (None, _) => Cow::Borrowed(right),
             },
         ]
     }
@@ -117,7 +150,7 @@ impl<'b> Views<'b> {
         config: &DenseConfig,
         progress: impl FnMut(f32),
     ) -> Result<Dense> {
-        let masked = self.masks.iter().any(Option::is_some);
+        let masked = self.kept_out(config.reference).iter().any(Option::is_some);
         let Some(refinement) = config.parameters.refinement.filter(|_| masked) else {
             return self.pair.dense_with_progress(config, progress).await;
         };
@@ -135,14 +168,14 @@ impl<'b> Views<'b> {
         match reference {
             View::Left if !self.mosaics[0] => Cow::Borrowed(left),
             View::Left => Cow::Owned(cpu::luma::rgba(left_luma)),
-            View::Right if !self.mosaics[1] && !self.is_resampled => Cow::Borrowed(right),
+            View::Right if !self.mosaics[1] && self.map.is_none() => Cow::Borrowed(right),
             View::Right => Cow::Owned(cpu::luma::rgba(right_luma)),
         }
     }
 
     /// A map of the `reference` view without what the views do not show.
     pub fn seen(&self, dense: Dense, reference: View) -> Dense {
-        let [own, other] = self.own_and_other(reference);
+        let [own, other] = self.kept_out(reference);
         mask::without_unseen(dense, reference, own, other)
     }
 
@@ -156,6 +189,13 @@ impl<'b> Views<'b> {
             .into_iter()
             .flatten()
             .fold(dense, |dense, mask| mask::unconfirmed_beyond(dense, reference, mask))
+    }
+
+    /// The masks of what takes no part in the refinement: of the `reference` view and of the other one, which in a rectified pair goes on
+    /// beyond its edges.
+    fn kept_out(&self, reference: View) -> [Option<&Mask>; 2] {
+        let [own, other] = self.own_and_other(reference);
+        [own, other.filter(|_| self.rectified.is_none())]
     }
 
     /// The masks of the `reference` view and of the other one.

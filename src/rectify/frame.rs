@@ -12,9 +12,11 @@ use crate::image::Size;
 pub(crate) const AGREEMENT: f64 = 1.5;
 
 /// Corresponding points of both views, in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Correspondence {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correspondence {
+    /// Left point.
     pub left: DVec2,
+    /// Right point.
     pub right: DVec2,
 }
 

@@ -18,6 +18,9 @@ const LEAST_SPACING_BITS: u32 = 1;
 /// Largest number of nodes, 64 MiB, for which a smaller distance is chosen: half of what every device binds.
 const MAX_NODES: u64 = 1 << 23;
 
+/// Largest deviation of a rectifying map from the rectification, in pixels.
+pub(super) const TOLERANCE: f64 = 1.0 / 32.0;
+
 /// Coordinates of a node without a position.
 pub(crate) const NONE: i32 = i32::MIN;
 
@@ -170,16 +173,34 @@ impl WarpMap {
     /// # Errors
     /// [`crate::Error::Parameter`] unless `source_mask` has the size of the source.
     pub fn visible_through(&self, source_mask: &Plane<u8>) -> Result<Plane<u8>> {
+        self.check_mask(source_mask)?;
+        let is_valid =
+            |position: IVec2| taps(position.x).all(|x| taps(position.y).all(|y| source_mask.get_clamped(x, y) != 0));
+        Ok(Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
+    }
+
+    /// [`Self::visible`], and 0 also where the nearest pixel of the source is 0 in `source_mask`: for a source that is continued
+    /// beyond the mask.
+    ///
+    /// # Errors
+    /// As [`Self::visible_through`].
+    pub fn visible_nearest(&self, source_mask: &Plane<u8>) -> Result<Plane<u8>> {
+        self.check_mask(source_mask)?;
+        let is_valid = |position: IVec2| {
+            let [x, y] = position.to_array().map(|coordinate| i64::from((coordinate + ONE / 2) >> SUBPIXEL_BITS));
+            source_mask.get_clamped(x, y) != 0
+        };
+        Ok(Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
+    }
+
+    fn check_mask(&self, source_mask: &Plane<u8>) -> Result<()> {
         let (mask_size, size) = (source_mask.size(), self.source_size);
         check(
             mask_size == size,
             "the mask",
             format_args!("{mask_size} pixels"),
             format!("it must have the source's {size}"),
-        )?;
-        let is_valid =
-            |position: IVec2| taps(position.x).all(|x| taps(position.y).all(|y| source_mask.get_clamped(x, y) != 0));
-        Ok(Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
+        )
     }
 
     /// The position that a pixel shows, if that lies inside the source.
@@ -314,6 +335,8 @@ mod tests {
         assert_eq!(through(0.25), except(&[2, 3, 4, 5]));
         // At x + 1/2048: the outer weights round to 0.
         assert_eq!(through(1.0 / 2048.0), except(&[3, 4]));
+        let nearest = |by: f64| shift((9, 1), DVec2::new(by, 0.0)).visible_nearest(&mask).unwrap().into_data();
+        assert_eq!((nearest(0.25), nearest(-0.5), nearest(0.5)), (except(&[4]), except(&[4]), except(&[3, 8])));
         let error = shift((9, 1), DVec2::ZERO).visible_through(&Plane::filled((8, 1), 255)).unwrap_err();
         assert_eq!(error.to_string(), "the mask is 8x1 pixels, but it must have the source's 9x1");
     }

@@ -10,6 +10,7 @@
 mod agreement;
 mod align;
 mod detector_cache;
+mod points;
 
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
@@ -23,6 +24,7 @@ use crate::{
     matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
 };
 use detector_cache::DetectorCache;
+pub(crate) use points::{match_points, match_upright};
 
 /// Parameters of [`match_views`].
 #[derive(Clone, Debug, PartialEq)]

@@ -16,10 +16,10 @@ pub fn warp(source: &Luma, map: &WarpMap) -> Luma {
     Luma::from_fn(map.size(), |x, y| map.source_at(x, y).map_or(0, |position| interpolated(source, position)))
 }
 
-/// Resamples the red, green, blue and alpha of `source` as [`warp`] does.
+/// Resamples the red, green and blue of `source` as [`warp`] does; alpha is 255.
 pub fn warp_picture(source: &Picture, map: &WarpMap) -> Picture {
-    let [red, green, blue, alpha] = [0, 1, 2, 3].map(|channel| warp(&source.map(|pixel| pixel[channel]), map));
-    Picture::from_fn(map.size(), |x, y| [&red, &green, &blue, &alpha].map(|plane| plane.get(x, y)))
+    let [red, green, blue] = [0, 1, 2].map(|channel| warp(&source.map(|pixel| pixel[channel]), map));
+    Picture::from_fn(map.size(), |x, y| [red.get(x, y), green.get(x, y), blue.get(x, y), 255])
 }
 
 fn interpolated(source: &Luma, position: IVec2) -> u8 {

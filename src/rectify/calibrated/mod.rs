@@ -5,7 +5,7 @@ mod window;
 
 pub use view::RectifiedView;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use self::window::{Window, resolution};
 use super::WarpMap;
@@ -45,8 +45,8 @@ impl CalibratedRectification {
     /// - Both views have the same principal point: disparity is 0 at infinity.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if `sizes` are not those of the calibration, if a camera stands in front of the other, and if the
-    /// views have no direction in common.
+    /// [`Error::Parameter`] if `sizes` are not those of the calibration; [`Error::NotRectifiable`] if a camera stands in front of the
+    /// other, or if the views have no direction in common.
     pub fn new(stereo: &StereoCalibration, sizes: [Size; 2]) -> Result<Self> {
         stereo.check_sizes(sizes)?;
         let rotations = rotations(stereo)?;
@@ -114,6 +114,16 @@ impl CalibratedRectification {
         self.views[0].rotation().transpose() * point
     }
 
+    /// The point in the coordinates of a view's camera as it stood, in metres, that appears at a position of the rectified picture with
+    /// a disparity in pixels; 0 is the left view, 1 the right one. `None` at infinity and beyond.
+    pub fn point(&self, view: usize, position: DVec2, disparity: f64) -> Option<DVec3> {
+        let Calibration { focal, doffs, cx, cy, .. } = self.calibration;
+        let depth = self.calibration.depth(disparity)?;
+        let centre = DVec2::new(cx + if view == 0 { 0.0 } else { doffs }, cy);
+        let rectified = ((position - centre) / focal).extend(1.0) * depth;
+        Some(self.views[view].rotation().transpose() * rectified)
+    }
+
     /// OpenCV's projection matrices `P1` and `P2` of the rectified views, row by row; the last column of `P2` is in pixels times
     /// metres.
     pub fn projections(&self) -> [[f64; 12]; 2] {
@@ -139,8 +149,8 @@ fn rotations(stereo: &StereoCalibration) -> Result<[DMat3; 2]> {
     let least = LEAST_ANGLE.to_radians().cos();
     if axes.iter().any(|axis| axis.dot(x).abs() > least) {
         return Err(unfit(
-            "of cameras that stand one in front of the other",
-            "the baseline must lie across the view: depth from forward motion is not possible by rows",
+            "by the calibration one camera stands in front of the other: depth from forward motion is not possible by rows, the \
+             baseline must lie across the view",
         ));
     }
     let mean = axes[0] + axes[1];
@@ -151,13 +161,13 @@ fn rotations(stereo: &StereoCalibration) -> Result<[DMat3; 2]> {
 
 fn no_common_view() -> Error {
     unfit(
-        "of cameras without a common field of view",
-        "they must look the same way: check the rotation (from left to right) and the order of the cameras",
+        "by the calibration the cameras have no common field of view: check the rotation (from left to right) and the order of the \
+         cameras",
     )
 }
 
-fn unfit(value: &str, expected: &str) -> Error {
-    Error::Parameter { name: "the calibration", value: value.into(), expected: expected.into() }
+fn unfit(reason: &str) -> Error {
+    Error::NotRectifiable { reason: reason.into() }
 }
 
 #[cfg(test)]

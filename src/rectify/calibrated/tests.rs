@@ -148,10 +148,10 @@ fn a_rectified_pair_is_left_as_it_is() {
 fn what_no_turn_rectifies_is_refused() {
     let cameras = [camera(barrel()); 2];
     for (stereo, expected) in [
-        (pair(cameras, DMat3::IDENTITY, DVec3::new(0.01, 0.0, 0.3)), "one in front of the other"),
-        (pair(cameras, DMat3::IDENTITY, DVec3::new(0.01, 0.0, -0.3)), "one in front of the other"),
-        (pair(cameras, turned(0.0, std::f64::consts::PI, 0.0), DVec3::X), "without a common field of view"),
-        (pair(cameras, turned(0.0, -1.6, 0.0), DVec3::new(0.3, 0.0, 0.1)), "without a common field of view"),
+        (pair(cameras, DMat3::IDENTITY, DVec3::new(0.01, 0.0, 0.3)), "one camera stands in front of the other"),
+        (pair(cameras, DMat3::IDENTITY, DVec3::new(0.01, 0.0, -0.3)), "one camera stands in front of the other"),
+        (pair(cameras, turned(0.0, std::f64::consts::PI, 0.0), DVec3::X), "no common field of view"),
+        (pair(cameras, turned(0.0, -1.6, 0.0), DVec3::new(0.3, 0.0, 0.1)), "no common field of view"),
     ] {
         let error = CalibratedRectification::new(&stereo, [SIZE; 2]).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");

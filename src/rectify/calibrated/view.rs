@@ -2,10 +2,12 @@
 
 use glam::{DMat3, DVec2};
 
-use crate::{calibration::CameraModel, error::Result, image::Size, rectify::WarpMap};
-
-/// Largest deviation of a map from the cameras, in pixels.
-const TOLERANCE: f64 = 1.0 / 32.0;
+use crate::{
+    calibration::CameraModel,
+    error::Result,
+    image::Size,
+    rectify::map::{TOLERANCE, WarpMap},
+};
 
 /// A picture as it was taken, and as it is seen by a rectified camera.
 #[derive(Clone, Debug)]

@@ -1,0 +1,215 @@
+//! Rectification of a pair, by a calibration or from its own matches.
+
+use super::{
+    back::WayBack,
+    reduction::reduction,
+    taken::{Seen, TakenView},
+};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
+use crate::{
+    backend::Backend,
+    calibration::StereoCalibration,
+    cpu,
+    dense::View,
+    error::{Error, Result},
+    features::FeatureConfig,
+    image::{Plane, Size},
+    io::Picture,
+    rectify::{
+        CalibratedRectification, Correspondence, Residual, RowModel, StereoRectification, WarpMap,
+        epipolar::Uncalibrated,
+    },
+    wide_baseline::{WideBaselineConfig, match_points, match_upright},
+};
+
+/// Number of pixels above which strong interest points alone are matched.
+const LARGE: u64 = 1 << 19;
+/// Largest number of interest points of a view that are matched, the strongest, spread over the view: the time to match points grows
+/// with the square of their number, and a thousand matches are more than enough.
+const MOST_POINTS: u32 = 4000;
+/// Number of inliers below which more points are sought along the rows of a first rectification.
+const FEW: usize = 200;
+/// Number of times that they are sought, the second time along better rows.
+const ROUNDS: usize = 2;
+/// Largest row difference of points that are sought along rows, in pixels of the detection.
+const MAX_DY: f32 = 3.0;
+/// Precision of the rows of a match, in pixels of the detection: the width of the Cauchy loss.
+const PRECISION: f64 = 0.3;
+
+/// A pair whose rows were brought to correspond.
+#[derive(Clone, Debug)]
+pub struct RectifiedPair {
+    /// What was done to the views.
+    pub rectification: StereoRectification,
+    /// The rectified pictures, of one size: colours, and alpha 0 where a picture shows nothing of its view.
+    pub pictures: [Picture; 2],
+    /// Matched points, in pixels of the views as they were taken; without a calibration those that the rectification was found from.
+    pub points: Vec<Correspondence>,
+    /// Row errors of the points that no fit used: a fifth of them, or all with a calibration.
+    pub residual: Residual,
+    /// The right view, which is resampled anew if its rows are still slightly off.
+    pub(super) right: TakenView,
+}
+
+impl RectifiedPair {
+    /// Which pixels of the left and of the right picture show the scene: 255, otherwise 0.
+    pub fn masks(&self) -> [Plane<u8>; 2] {
+        self.pictures.each_ref().map(|picture| picture.map(|&[.., alpha]| alpha))
+    }
+
+    /// Whether rows of the matched points correspond better than in the views as they were taken.
+    pub fn is_better_than_taken(&self) -> bool {
+        let cost = |rows: &dyn Fn(&Correspondence) -> Option<f64>| -> f64 {
+            let deviations =
+                self.points.iter().map(|point| rows(point).map_or(f64::INFINITY, |error| error / PRECISION));
+            // A match that is wrong in both weighs next to nothing, however far off it is.
+            deviations.map(|deviation| libm::log1p((deviation * deviation).min(1e6))).sum()
+        };
+        cost(&|point| row_error(&self.rectification, point)) < cost(&|point| Some(point.left.y - point.right.y))
+    }
+
+    /// The way of a map of the `reference` picture back to its view as it was taken; `rows` are those of the outcome that has the
+    /// map, [`crate::seeding::Rectification::rows`].
+    ///
+    /// # Errors
+    /// See [`WarpMap::new`].
+    pub fn way_back(&self, reference: View, rows: &RowModel) -> Result<WayBack> {
+        let (view, rows) = if reference == View::Left { (0, None) } else { (1, Some(*rows)) };
+        Ok(WayBack::new(self.rectification.map_back(view)?, rows))
+    }
+}
+
+/// Rectifies a pair from its own matches. The views may differ in size, turn and scale.
+///
+/// # Errors
+/// [`Error::NotRectifiable`] if no depth follows from the pair, or no warp brings its rows to correspond;
+/// [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of [`crate::features::detect`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
+    block_on(rectify_async(backend, views))
+}
+
+/// The asynchronous [`rectify`]. Work on the host blocks.
+///
+/// # Errors
+/// See [`rectify`].
+pub async fn rectify_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<RectifiedPair> {
+    let views = [TakenView::new(left)?, TakenView::new(right)?];
+    let factor = reduction(larger([left.size(), right.size()]));
+    let small = views.each_ref().map(|view| view.seen.reduced(factor));
+    let sizes = small.each_ref().map(|view| view.luma.size());
+    let config = config(sizes);
+    let mut points = match_points(backend, &small[0].luma, &small[1].luma, &config).await?;
+    points.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
+    let mut found = Uncalibrated::new(&points, sizes, 1);
+    for round in 0..ROUNDS {
+        let Ok(first) = &found else { break };
+        if round == 0 && first.evidence.inliers >= FEW {
+            break;
+        }
+        let more = more_points(backend, &small, first, &config).await?;
+        match Uncalibrated::new(&more, sizes, 1) {
+            Ok(better) if more.len() > points.len() => (points, found) = (more, Ok(better)),
+            _ => break,
+        }
+    }
+    if factor > 1 {
+        points.iter_mut().for_each(|point| *point = enlarged(point, factor));
+        found = Uncalibrated::new(&points, [left.size(), right.size()], factor);
+    }
+    let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
+    let residual = found.residual;
+    let rectification = StereoRectification::Uncalibrated(found.into());
+    let pictures = warped(backend, &views, &rectification).await?;
+    let [_, right] = views;
+    Ok(RectifiedPair { rectification, pictures, points, residual, right })
+}
+
+/// Rectifies a pair by a calibration of its cameras.
+///
+/// # Errors
+/// See [`CalibratedRectification::new`]; [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of
+/// [`crate::features::detect`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn rectify_by(backend: &Backend, views: (&Picture, &Picture), stereo: &StereoCalibration) -> Result<RectifiedPair> {
+    block_on(rectify_by_async(backend, views, stereo))
+}
+
+/// The asynchronous [`rectify_by`]. Work on the host blocks.
+///
+/// # Errors
+/// See [`rectify_by`].
+pub async fn rectify_by_async(
+    backend: &Backend,
+    (left, right): (&Picture, &Picture),
+    stereo: &StereoCalibration,
+) -> Result<RectifiedPair> {
+    let views = [TakenView::new(left)?, TakenView::new(right)?];
+    let found = CalibratedRectification::new(stereo, [left.size(), right.size()])?;
+    let rectification = StereoRectification::Calibrated(found.into());
+    let pictures = warped(backend, &views, &rectification).await?;
+
+    // Points in any row: how far their rows differ tells whether the calibration is that of the pictures.
+    let factor = reduction(rectification.size());
+    let small = pictures.each_ref().map(|picture| Seen::of_rectified(picture).reduced(factor));
+    let config = config(small.each_ref().map(|view| view.luma.size()));
+    let mut matches = match_upright(backend, [&small[0].luma, &small[1].luma], &config, None).await?;
+    matches.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
+    let level: Vec<Correspondence> = matches.iter().map(|point| enlarged(point, factor)).collect();
+    let errors = level.iter().map(|point| point.left.y - point.right.y);
+    let residual = Residual::new(level.len(), errors, factor.into());
+    let taken = |Correspondence { left, right }: &Correspondence| {
+        Some(Correspondence { left: rectification.source_of(0, *left)?, right: rectification.source_of(1, *right)? })
+    };
+    let points = level.iter().filter_map(taken).collect();
+    let [_, right] = views;
+    Ok(RectifiedPair { rectification, pictures, points, residual, right })
+}
+
+/// The rectified pictures; a left view that stays is not resampled.
+async fn warped(backend: &Backend, views: &[TakenView; 2], by: &StereoRectification) -> Result<[Picture; 2]> {
+    let left = if by.keeps_left() { views[0].picture.clone() } else { views[0].warped(backend, &by.map(0)?).await? };
+    Ok([left, views[1].warped(backend, &by.map(1)?).await?])
+}
+
+/// Row of the left point minus row of the right point in the rectified pictures.
+fn row_error(rectification: &StereoRectification, point: &Correspondence) -> Option<f64> {
+    Some(rectification.rectified_of(0, point.left)?.y - rectification.rectified_of(1, point.right)?.y)
+}
+
+fn larger([left, right]: [Size; 2]) -> Size {
+    if left.pixels() >= right.pixels() { left } else { right }
+}
+
+/// A point of views reduced by `factor`, in pixels of the views.
+fn enlarged(point: &Correspondence, factor: u32) -> Correspondence {
+    let factor = f64::from(factor);
+    let [left, right] = [point.left, point.right].map(|place| place * factor + (factor - 1.0) / 2.0);
+    Correspondence { left, right }
+}
+
+/// Parameters of matching for views of `sizes`: large views have enough strong points.
+fn config(sizes: [Size; 2]) -> WideBaselineConfig {
+    let config = WideBaselineConfig::default();
+    let is_large = sizes.iter().any(|size| size.pixels() > LARGE);
+    let features = if is_large { FeatureConfig::default() } else { config.features };
+    WideBaselineConfig { features: FeatureConfig { max_features: MOST_POINTS, ..features }, ..config }
+}
+
+/// Points found along the rows of a first rectification: where views are alike, many more points match.
+async fn more_points(
+    backend: &Backend,
+    views: &[Seen; 2],
+    first: &Uncalibrated,
+    config: &WideBaselineConfig,
+) -> Result<Vec<Correspondence>> {
+    let maps: [WarpMap; 2] = first.maps()?;
+    let level = [0, 1].map(|view: usize| cpu::rectify::warp(&views[view].luma, &maps[view]));
+    let found = match_upright(backend, [&level[0], &level[1]], config, Some(MAX_DY)).await?;
+    let back = |point: &Correspondence| {
+        let (left, right) = (first.original(0, point.left)?, first.original(1, point.right)?);
+        (views[0].shows(left) && views[1].shows(right)).then_some(Correspondence { left, right })
+    };
+    Ok(found.iter().filter_map(back).collect())
+}

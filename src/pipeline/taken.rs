@@ -1,0 +1,98 @@
+//! A view as it was taken, ready to be resampled.
+
+use glam::DVec2;
+
+use crate::{
+    backend::Backend,
+    cpu,
+    error::Result,
+    image::{Luma, reduced},
+    io::Picture,
+    luma::check_size,
+    mask::{self, Mask},
+    mosaic::demosaicked,
+    rectify::{WarpMap, warp_picture},
+};
+
+/// A view, continued where it does not show the scene.
+#[derive(Clone, Debug)]
+pub(super) struct TakenView {
+    /// Colours, grey for a raw mosaic; alpha is 0 where the view does not show the scene, and else 255.
+    pub picture: Picture,
+    pub seen: Seen,
+}
+
+/// The luma of a view, continued where it does not show the scene.
+#[derive(Clone, Debug)]
+pub(super) struct Seen {
+    pub luma: Luma,
+    pub mask: Option<Mask>,
+}
+
+impl TakenView {
+    /// The view of a picture, a mosaic demosaicked and unseen pixels replaced by their neighbours.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`].
+    pub fn new(picture: &Picture) -> Result<Self> {
+        check_size(picture.size())?;
+        let luma = picture.luma();
+        // Before demosaicking, which mixes the edge of a border with the scene.
+        let mask = mask::mask_of(picture, &luma);
+        let (colors, luma) = match demosaicked(picture, &luma) {
+            Some(luma) => ([luma.clone(), luma.clone(), luma.clone()], luma),
+            None => ([0, 1, 2].map(|channel| picture.map(|pixel| pixel[channel])), luma),
+        };
+        let continued = |plane: Luma| mask.as_ref().map(|mask| mask::extended(&plane, mask)).unwrap_or(plane);
+        let [red, green, blue] = colors.map(continued);
+        let picture = Picture::from_fn(picture.size(), |x, y| {
+            let alpha = mask.as_ref().map_or(mask::SEEN, |mask| mask.get(x, y));
+            [red.get(x, y), green.get(x, y), blue.get(x, y), alpha]
+        });
+        Ok(Self { picture, seen: Seen { luma: continued(luma), mask } })
+    }
+
+    /// The view resampled by `map`, the same bytes on every backend; alpha 0 where it shows nothing of the scene.
+    pub async fn warped(&self, backend: &Backend, map: &WarpMap) -> Result<Picture> {
+        let picture = match backend {
+            Backend::Cpu => cpu::rectify::warp_picture(&self.picture, map),
+            Backend::Gpu(gpu) => warp_picture(gpu, &self.picture, map).await?,
+        };
+        let visible = self.visible(map)?;
+        Ok(Picture::from_fn(picture.size(), |x, y| {
+            let [red, green, blue, _] = picture.get(x, y);
+            if visible.get(x, y) == 0 { [0; 4] } else { [red, green, blue, mask::SEEN] }
+        }))
+    }
+
+    /// Which pixels of the view resampled by `map` show the scene.
+    pub fn visible(&self, map: &WarpMap) -> Result<Mask> {
+        match &self.seen.mask {
+            Some(mask) => map.visible_nearest(mask),
+            None => Ok(map.visible()),
+        }
+    }
+}
+
+impl Seen {
+    /// A rectified picture, of which alpha tells what is seen.
+    pub fn of_rectified(picture: &Picture) -> Self {
+        let mask = picture.map(|&[.., alpha]| alpha);
+        let luma = mask::extended(&picture.luma(), &mask);
+        Self { luma, mask: Some(mask) }
+    }
+
+    /// The view downscaled by `factor`.
+    pub fn reduced(&self, factor: u32) -> Self {
+        let mask = self.mask.as_ref().map(|mask| mask::reduced(mask, factor));
+        Self { luma: reduced(&self.luma, factor), mask }
+    }
+
+    /// Whether a place lies in the view and shows the scene.
+    pub fn shows(&self, place: DVec2) -> bool {
+        let pixel = place.round();
+        let side = DVec2::new(self.luma.width().into(), self.luma.height().into());
+        let is_inside = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(side).all();
+        is_inside && self.mask.as_ref().is_none_or(|mask| mask.get(pixel.x as u32, pixel.y as u32) != 0)
+    }
+}

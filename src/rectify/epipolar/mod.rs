@@ -1,0 +1,240 @@
+//! Rectification without calibration, from matched points alone.
+//!
+//! ```text
+//! points -> fundamental -> evidence -> lens -> rows or rotations -> layout -> maps
+//! ```
+//!
+//! All arithmetic is in double precision on the host, and random samples come in a fixed sequence: the same points give the same
+//! result.
+
+mod evidence;
+mod flat;
+mod frame;
+mod fundamental;
+mod homography;
+mod layout;
+mod lens;
+mod linear;
+mod minimise;
+mod refusal;
+mod relation;
+mod rotations;
+mod rows;
+mod sample;
+mod shape;
+mod similarity;
+#[cfg(test)]
+mod tests;
+
+use glam::{DMat3, DVec2};
+
+pub use evidence::Evidence;
+pub use refusal::Refusal;
+pub use relation::Relation;
+pub use shape::Distortion;
+
+use frame::{AGREEMENT, Frame};
+use fundamental::Fundamental;
+use layout::Layout;
+use lens::Lens;
+use rotations::Cameras;
+
+use super::{Correspondence, Residual, RowKind, WarpMap, map::TOLERANCE};
+use crate::{error::Result, image::Size};
+
+/// Largest ratio of areas around the matches that were one.
+const LARGEST_AREA: f64 = 16.0;
+/// Largest mean of the inliers' row errors after the rectification, in pixels of the detection: good pairs have up to 0.45, a plane seen
+/// obliquely 0.7.
+const LARGEST_ERROR: f64 = 0.6;
+/// Every so many points one is left out of the fit, to measure the residual.
+const LEFT_OUT: usize = 5;
+
+/// What is done to the views.
+///
+/// With one view resampled and the other left alone, edges stay sharp in one of them, and disparities belong to the left picture as
+/// it was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// The left view stays as it is, but for the distortion of its lens, and the right view follows its rows.
+    Right(RowKind),
+    /// Both views are turned.
+    Both,
+}
+
+impl Model {
+    /// The name of the model.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Right(kind) => kind.name(),
+            Self::Both => "both views",
+        }
+    }
+
+    /// Number of parameters that points determine.
+    const fn parameters(self) -> usize {
+        match self {
+            Self::Right(kind) => kind.parameters(),
+            Self::Both => 7,
+        }
+    }
+}
+
+/// Rectification of two views without calibration: homographies and the distortion of the lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncalibrated {
+    /// What the points tell of the cameras.
+    pub evidence: Evidence,
+    /// What is done to the views.
+    pub model: Model,
+    /// Radial distortion of both views: a place `x` from the centre of a picture appears at `x (1 + k1 r^2)`, `r` in units of the
+    /// mean of width and height; 0 unless the points show a distortion.
+    pub k1: f64,
+    /// Maps from pixels of the left and the right view, without their distortion, to pixels of the rectified pictures.
+    pub homographies: [DMat3; 2],
+    /// Width and height of both rectified pictures, in pixels.
+    pub size: Size,
+    /// How far the columns of the right picture were moved to the right, in pixels, so that disparities are not far from 0.
+    pub shift: f64,
+    /// How shapes change around the matched points.
+    pub distortion: Distortion,
+    /// Row errors of matched points that the fit did not use.
+    pub residual: Residual,
+    frame: Frame,
+}
+
+impl Uncalibrated {
+    /// The rectification of views of `sizes`, the left one first, from points in pixels of the views, the most certain first,
+    /// that were detected in the views reduced by `factor`.
+    ///
+    /// The least sum of robust costs plus `k ln n` decides between rows as they are, a shift, affine and projective rows of
+    /// the right view, and both views, for `k` parameters and `n` inliers (Schwarz, Annals of Statistics 6, 1978).
+    ///
+    /// # Errors
+    /// Why the pair cannot be rectified.
+    pub fn new(points: &[Correspondence], sizes: [Size; 2], factor: u32) -> std::result::Result<Self, Refusal> {
+        let frame = Frame::new(sizes, factor);
+        let points: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
+        let is_left_out = |index: usize| index % LEFT_OUT == LEFT_OUT - 1;
+        let choose = |left_out: bool| -> Vec<Correspondence> {
+            let indexed = points.iter().enumerate().filter(|&(index, _)| is_left_out(index) == left_out);
+            indexed.map(|(_, point)| *point).collect()
+        };
+        let (used, unused) = (choose(false), choose(true));
+        let Some(found) = Fundamental::consensus(&used, frame.unit) else {
+            return Err(Refusal::Relation(Evidence::without_matrix(&used, &frame)));
+        };
+        let inliers = found.inliers(&used, AGREEMENT / frame.unit);
+        let evidence = Evidence::new(&used, &inliers, &found, &frame);
+        if evidence.relation != Relation::Parallax {
+            return Err(Refusal::Relation(evidence));
+        }
+        let lens = Lens::shown(&used, &found, &frame);
+        let (found, inliers) = if lens == Lens::NONE { (found, inliers) } else { found.behind(lens, &used, &frame) };
+
+        let (model, maps) = chosen(&found, &inliers, &frame);
+        let in_pixels = DMat3::from_translation(frame.pixel(0, DVec2::ZERO))
+            * DMat3::from_scale(frame.pixel(0, DVec2::ONE) - frame.pixel(0, DVec2::ZERO));
+        let maps = maps.map(|map| in_pixels * map);
+        let residual = row_errors(&maps, &lens.straight(&unused, &frame), &frame);
+        Self::bounded(evidence, model, maps, lens, &inliers, residual, frame)
+    }
+
+    /// The rectification by `maps` from units to pixels, if it leaves the views recognisable and their rows equal.
+    fn bounded(
+        evidence: Evidence,
+        model: Model,
+        maps: [DMat3; 2],
+        lens: Lens,
+        inliers: &[Correspondence],
+        residual: Residual,
+        frame: Frame,
+    ) -> std::result::Result<Self, Refusal> {
+        let torn = Refusal::Distorted { area: f64::INFINITY };
+        let distortion = Distortion::of(&maps, inliers).ok_or(torn)?;
+        if distortion.area > LARGEST_AREA {
+            return Err(Refusal::Distorted { area: distortion.area });
+        }
+        let fit = row_errors(&maps, inliers, &frame);
+        if fit.mean > LARGEST_ERROR * frame.pixels_per_detected() {
+            return Err(evidence.without_rows().map_or(Refusal::Rows(fit.mean), Refusal::Relation));
+        }
+        let layout = match model {
+            Model::Right(_) if lens == Lens::NONE => Layout::of_left(&frame, &maps, inliers),
+            _ => Layout::of_both(&frame, &maps, lens, inliers).ok_or(torn)?,
+        };
+        let homographies = [0, 1].map(|view| {
+            DMat3::from_translation(-layout.origins[view]) * maps[view] * frame.map_to_pixels(view).inverse()
+        });
+        let shift = layout.origins[0].x - layout.origins[1].x;
+        let (k1, size) = (lens.k1, layout.size);
+        Ok(Self { evidence, model, k1, homographies, size, shift, distortion, residual, frame })
+    }
+
+    /// The pixel of a rectified picture that shows a pixel of a view, 0 for the left one; `None` beyond the horizon.
+    pub fn rectified(&self, view: usize, pixel: DVec2) -> Option<DVec2> {
+        let (frame, lens) = (&self.frame, Lens { k1: self.k1 });
+        let straight = lens.undistorted(frame.place(view, pixel), frame.mean_side(view));
+        frame::mapped(&self.homographies[view], frame.pixel(view, straight))
+    }
+
+    /// The pixel of a view that a pixel of its rectified picture shows, perhaps outside the view; `None` beyond the horizon.
+    pub fn original(&self, view: usize, pixel: DVec2) -> Option<DVec2> {
+        self.source(view, &self.homographies[view].inverse(), pixel)
+    }
+
+    fn source(&self, view: usize, inverse: &DMat3, pixel: DVec2) -> Option<DVec2> {
+        let (frame, lens) = (&self.frame, Lens { k1: self.k1 });
+        let place = frame.place(view, frame::mapped(inverse, pixel)?);
+        Some(frame.pixel(view, lens.distorted(place, frame.mean_side(view))?))
+    }
+
+    /// The maps that resample the left and the right view: homography and distortion in one, to within 1/32 px.
+    ///
+    /// # Errors
+    /// See [`WarpMap::new`].
+    pub fn maps(&self) -> Result<[WarpMap; 2]> {
+        let map = |view: usize| {
+            let inverse = self.homographies[view].inverse();
+            let source = |pixel| self.source(view, &inverse, pixel).unwrap_or(DVec2::NAN);
+            WarpMap::within(TOLERANCE, self.size, self.frame.sizes[view], source)
+        };
+        Ok([map(0)?, map(1)?])
+    }
+
+    /// Mean side of a view, in pixels: the unit of `r` in [`Self::k1`].
+    pub fn mean_side(&self, view: usize) -> f64 {
+        let Size { width, height } = self.frame.sizes[view];
+        f64::from(width + height) / 2.0
+    }
+
+    /// Width and height of the left and the right view as they were taken, in pixels.
+    pub fn sources(&self) -> [Size; 2] {
+        self.frame.sizes
+    }
+}
+
+/// The row errors of `points` in units, by `maps` from units to pixels of the rectified plane.
+fn row_errors(maps: &[DMat3; 2], points: &[Correspondence], frame: &Frame) -> Residual {
+    let row = |view: usize, place: DVec2| frame::mapped(&maps[view], place).map(|place| place.y);
+    let errors = points.iter().filter_map(|point| Some(row(0, point.left)? - row(1, point.right)?));
+    Residual::new(points.len(), errors, frame.pixels_per_detected())
+}
+
+/// The model of least cost, and homographies of both views from units to units.
+fn chosen(found: &Fundamental, inliers: &[Correspondence], frame: &Frame) -> (Model, [DMat3; 2]) {
+    let criterion = |found: &Fundamental, model: Model| {
+        found.cost(inliers, frame.unit) + model.parameters() as f64 * libm::log(inliers.len() as f64)
+    };
+    let as_is = (RowKind::AsIs, rows::AS_IS);
+    let best = std::iter::once(as_is)
+        .chain(rows::fits(inliers, frame.unit))
+        .map(|(kind, fit)| (criterion(&rows::fundamental(fit), Model::Right(kind)), kind, fit))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    match best {
+        Some((cost, kind, fit)) if cost <= criterion(found, Model::Both) => {
+            (Model::Right(kind), [DMat3::IDENTITY, rows::homography(fit)])
+        }
+        _ => (Model::Both, Cameras::fitted(inliers, frame).homographies(inliers, frame)),
+    }
+}

@@ -1,0 +1,97 @@
+//! Matches at the positions of the interest points themselves, for geometry.
+
+use glam::{DAffine2, DVec2};
+
+use super::{DetectorCache, NEIGHBOURHOOD, View, WideBaselineConfig, agreement::agreement, align};
+use crate::{
+    backend::Backend,
+    error::Result,
+    features::Feature,
+    image::{Luma, Size, reduced},
+    matching::{MatchConfig, Seed, match_features},
+    rectify::Correspondence,
+};
+
+/// Number of pixels that tell turn and scale.
+const SMALL: u64 = 1 << 19;
+/// Smallest share of the neighbours that must agree with a match.
+const LEAST_AGREEMENT: f32 = 0.25;
+
+/// Corresponding points of two views of any size, turn and scale, in pixels of each view, the most certain first: the second
+/// view is rotated and scaled like the first, and points are matched in any row and left where they were detected. Smoothing and
+/// the search along rows of [`super::match_views`] are left out: rows are what these points measure.
+///
+/// Points of both views are detected in one orientation, so that a bias of the detector is the same in both and cancels.
+///
+/// # Errors
+/// As [`super::match_views`].
+pub(crate) async fn match_points(
+    backend: &Backend,
+    first: &Luma,
+    second: &Luma,
+    WideBaselineConfig { features, matching, .. }: &WideBaselineConfig,
+) -> Result<Vec<Correspondence>> {
+    let mut detectors = DetectorCache::new(backend);
+    let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
+    // Turn and scale are found in small views: the positions of the points are those of the last detection.
+    let factor = [first, second].into_iter().map(|view| reduction(view.size())).max().unwrap_or(1);
+    let small = View::new(&mut detectors, reduced(first, factor), features).await?;
+    let aligned = align::align(&mut detectors, &small, &reduced(second, factor), features, matching).await?;
+    let (first, align::Aligned { view: second, map, .. }) = if factor == 1 {
+        (small, aligned)
+    } else {
+        let enlarge = DAffine2::from_scale_angle_translation(
+            DVec2::splat(factor.into()),
+            0.0,
+            DVec2::splat((f64::from(factor) - 1.0) / 2.0),
+        );
+        let map = enlarge * aligned.map * enlarge.inverse();
+        let second = align::turned(&mut detectors, first, second, map, features).await?;
+        (View::new(&mut detectors, first.clone(), features).await?, second)
+    };
+    let back = map.inverse();
+    let found = supported([&first.features, &second.features], matching, reach)?;
+    let place = |Correspondence { left, right }| Correspondence { left, right: back.transform_point2(right) };
+    Ok(found.map(place).collect())
+}
+
+/// Corresponding points of two views that are not turned against each other, in rows that differ by at most `max_dy` pixels, or in
+/// any rows.
+///
+/// # Errors
+/// As [`super::match_views`].
+pub(crate) async fn match_upright(
+    backend: &Backend,
+    [first, second]: [&Luma; 2],
+    WideBaselineConfig { features, matching, .. }: &WideBaselineConfig,
+    max_dy: Option<f32>,
+) -> Result<Vec<Correspondence>> {
+    let mut detectors = DetectorCache::new(backend);
+    let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
+    let first = detectors.features(first, features).await?;
+    let second = detectors.features(second, features).await?;
+    let matching = MatchConfig { max_dy, ..matching.clone() };
+    Ok(supported([&first, &second], &matching, reach)?.collect())
+}
+
+/// The integer factor by which views of `size` are reduced for turn and scale.
+fn reduction(size: Size) -> u32 {
+    (1..).find(|&factor| size.pixels() <= SMALL * u64::from(factor).pow(2)).unwrap_or(1)
+}
+
+/// The matches that enough neighbours within `reach` pixels agree with.
+fn supported(
+    [first, second]: [&[Feature]; 2],
+    matching: &MatchConfig,
+    reach: f32,
+) -> Result<impl Iterator<Item = Correspondence>> {
+    let matches = match_features(first, second, matching)?;
+    let seeds: Vec<Seed> = matches.iter().map(|found| Seed::from_match(first, second, found)).collect();
+    let shares = agreement(&seeds, reach);
+    let kept = seeds.into_iter().zip(shares).filter(|&(_, share)| share >= LEAST_AGREEMENT);
+    let place = |x: f32, y: f32| DVec2::new(x.into(), y.into());
+    Ok(kept.map(move |(seed, _)| Correspondence {
+        left: place(seed.x, seed.y),
+        right: place(seed.right_x(), seed.right_y()),
+    }))
+}
