@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// Pages, and the folders whose files they name.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 13] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/ARCHITECTURE.md",
@@ -12,6 +12,7 @@ const PAGES: [&str; 12] = [
     "docs/cli.md",
     "docs/embedding.md",
     "docs/evaluation.md",
+    "docs/rectification.md",
     "docs/results.md",
     "docs/trust.md",
     "docs/verify.md",

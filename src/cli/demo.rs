@@ -23,6 +23,7 @@ use super::{
     output::Output,
     products, score, summary,
     terminal::{self, Progress},
+    way::Way,
 };
 
 const LEFT: &[u8] = include_bytes!("../../data/curved/left.png");
@@ -62,6 +63,8 @@ impl Demo {
             right: scene.right.clone(),
             stretch: None,
             config: Preset::Balanced.config(),
+            way: Way::AsIs,
+            map_back: false,
             strongest: None,
             calibration: Some(scene.calibration),
         };

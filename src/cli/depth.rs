@@ -1,4 +1,4 @@
-//! Options for depth, and the calibration that they name.
+//! Options for depth, and what they tell of the cameras.
 
 use std::path::{Path, PathBuf};
 
@@ -8,53 +8,104 @@ use hsad::{
     image::Size,
     io::{
         Calibration,
-        calibration::{self, Hints},
+        calibration::{self, Hints, Loaded},
     },
 };
+
+/// Calibration files of a pair.
+#[derive(Args)]
+pub struct CalibrationOptions {
+    /// Calibration file of the pair: Middlebury, OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP, K.txt or hsad's JSON, see
+    /// docs/calibration.md; twice for formats with a file per camera, left first
+    #[arg(long, value_name = "FILE")]
+    calib: Vec<PathBuf>,
+    /// Unit of length of the calibration files, in metres: 0.001 for millimetres [default: that of the format]
+    #[arg(long, value_name = "METRES", requires = "calib", allow_negative_numbers = true)]
+    calib_unit: Option<f64>,
+}
+
+impl CalibrationOptions {
+    /// The calibration of `pictures` of these sizes in pixels; `None` without files.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read, [`Error::Parameter`] for a unit outside its range.
+    pub fn read(&self, pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Option<CalibrationFile>> {
+        let Some(path) = self.calib.first() else { return Ok(None) };
+        if let Some(unit) = self.calib_unit {
+            check_unit(unit)?;
+        }
+        let hints = Hints { pictures: Some(pictures), sizes: Some(sizes), unit: self.calib_unit };
+        Ok(Some(CalibrationFile { path: path.clone(), loaded: calibration::read(&self.calib, &hints)? }))
+    }
+}
+
+/// A calibration, and the file that is named where it does not fit.
+pub struct CalibrationFile {
+    path: PathBuf,
+    pub loaded: Loaded,
+}
+
+impl CalibrationFile {
+    /// The geometry of rectified pictures of `size`, in pixels, and what was assumed of it.
+    ///
+    /// # Errors
+    /// [`Error::Format`] if the file describes only pictures that are not rectified, or pictures of another size.
+    pub fn for_rectified(&self, size: Size) -> Result<(Calibration, Vec<String>)> {
+        let calibration = self.loaded.for_rectified(size).map_err(|error| self.misfit(&error))?;
+        let notes = self.loaded.notes.iter().cloned().chain(unsized_misfit(&calibration, size));
+        Ok((calibration, notes.collect()))
+    }
+
+    /// Checks that the file is for pictures as they were taken of these sizes, left and right, in pixels.
+    ///
+    /// # Errors
+    /// [`Error::Format`] if it is not.
+    pub fn check_taken(&self, sizes: [Size; 2]) -> Result<()> {
+        self.loaded.stereo.check_sizes(sizes).map_err(|error| self.misfit(&error))
+    }
+
+    fn misfit(&self, error: &Error) -> Error {
+        Error::Format { path: self.path.clone(), reason: error.to_string() }
+    }
+}
 
 /// Geometry that turns disparities into depth.
 #[derive(Args)]
 #[command(next_help_heading = "Depth")]
 pub struct DepthOptions {
-    /// Calibration file of the pair: Middlebury, OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP, K.txt or hsad's JSON, see
-    /// docs/calibration.md; twice for formats with a file per camera, left first
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["focal", "baseline", "doffs"])]
-    calib: Vec<PathBuf>,
-    /// Unit of length of the calibration files, in metres: 0.001 for millimetres [default: that of the format]
-    #[arg(long, value_name = "METRES", requires = "calib", allow_negative_numbers = true)]
-    calib_unit: Option<f64>,
+    #[command(flatten)]
+    files: CalibrationOptions,
     /// Focal length in pixels, 10^-6 to 10^6
-    #[arg(long, value_name = "PX", requires = "baseline", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", requires = "baseline", conflicts_with = "calib", allow_negative_numbers = true)]
     focal: Option<f64>,
     /// Baseline, the distance between the cameras, in metres, 10^-6 to 10^6
-    #[arg(long, value_name = "METRES", requires = "focal", allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", requires = "focal", conflicts_with = "calib", allow_negative_numbers = true)]
     baseline: Option<f64>,
     /// Difference of the principal points, cx1 - cx0, in pixels, -10^6 to 10^6 [default: 0]
-    #[arg(long, value_name = "PX", requires = "focal", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", requires = "focal", conflicts_with = "calib", allow_negative_numbers = true)]
     doffs: Option<f64>,
 }
 
+/// What options tell of the cameras of a pair.
+pub enum Cameras {
+    Unknown,
+    /// The geometry of the pictures, if they are rectified.
+    Rectified(Calibration),
+    /// Files, of pictures as they were taken or of rectified ones, or both.
+    Files(Box<CalibrationFile>),
+}
+
 impl DepthOptions {
-    /// The calibration for the rectified `pictures` of `size` (width and height in pixels), and what was assumed of it; `None`
-    /// without options for it.
+    /// What the options tell of the cameras of `pictures` of these sizes in pixels.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read or belongs to pictures of another size,
-    /// [`Error::Parameter`] for values outside their range.
-    pub fn calibration(&self, pictures: [&Path; 2], size: Size) -> Result<Option<(Calibration, Vec<String>)>> {
-        if let Some(path) = self.calib.first() {
-            if let Some(unit) = self.calib_unit {
-                check_unit(unit)?;
-            }
-            let hints = Hints { pictures: Some(pictures), sizes: Some([size; 2]), unit: self.calib_unit };
-            let loaded = calibration::read(&self.calib, &hints)?;
-            let misfit = |error: Error| Error::Format { path: path.clone(), reason: error.to_string() };
-            let (calibration, mut notes) = (loaded.for_rectified(size).map_err(misfit)?, loaded.notes);
-            notes.extend(unsized_misfit(&calibration, size));
-            return Ok(Some((calibration, notes)));
+    /// As [`CalibrationOptions::read`]; [`Error::Parameter`] for values outside their range.
+    pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Cameras> {
+        if let Some(file) = self.files.read(pictures, sizes)? {
+            return Ok(Cameras::Files(file.into()));
         }
-        let Some((focal, baseline)) = self.focal.zip(self.baseline) else { return Ok(None) };
-        Ok(Some((Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), size)?, Vec::new())))
+        let Some((focal, baseline)) = self.focal.zip(self.baseline) else { return Ok(Cameras::Unknown) };
+        Ok(Cameras::Rectified(Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), sizes[0])?))
     }
 }
 

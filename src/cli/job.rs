@@ -4,17 +4,19 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use hsad::{
-    Backend,
+    Backend, Error,
     config::Config,
     gpu::block_on,
     io::{Calibration, Picture, load::Stretch},
-    pipeline::{self, Outcome},
+    pipeline::{self, Outcome, RectifiedPair, WayBack},
+    seeding::Verdict,
 };
 
 use super::{
     doubts::{self, NotTrusted},
     options::RunOptions,
     terminal::Progress,
+    way::Way,
 };
 
 /// A pair of views and how to match it.
@@ -26,16 +28,26 @@ pub struct Job {
     /// How the views' samples became 8 bits; `None`: without a stretch.
     pub stretch: Option<Stretch>,
     pub config: Config,
+    pub way: Way,
+    /// Whether the map of a rectified pair is taken back to the reference view as it was taken.
+    pub map_back: bool,
     /// Interest points and matches that a figure shows, the strongest ones; `None`: all.
     pub strongest: Option<usize>,
+    /// The geometry of the pair if its pictures are rectified already.
     pub calibration: Option<Calibration>,
 }
 
 /// A job with its outcome.
 pub struct CompletedJob {
+    /// The job, with the pictures that the map belongs to: the rectified ones if the pair was rectified first and the map was not taken
+    /// back. Its calibration is that of the disparities.
     pub job: Job,
     pub backend: Backend,
     pub outcome: Outcome,
+    /// The pair that was matched, if it was rectified first.
+    pub rectified: Option<RectifiedPair>,
+    /// The way that the map was taken back, if it was.
+    pub back: Option<WayBack>,
     /// Wall-clock time from opening the device to the disparity map.
     pub total: Duration,
     /// Doubts about the result that the output files do not show, one line each.
@@ -44,27 +56,166 @@ pub struct CompletedJob {
     pub not_trusted: Option<NotTrusted>,
 }
 
+/// What matching gave, and the rectified pair that was matched, if one was.
+struct Matched {
+    outcome: Outcome,
+    rectified: Option<RectifiedPair>,
+    warnings: Vec<String>,
+}
+
 impl Job {
     /// Opens the device and matches the pair; writes no files.
-    pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
+    pub fn run(mut self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
         let cached = options.open()?;
         let progress = Progress::new(options.quiet);
-        let views = (&self.left, &self.right);
-        let outcome = block_on(pipeline::run_with_progress(
-            &cached.backend,
-            views,
-            &self.config,
-            |step| progress.step(step),
-            |share| progress.share(share),
-        ))?;
+        let Matched { mut outcome, rectified, mut warnings } = self.matched(&cached.backend, &progress)?;
         cached.save();
-        let mut warnings = doubts::warnings(views, &self.config, &outcome);
+        let given = [&self.left, &self.right];
+        let [left, right] = rectified.as_ref().map_or(given, |pair| pair.pictures.each_ref());
+        warnings.extend(doubts::warnings((left, right), &self.config, &outcome));
         let mut not_trusted = NotTrusted::new(&outcome);
         if self.config.force {
             warnings.extend(not_trusted.take().map(|doubt| doubt.reason));
         }
+        let mut back = None;
+        if let Some(pair) = &rectified {
+            if self.map_back {
+                let way = pair.way_back(self.config.reference, &outcome.seeding.rectification.rows)?;
+                outcome.dense = way.dense(&outcome.dense);
+                back = Some(way);
+            } else {
+                [self.left, self.right] = pair.pictures.clone();
+            }
+            let calibration = pair.rectification.calibration().copied();
+            if calibration.is_none() && self.calibration.is_some() {
+                warnings.push(
+                    "no depth and no point cloud: a pair rectified without calibration has no known baseline".into(),
+                );
+            }
+            self.calibration = calibration;
+        }
         let (backend, total) = (cached.backend, start.elapsed());
-        Ok(CompletedJob { job: self, backend, outcome, total, warnings, not_trusted })
+        Ok(CompletedJob { job: self, backend, outcome, rectified, back, total, warnings, not_trusted })
     }
+
+    fn matched(&self, backend: &Backend, progress: &Progress) -> Result<Matched> {
+        let views = (&self.left, &self.right);
+        let by = |stereo| {
+            progress.begin("rectifying");
+            pipeline::rectify_by(backend, views, stereo)
+        };
+        match &self.way {
+            Way::AsIs => Ok(as_taken(self.as_it_is(backend, self.config.force, progress)?)),
+            Way::AsNeeded => self.as_needed(backend, progress),
+            Way::Uncalibrated => {
+                progress.begin("rectifying");
+                self.along_rows_of(pipeline::rectify(backend, views)?, backend, progress)
+            }
+            Way::Calibrated(stereo) => self.along_rows_of(by(stereo)?, backend, progress),
+            Way::Either(_) if !self.config.align => self.as_needed(backend, progress),
+            Way::Either(stereo) => {
+                let pair = by(stereo)?;
+                if !pair.is_better_than_taken() {
+                    return self.as_needed(backend, progress);
+                }
+                let mut matched = self.along_rows_of(pair, backend, progress)?;
+                matched.warnings.push(
+                    "the calibration is of pictures as they were taken and of rectified ones: these were rectified by it, since their \
+                     rows correspond better then; --rectify never takes them as rectified"
+                        .into(),
+                );
+                Ok(matched)
+            }
+        }
+    }
+
+    fn as_it_is(&self, backend: &Backend, force: bool, progress: &Progress) -> Result<Outcome, Error> {
+        block_on(pipeline::run_with_progress(
+            backend,
+            (&self.left, &self.right),
+            &Config { force, ..self.config.clone() },
+            |step| progress.step(step),
+            |share| progress.share(share),
+        ))
+    }
+
+    /// Matches a rectified pair.
+    fn along_rows_of(&self, pair: RectifiedPair, backend: &Backend, progress: &Progress) -> Result<Matched> {
+        let outcome = block_on(pipeline::run_rectified(
+            backend,
+            &pair,
+            &self.config,
+            |step| progress.step(step),
+            |share| progress.share(share),
+        ));
+        let outcome = outcome.map_err(|error| match error {
+            Error::NotRectified { diagnosis } if pair.rectification.calibration().is_some() => {
+                let diagnosis =
+                    format!("the calibration does not fit the pictures, after the rectification {diagnosis}");
+                Error::NotRectified { diagnosis }
+            }
+            error => error,
+        })?;
+        Ok(Matched { outcome, rectified: Some(pair), warnings: Vec::new() })
+    }
+
+    /// Matches the pair as it is, or rectified from its matches if its rows do not correspond.
+    ///
+    /// With [`Config::force`], or without [`Config::align`], a pair that cannot be rectified, or must not be, is matched or refused
+    /// as with [`Way::AsIs`].
+    fn as_needed(&self, backend: &Backend, progress: &Progress) -> Result<Matched> {
+        let force = self.config.force;
+        if !self.config.align {
+            return Ok(as_taken(self.as_it_is(backend, force, progress)?));
+        }
+        let as_is = self.as_it_is(backend, false, progress);
+        let why = match &as_is {
+            Err(error @ Error::SizesDiffer { .. }) => error.to_string(),
+            Err(Error::NotRectified { diagnosis }) => format!("the pair is not rectified: {diagnosis}"),
+            Ok(outcome) if has_unknown_rows(outcome) => "nothing tells whether the rows of the views correspond".into(),
+            // Depth would be lost.
+            Ok(outcome) if has_distorted_rows(outcome) && self.calibration.is_none() => {
+                "the lens distorts the pictures".into()
+            }
+            _ => return Ok(as_taken(as_is?)),
+        };
+        progress.begin("rectifying");
+        let refused = match pipeline::rectify(backend, (&self.left, &self.right)) {
+            Ok(pair) if as_is.as_ref().is_ok_and(has_distorted_rows) && pair.rectification.distortion() == 0.0 => {
+                return Ok(as_taken(as_is?));
+            }
+            Ok(pair) => {
+                let mut matched = self.along_rows_of(pair, backend, progress)?;
+                matched.warnings.push(format!("{why}; disparities are those of the pair rectified from its matches"));
+                return Ok(matched);
+            }
+            Err(Error::NotRectifiable { reason }) => reason,
+            Err(error) => return Err(error.into()),
+        };
+        let outcome = match as_is {
+            Err(Error::NotRectified { .. }) if force => self.as_it_is(backend, true, progress)?,
+            Err(Error::NotRectified { diagnosis }) => {
+                let diagnosis = format!("no warp that matches tell helps, since {refused}; {diagnosis}");
+                return Err(Error::NotRectified { diagnosis }.into());
+            }
+            as_is => as_is?,
+        };
+        Ok(as_taken(outcome))
+    }
+}
+
+/// The outcome of a pair that was matched as it was taken.
+fn as_taken(outcome: Outcome) -> Matched {
+    Matched { outcome, rectified: None, warnings: Vec::new() }
+}
+
+/// Whether the rows of a map show the distortion of a lens, which no warp of the rows of one view removes.
+fn has_distorted_rows(outcome: &Outcome) -> bool {
+    outcome.seeding.rectification.is_distorted()
+}
+
+/// Whether a map is not to be trusted since nothing tells whether rows correspond.
+fn has_unknown_rows(outcome: &Outcome) -> bool {
+    outcome.seeding.rectification.verdict == Verdict::Unknown && outcome.trust < pipeline::TRUSTED
 }

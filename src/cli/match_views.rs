@@ -10,17 +10,34 @@ use super::{
     job::Job,
     options::{FeatureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
-    products, summary,
+    products,
+    rectification::{self, Names},
+    summary,
     terminal::{self, Progress},
+    way::{Rectify, Resolved},
 };
 
-/// Compute a disparity for every pixel of a rectified pair
+/// Names of the files of a pair that was rectified first.
+const NAMES: Names = Names {
+    pictures: ["rectified-left.png", "rectified-right.png"],
+    masks: ["rectified-left-mask.png", "rectified-right-mask.png"],
+    figure: "epipolar-lines.png",
+    json: "rectification.json",
+    yaml: "rectification.yml",
+};
+
+/// Compute a disparity for every pixel of a pair
 ///
 /// Writes disparity.pfm (32-bit float, in pixels, +inf for no disparity), disparity.png (16 bit, 256
 /// times the disparity, 0 for no disparity), disparity-color.png, confidence.png and report.json;
 /// with a calibration also depth.pfm (in metres) and cloud.ply. A left pixel (x, y) with disparity d
 /// corresponds to the right pixel (x - d, y). Without --disparities the range is found from matching
 /// interest points.
+///
+/// A pair that is not rectified is rectified first, by the calibration or from its matches (see hsad
+/// rectify); disparities are then those of rectified-left.png and rectified-right.png, which are written
+/// beside the map. Depth is then that of the rectified left camera, and the cloud is in coordinates of
+/// the left camera as it stood; with --map-back depth is that of the left camera as it stood, too.
 #[derive(Args)]
 #[command(name = "match", after_help = concat!("Examples:
   hsad match left.png right.png -o out
@@ -28,11 +45,13 @@ use super::{
   hsad match left.png right.png -o out --focal 1400 --baseline 0.12
   hsad match im0.png im1.png -o out --calib calib.txt --device cpu
   hsad match left.png right.png -o out --preset paper --figures
+  hsad match left.png right.png -o out --calib rig.yml --map-back
+  hsad match left.png right.png -o out --rectify never
   hsad match left.png right.png -o out --method kamencay
   hsad match left.png right.png -o out --mask round.png round.png
   hsad match left.tif right.tif -o out --nodata -9999
 
-Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified, 4 written but not to be trusted (--force goes on all the same)"))]
+Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified and cannot be, 4 written but not to be trusted (--force goes on all the same)"))]
 pub struct Match {
     /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
     left: PathBuf,
@@ -44,6 +63,13 @@ pub struct Match {
     /// Also draw interest points (keypoints.png) and matches (matches.png)
     #[arg(long)]
     figures: bool,
+    /// Whether and how to rectify the pair before it is matched
+    #[arg(long, value_enum, default_value = "auto")]
+    rectify: Rectify,
+    /// Take the map of a pair that was rectified first back to the left picture as it was taken (with --reference right to
+    /// the right one); disparities remain those of the rectified pair
+    #[arg(long)]
+    map_back: bool,
     #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
@@ -63,11 +89,10 @@ impl Match {
         let mut output = Output::open(&self.output)?;
         let LoadedPair { left, right, stretch, mut warnings } =
             load_pair(&self.left, &self.right, &self.unseen.unseen())?;
-        let calibration = self.depth.calibration([&self.left, &self.right], left.size())?;
-        let calibration = calibration.map(|(calibration, notes)| {
-            warnings.extend(notes);
-            calibration
-        });
+        let sizes = [left.size(), right.size()];
+        let cameras = self.depth.cameras([&self.left, &self.right], sizes)?;
+        let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
+        warnings.extend(notes);
         // Told before the match, since they may be the reason why it fails.
         let told = warnings.len();
         if !self.run.quiet {
@@ -75,12 +100,16 @@ impl Match {
         }
 
         let names = [&self.left, &self.right].map(|path| path.display().to_string());
-        let mut completed = Job { names, left, right, stretch, config, strongest, calibration }.run(&self.run)?;
+        let job = Job { names, left, right, stretch, config, way, map_back: self.map_back, strongest, calibration };
+        let mut completed = job.run(&self.run)?;
         completed.warnings.splice(0..0, warnings);
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
         completed.add_maps(&mut output)?;
+        if let Some(pair) = &completed.rectified {
+            rectification::add_files(pair, &NAMES, &mut output)?;
+        }
         if self.figures {
             completed.add_figures(&mut output)?;
         }

@@ -15,12 +15,15 @@ pub mod out_of_memory;
 mod output;
 mod pipeline_cache;
 mod products;
+mod rectification;
+mod rectify;
 mod report;
 mod score;
 mod summary;
 pub mod terminal;
 mod threads;
 mod verify;
+mod way;
 mod wording;
 
 use std::process::ExitCode;
@@ -34,7 +37,7 @@ Exit codes:
   0  success
   1  failure: a file, a picture or a device is missing or unusable
   2  usage: an unknown option, or a value outside its range
-  3  the pair is not rectified (hsad match --force matches it all the same)
+  3  the pair is not rectified and cannot be (hsad match --force matches it all the same)
   4  the map was written, but is not to be trusted (hsad match --force accepts it)
 130  interrupted: no incomplete files are left behind";
 
@@ -49,6 +52,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Match(Box<match_views::Match>),
+    Rectify(rectify::Rectify),
     Features(features::Features),
     Devices(devices::Devices),
     Demo(demo::Demo),
@@ -65,6 +69,7 @@ impl Cli {
         threads::start()?;
         match self.command {
             Command::Match(command) => command.run(),
+            Command::Rectify(command) => command.run(),
             Command::Features(command) => command.run(),
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
@@ -83,7 +88,7 @@ pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     }
     match error.downcast_ref() {
         Some(hsad::Error::Parameter { .. }) => ExitCode::from(2),
-        Some(hsad::Error::NotRectified { .. }) => ExitCode::from(3),
+        Some(hsad::Error::NotRectified { .. } | hsad::Error::NotRectifiable { .. }) => ExitCode::from(3),
         _ => ExitCode::FAILURE,
     }
 }

@@ -193,7 +193,7 @@ pub struct MatchOptions {
     /// paper 10]
     #[arg(long, value_name = "N")]
     strongest: Option<usize>,
-    /// Match the pair even if it is not rectified
+    /// Match the pair even if it is not rectified and cannot be, and accept a map that is not to be trusted
     #[arg(long)]
     force: bool,
 }

@@ -6,7 +6,7 @@ use hsad::{
     disparity::{DisparityMap, NONE, fixed_point},
     features::Feature,
     image::Plane,
-    io::{Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
+    io::{Calibration, Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
 };
 use serde_json::Value;
 
@@ -35,27 +35,44 @@ impl CompletedJob {
         // Disparities of a pair without parallax are 0 but for noise, and so are the inverse depths.
         let has_depth = !self.outcome.no_parallax || self.job.config.force;
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
-            let (picture, calibration) = match self.job.config.reference {
-                View::Left => (&self.job.left, calibration),
-                View::Right => (&self.job.right, calibration.seen_from_right()),
-            };
-            let depth = depth_map(&dense.disparity, &calibration);
+            let (depth, points) = self.depth_and_points(calibration)?;
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
                 self.warnings.push(format!(
                     "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration",
                     calibration.doffs
                 ));
             }
-            let points = ply::points(&depth, picture, &calibration)?;
             output.add("depth.pfm", |out| pfm::write(out, &depth))?;
             output.add("cloud.ply", |out| ply::write(out, &points))?;
         }
         Ok(())
     }
 
+    /// The depth of each pixel of the map, and the points in coordinates of the reference view's camera as it stood; in metres.
+    fn depth_and_points(&self, calibration: Calibration) -> Result<(Plane<f32>, Vec<ply::Point>)> {
+        let (map, reference) = (&self.outcome.dense.disparity, self.job.config.reference);
+        let (picture, calibration) = match reference {
+            View::Left => (&self.job.left, calibration),
+            View::Right => (&self.job.right, calibration.seen_from_right()),
+        };
+        let pair = self.rectified.as_ref();
+        let Some(positions) = pair.and_then(|pair| pair.points_in_metres(map, reference, self.back.as_ref())) else {
+            let depth = depth_map(map, &calibration);
+            let points = ply::points(&depth, picture, &calibration)?;
+            return Ok((depth, points));
+        };
+        let depth = match &self.back {
+            Some(_) => positions.map(|&[.., z]| if z > 0.0 { z } else { f32::INFINITY }),
+            None => depth_map(map, &calibration),
+        };
+        Ok((depth, ply::colored(&positions, picture)?))
+    }
+
     /// Adds the paper's figures 4 and 5: interest points in both views, and matches between them.
     pub fn add_figures(&self, output: &mut Output) -> Result<()> {
         let Job { left, right, strongest, .. } = &self.job;
+        // Points and matches belong to the pictures that were matched.
+        let [left, right] = self.rectified.as_ref().map_or([left, right], |pair| pair.pictures.each_ref());
         let count = strongest.unwrap_or(usize::MAX);
         let keypoints = |picture: &Picture, features: &[Feature]| -> Plane<[u8; 3]> {
             let mut features = features.to_vec();

@@ -16,12 +16,12 @@ use hsad::{
 };
 use serde_json::{Map, Value, json};
 
-use super::job::CompletedJob;
+use super::{job::CompletedJob, rectification as rectified_pair};
 
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, total, warnings, not_trusted } = self;
+        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted } = self;
         let mut seconds: Map<String, Value> =
             outcome.times.iter().map(|(step, time)| (step.name().into(), json!(time.as_secs_f64()))).collect();
         seconds.insert("total".into(), json!(total.as_secs_f64()));
@@ -45,6 +45,8 @@ impl CompletedJob {
             "seeds": outcome.seeding.seeds.len(),
             "range": searched(outcome),
             "levels": levels(&job.config, outcome),
+            "rectified": rectified.as_ref().map(rectified_pair::json),
+            "mapped_back": back.is_some(),
             "rectification": rectification(&outcome.seeding.rectification),
             "brightness": outcome.seeding.brightness.as_ref().map(brightness),
             "equalised": {
@@ -272,7 +274,7 @@ fn brightness(&BrightnessRelation { gain, offset, residual }: &BrightnessRelatio
     json!({ "gain": number(gain), "offset": number(offset), "residual": number(residual) })
 }
 
-fn calibration(&Calibration { focal, baseline, doffs, cx, cy, .. }: &Calibration) -> Value {
+pub fn calibration(&Calibration { focal, baseline, doffs, cx, cy, .. }: &Calibration) -> Value {
     json!({ "focal_px": focal, "baseline_m": baseline, "doffs_px": doffs, "cx_px": cx, "cy_px": cy })
 }
 

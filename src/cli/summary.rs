@@ -1,8 +1,13 @@
 //! The summary of a run that is printed on the terminal.
 
-use hsad::{disparity::coverage, image::Size, pipeline::RangeSource, seeding::Verdict};
+use hsad::{
+    disparity::coverage,
+    image::Size,
+    pipeline::{RangeSource, RectifiedPair},
+    seeding::Verdict,
+};
 
-use super::{doubts::span, job::CompletedJob, output::Output};
+use super::{doubts::span, job::CompletedJob, output::Output, rectification};
 
 impl CompletedJob {
     /// Device, stretch of the samples, range, matches, rectification, trust, coverage and time, one line each.
@@ -14,7 +19,7 @@ impl CompletedJob {
             RangeSource::Found(_) => format!("found from a coarse map and {} matches", seeding.seeds.len()),
             RangeSource::Fallback(_) => "could not be found".into(),
         };
-        let rectified = match seeding.rectification.verdict {
+        let rows = match seeding.rectification.verdict {
             Verdict::Rectified => format!("yes: {}", seeding.rectification),
             Verdict::Alignable => format!("nearly: {}", seeding.rectification),
             Verdict::NotRectified | Verdict::UpsideDown | Verdict::Vertical => format!("no: {}", seeding.rectification),
@@ -38,7 +43,8 @@ impl CompletedJob {
         }
         line(&mut text, "range", format!("{} ({source})", span(outcome.range)));
         line(&mut text, "points", format!("{left} left, {right} right, {} matched", seeding.seeds.len()));
-        line(&mut text, "rectified", rectified);
+        text += &self.rectified.as_ref().map(rectified).unwrap_or_default();
+        line(&mut text, if self.rectified.is_some() { "rows" } else { "rectified" }, rows);
         line(&mut text, "trust", format!("{:.2} of 1", outcome.trust));
         let share = 100.0 * coverage(&outcome.dense.disparity);
         let measured = 100.0 * outcome.dense.measured();
@@ -48,6 +54,14 @@ impl CompletedJob {
         line(&mut text, "time", format!("{:.2} s ({})", total.as_secs_f64(), steps.join(", ")));
         text
     }
+}
+
+/// What was done to bring rows to correspond, and the size of the pictures.
+pub fn rectified(pair: &RectifiedPair) -> String {
+    let mut text = String::new();
+    line(&mut text, "rectified", rectification::words(pair));
+    line(&mut text, "pictures", rectification::pictures(&pair.rectification));
+    text
 }
 
 /// The line that names the output folder and its files.

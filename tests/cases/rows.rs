@@ -1,6 +1,11 @@
 //! Rows of the views that do not correspond as they are.
 
-use crate::pair::{Pair, lowered, resampled, transposed, upside_down};
+use hsad::{disparity, io::pfm};
+
+use crate::{
+    pair::{Pair, lowered, resampled, transposed, upside_down},
+    run::Run,
+};
 
 #[test]
 fn one_row_off_is_matched_as_well_as_none() {
@@ -53,12 +58,36 @@ fn a_distorted_lens_is_told() {
 }
 
 #[test]
+fn the_distortion_of_a_lens_is_removed() {
+    let lens = |x: f64, y: f64| {
+        let (u, v) = ((x - 169.5) / 240.0, (y - 127.0) / 240.0);
+        let factor = 1.0 + 0.3 * (u * u + v * v);
+        (169.5 + 240.0 * factor * u, 127.0 + 240.0 * factor * v)
+    };
+    let pair = Pair::shipped("planes").with(|view, _| resampled(&view, lens));
+    let as_is = pair.matched(&["--rectify", "never"]).ends(0, &["as by a distorted lens"]);
+    let run = pair.matched(&[]).ends(0, &["the lens distorts the pictures"]).never_says(&["as by a distorted lens"]);
+    // The inverse of the lens above has more terms than one.
+    let k1 = run.report()["rectified"]["k1"].as_f64().unwrap();
+    assert!((-0.4..-0.2).contains(&k1), "{k1}");
+    let unexplained = |run: &Run| run.report()["rectification"]["unexplained_px"].as_f64().unwrap();
+    assert!(unexplained(&as_is) > 1.0 && unexplained(&run) == 0.0);
+    // With a focal length and a baseline depth is worth more than rows.
+    let run = pair.matched(&["--focal", "378", "--baseline", "0.1", "--doffs", "14"]);
+    assert!(run.ends(0, &["as by a distorted lens"]).has("depth.pfm"));
+}
+
+#[test]
 fn a_right_view_upside_down_is_named_and_turned_back() {
     let pair = Pair::shipped("planes");
     let turned = pair.clone().with_right(upside_down);
-    let run =
-        turned.matched(&[]).ends(3, &["the right view is upside down: turn the right view by 180 degrees", "--force"]);
+    let words = "the right view is upside down: turn the right view by 180 degrees";
+    let run = turned.matched(&["--rectify", "never"]).ends(3, &[words, "--force"]);
     assert!(!run.has("report.json"));
+    // Without being told, too: the left view stays, and so does the truth.
+    let run = turned.matched(&[]).ends(0, &[words, "rectified from its matches"]).judges(&pair.truth);
+    assert!(run.has("rectified-right.png"));
+    run.errs_below(pair.matched(&[]).wrong(&pair.truth) + 0.02, &pair.truth);
     turned.with_right(upside_down).matched(&[]).ends(0, &[]).judges(&pair.truth);
 }
 
@@ -68,13 +97,112 @@ fn cameras_above_each_other_are_named() {
     let above = Pair { left: transposed(&left), right: transposed(&right), truth: transposed(&truth) };
     let words = "the cameras stand above each other: turn both views by 90 degrees";
     // A fit of rows has no meaning there.
-    above.matched(&[]).ends(3, &[words]).never_says(&["clockwise", "larger", "smaller", "higher", "lower"]);
+    let figures = ["clockwise", "larger", "smaller", "higher", "lower"];
+    above.matched(&["--rectify", "never"]).ends(3, &[words]).never_says(&figures);
+    let run = above.matched(&["--map-back"]).ends(0, &[words]);
+    assert_eq!(run.report()["rectified"]["model"], "both views");
+    // Columns of views that are both turned are known but for a shift.
+    let found = run.disparity();
+    assert_eq!(found.size(), above.truth.size());
+    let pairs = found.data().iter().zip(above.truth.data());
+    let mut off: Vec<f32> = pairs.filter_map(|(&d, truth)| Some(disparity::pixels(d)? - truth)).collect();
+    off.retain(|off| off.is_finite());
+    off.sort_by(f32::total_cmp);
+    let shift = off[off.len() / 2];
+    let wrong = off.iter().filter(|&&off| (off - shift).abs() > 2.0).count();
+    assert!(shift.abs() < 20.0 && wrong * 10 < off.len(), "{wrong} of {} wrong, shifted by {shift}", off.len());
+    assert!(off.len() * 10 > above.truth.data().len() * 8, "{} known", off.len());
 }
 
 #[test]
 fn figures_of_a_refusal_are_right() {
     let far = Pair::shipped("planes").with_right(|right| lowered(right, 40));
-    let run = far.matched(&[]).ends(3, &["the right view lies ", " px lower", "rectify both views first"]);
+    let run = far
+        .matched(&["--rectify", "never"])
+        .ends(3, &["the right view lies ", " px lower", "rectify both views first"]);
     let figure = run.told.split("lies ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     assert!((figure.parse::<f64>().unwrap() - 40.0).abs() < 0.3, "{}", run.told);
+}
+
+/// The position that a camera which turned to the right by `angle` shows at a pixel: that of the scene's own picture.
+fn panned(angle: f64) -> impl Fn(f64, f64) -> (f64, f64) {
+    let (sin, cos) = angle.sin_cos();
+    move |x, y| {
+        let (x, y) = ((x - 169.5) / 378.0, (y - 127.0) / 378.0);
+        let depth = cos - sin * x;
+        (378.0 * (cos * x + sin) / depth + 169.5, 378.0 * y / depth + 127.0)
+    }
+}
+
+#[test]
+fn a_right_view_turned_far_and_smaller_is_rectified() {
+    let pair = Pair::shipped("planes");
+    let (sin, cos) = 12_f64.to_radians().sin_cos();
+    let turned = pair.clone().with_right(|right| {
+        resampled(right, |x, y| {
+            let (x, y) = ((x - 169.5) / 0.9, (y - 127.0) / 0.9);
+            (cos * x - sin * y + 169.5, sin * x + cos * y + 127.0)
+        })
+    });
+    turned.matched(&["--rectify", "never"]).ends(3, &["--force"]);
+    let run = turned.matched(&[]).ends(0, &["rectified from its matches"]);
+    assert_eq!(run.report()["rectified"]["model"], "affine");
+    // The left view stays.
+    run.errs_below(pair.matched(&[]).wrong(&pair.truth) + 0.05, &pair.truth);
+}
+
+#[test]
+fn what_shows_no_depth_is_named() {
+    let pair = Pair::shipped("planes");
+    let same = |change: &dyn Fn(f64, f64) -> (f64, f64)| {
+        pair.clone().with_right(|_| resampled(&pair.left, change)).matched(&["--rectify", "uncalibrated"])
+    };
+    same(&panned(0.12)).ends(3, &["the camera turned on the spot, "]);
+    // A plane that leans back: rows are further apart at the top.
+    same(&|x, y| {
+        let depth = 1.0 + 0.0012 * (y - 127.0);
+        ((x - 169.5) / depth + 180.0, (y - 127.0) / depth + 147.0)
+    })
+    .ends(3, &["the views show a plane, "]);
+    let unrelated = Pair { right: Pair::shipped("curved").right, ..pair.clone() };
+    unrelated.matched(&["--rectify", "uncalibrated"]).ends(3, &["the views are unrelated"]);
+}
+
+#[test]
+fn lenses_with_a_calibration_cost_nothing_but_the_edges() {
+    // Focal length 378 px, and the right camera 14 px of principal point and 100 mm to the right: see `meta.json`.
+    let lens = |centre: f64| {
+        move |x: f64, y: f64| {
+            let (u, v) = ((x - centre) / 378.0, (y - 127.0) / 378.0);
+            // The inverse of u (1 - 0.2 r^2), to 1/1000 px within the picture.
+            let square = u * u + v * v;
+            let factor = 1.0 + 0.2 * square + 0.12 * square * square + 0.096 * square * square * square;
+            (centre + 378.0 * factor * u, 127.0 + 378.0 * factor * v)
+        }
+    };
+    let pair = Pair::shipped("planes");
+    let taken = pair.clone().with(|view, side| resampled(&view, lens(if side == 0 { 169.5 } else { 183.5 })));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("rig.json");
+    let camera = |cx: f64| {
+        format!("{{\"focal\": [378, 378], \"centre\": [{cx}, 127], \"model\": \"pinhole\", \"distortion\": [-0.2]}}")
+    };
+    let rig = format!("{{\"left\": {}, \"right\": {}, \"translation\": [-0.1, 0, 0]}}", camera(169.5), camera(183.5));
+    std::fs::write(&file, rig).unwrap();
+    let run = taken.matched(&["--map-back", "--calib", file.to_str().unwrap()]).ends(0, &[]);
+    assert!(run.has("cloud.ply") && run.report()["mapped_back"] == true);
+    let depth = pfm::read(&run.path("depth.pfm")).unwrap();
+    // The lens leaves axis and depth alone: depth at a pixel is that of the scene where the pixel looks.
+    let (mut wrong, mut count) = (0, 0);
+    for (x, y) in (0..255).flat_map(|y| (0..340).map(move |x| (x, y))) {
+        let (u, v) = lens(169.5)(f64::from(x), f64::from(y));
+        let truth = pair.truth.get_clamped(u.round() as i64, v.round() as i64);
+        if truth.is_finite() && (0.0..339.0).contains(&u) && (0.0..254.0).contains(&v) {
+            let disparity = 37.8 / f64::from(depth.get(x, y)) - 14.0;
+            count += 1;
+            wrong += usize::from((disparity - f64::from(truth)).abs() > 2.0 || !depth.get(x, y).is_finite());
+        }
+    }
+    let without = pair.matched(&[]).wrong(&pair.truth);
+    assert!((wrong as f64) < (without + 0.06) * f64::from(count), "{wrong} of {count}, {without} without a lens");
 }

@@ -1,6 +1,9 @@
 //! One run of `hsad match`, and what is asked of every run.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use hsad::{
     disparity::{self, DisparityMap, DisparityRange},
@@ -53,6 +56,10 @@ impl Run {
 
     pub fn has(&self, file: &str) -> bool {
         self.folder.path().join(file).exists()
+    }
+
+    pub fn path(&self, file: &str) -> PathBuf {
+        self.folder.path().join(file)
     }
 
     pub fn report(&self) -> Value {

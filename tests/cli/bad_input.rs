@@ -115,7 +115,7 @@ fn calibrations_that_are_none() {
         ("cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=0\nbaseline=1\nwidth=9\nheight=9\n", 1, "for pictures of 9x9 pixels"),
     ] {
         fs::write(&calib, content).unwrap();
-        pair_fails(&left, &right, &["--calib", calib_text], code, expected);
+        pair_fails(&left, &right, &["--calib", calib_text, "--rectify", "never"], code, expected);
     }
     fs::write(&calib, "cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=-1000\nbaseline=1\n").unwrap();
     let mut command = match_on_cpu(&left, &right, &temporary.path().join("out"));
@@ -171,7 +171,11 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
     let [left, lower] = ["left.png", "lower.png"].map(|name| temporary.path().join(name));
     grey_png(&left, &picture);
     grey_png(&lower, &Plane::from_fn((340, 255), |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 40)));
-    pair_fails(&left, &lower, &[], 3, "points agree), or search along rows all the same with --force");
+    let words = "points agree), or search along rows all the same with --force";
+    pair_fails(&left, &lower, &["--rectify", "never"], 3, words);
+    // One picture twice shows no depth by which it could be rectified.
+    pair_fails(&left, &lower, &[], 3, "the views show a plane");
+    pair_fails(&left, &lower, &[], 3, words);
 
     // A rotation by 90 degrees, which only features with orientations match.
     let [square, turned] = ["square.png", "turned.png"].map(|name| temporary.path().join(name));

@@ -3,6 +3,7 @@
 #![cfg(feature = "cli")]
 
 mod bad_input;
+mod calibrated;
 mod calibrations;
 mod common;
 mod completions;
@@ -25,6 +26,7 @@ mod mosaics;
 #[path = "../pictures/mod.rs"]
 mod pictures;
 mod pipeline_cache;
+mod rectify;
 mod verify;
 
 use common::hsad;
@@ -39,6 +41,7 @@ fn help_has_examples_and_exit_codes() {
         .stdout(contains("Exit codes:").and(contains("3  the pair is not rectified")));
     for command in [
         &["match"][..],
+        &["rectify"],
         &["features"],
         &["devices"],
         &["demo"],

@@ -1,0 +1,121 @@
+//! `hsad rectify`: brings the rows of two views to correspond.
+
+use std::{path::PathBuf, time::Instant};
+
+use clap::Args;
+use hsad::{
+    io::load::{LoadedPair, load_pair},
+    pipeline::{self, RectifiedPair},
+    rectify::Residual,
+};
+use serde_json::json;
+
+use super::{
+    depth::CalibrationOptions,
+    options::{RunOptions, UnseenOptions},
+    output::Output,
+    products,
+    rectification::{self, Names},
+    report, summary,
+    terminal::{self, Progress},
+};
+
+const NAMES: Names = Names {
+    pictures: ["left.png", "right.png"],
+    masks: ["left-mask.png", "right-mask.png"],
+    figure: "epipolar-lines.png",
+    json: "rectification.json",
+    yaml: "rectification.yml",
+};
+
+/// Number of matches below which nothing tells whether a calibration fits.
+const LEAST: usize = 20;
+
+/// Rectify a pair: bring its rows to correspond
+///
+/// Writes left.png and right.png, of one size and transparent where they show nothing, their masks,
+/// epipolar-lines.png, matrices (rectification.json, rectification.yml for OpenCV) and report.json.
+///
+/// With --calib the views are turned by the calibration of the cameras as they stood; the matrices are
+/// R1, R2, P1, P2 and Q, in metres. Without it everything is found from matching interest points: the
+/// views may be turned against each other by any angle, differ in size and scale, and have a distorted
+/// lens; the matrices are homographies, and k1. The left view then stays as it is where resampling the
+/// right one suffices, and disparities have no known baseline, and so no metres.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hsad rectify left.jpg right.jpg -o rectified
+  hsad rectify left.jpg right.jpg -o rectified --calib rig.yml
+  hsad match rectified/left.png rectified/right.png -o out
+
+Exit codes: 0 done, 1 failed, 2 usage, 3 cannot be rectified")]
+pub struct Rectify {
+    /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
+    left: PathBuf,
+    /// Right view, of any size
+    right: PathBuf,
+    /// Output folder, created if missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    calibration: CalibrationOptions,
+    #[command(flatten)]
+    run: RunOptions,
+    #[command(flatten)]
+    unseen: UnseenOptions,
+}
+
+impl Rectify {
+    /// Rectifies the pair and writes all files; none of them appears unless every one could be written.
+    pub fn run(self) -> anyhow::Result<()> {
+        let mut output = Output::open(&self.output)?;
+        let LoadedPair { left, right, mut warnings, .. } = load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        let sizes = [left.size(), right.size()];
+        let file = self.calibration.read([&self.left, &self.right], sizes)?;
+        if let Some(file) = &file {
+            file.check_taken(sizes)?;
+            warnings.extend(file.loaded.notes.iter().cloned());
+        }
+        let start = Instant::now();
+        let cached = self.run.open()?;
+        let backend = &cached.backend;
+        let progress = Progress::new(self.run.quiet);
+        progress.begin("rectifying");
+        let pair = match &file {
+            Some(file) => pipeline::rectify_by(backend, (&left, &right), &file.loaded.stereo)?,
+            None => pipeline::rectify(backend, (&left, &right))?,
+        };
+        cached.save();
+        let seconds = start.elapsed().as_secs_f64();
+        warnings.extend(misfit(&pair));
+        progress.begin("writing");
+        rectification::add_files(&pair, &NAMES, &mut output)?;
+        let report = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "left": self.left.display().to_string(),
+            "right": self.right.display().to_string(),
+            "device": report::device(backend),
+            "rectified": rectification::json(&pair),
+            "seconds": { "total": seconds },
+            "warnings": warnings,
+        });
+        products::add_report(&mut output, report)?;
+        output.finish()?;
+        drop(progress);
+        if !self.run.quiet {
+            warnings.iter().for_each(terminal::warning);
+            terminal::print(&(summary::rectified(&pair) + &summary::files(&output)))?;
+        }
+        Ok(())
+    }
+}
+
+/// A warning if the rows of most matches do not correspond after all.
+fn misfit(pair: &RectifiedPair) -> Option<String> {
+    let Residual { points, right, .. } = pair.residual;
+    (pair.rectification.calibration().is_some() && (points < LEAST || 2 * right < points)).then(|| {
+        format!(
+            "rows of {right} of {points} matches correspond after the rectification: check that the calibration is that of the \
+             pictures, and that left and right are not mixed up"
+        )
+    })
+}
