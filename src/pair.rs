@@ -20,7 +20,7 @@ pub struct Pair<'b> {
     left: Luma,
     right: Luma,
     /// The pictures of either view on the host, without a device and unless other views took their place.
-    pictures: [Option<Picture>; 2],
+    pictures: [Option<&'b Picture>; 2],
     device: Option<OnDevice<'b>>,
 }
 
@@ -39,14 +39,14 @@ impl<'b> Pair<'b> {
     /// # Errors
     /// [`Error::SizesDiffer`]; [`Error::Unsupported`] if the device lacks a limit; [`Error::TooLarge`],
     /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
-    pub async fn new(backend: &'b Backend, left: &Picture, right: &Picture) -> Result<Self> {
+    pub async fn new(backend: &'b Backend, left: &'b Picture, right: &'b Picture) -> Result<Self> {
         Self::with_colours(backend, [left, right], [true; 2]).await
     }
 
     /// [`Self::new`], with the colours of the views that are `coloured` only: colours take four times the memory of luma.
     pub(crate) async fn with_colours(
         backend: &'b Backend,
-        [left, right]: [&Picture; 2],
+        [left, right]: [&'b Picture; 2],
         coloured: [bool; 2],
     ) -> Result<Self> {
         if left.size() != right.size() {
@@ -55,8 +55,7 @@ impl<'b> Pair<'b> {
         check_size(left.size())?;
         match backend {
             Backend::Cpu => {
-                let pictures =
-                    [(left, coloured[0]), (right, coloured[1])].map(|(view, kept)| kept.then(|| view.clone()));
+                let pictures = [(left, coloured[0]), (right, coloured[1])].map(|(view, kept)| kept.then_some(view));
                 Ok(Self { backend, left: left.luma(), right: right.luma(), pictures, device: None })
             }
             Backend::Gpu(gpu) => {
@@ -136,7 +135,7 @@ impl<'b> Pair<'b> {
                 (right, Some(OnDevice { gpu, luma: [left.clone(), right_buffer], colours }))
             }
         };
-        let pictures = [self.pictures[0].clone(), None];
+        let pictures = [self.pictures[0], None];
         Ok(Self { backend: self.backend, left: self.left.clone(), right, pictures, device })
     }
 
@@ -193,7 +192,7 @@ impl<'b> Pair<'b> {
                 let views = (luma.clone(), colours[reference].clone());
                 compute_uploaded(gpu, self.size(), config, views, progress).await
             }
-            None => match &self.pictures[reference] {
+            None => match self.pictures[reference] {
                 Some(picture) => cpu::dense::compute_in_colour([&self.left, &self.right], picture, config),
                 None => cpu::dense::compute(&self.left, &self.right, config),
             },

@@ -33,7 +33,7 @@ pub(super) struct Views<'b> {
 }
 
 /// The pair of two pictures, with the colours that `config` fills holes by.
-async fn with_colours<'b>(backend: &'b Backend, pictures: [&Picture; 2], config: &Config) -> Result<Pair<'b>> {
+async fn with_colours<'b>(backend: &'b Backend, pictures: [&'b Picture; 2], config: &Config) -> Result<Pair<'b>> {
     let fills = matches!(&config.method, Method::Hsad(parameters) if parameters.fills());
     Pair::with_colours(backend, pictures, View::ALL.map(|view| fills && view == config.reference)).await
 }
@@ -47,7 +47,7 @@ impl<'b> Views<'b> {
     }
 
     /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours, for matching by `config`.
-    pub async fn new(backend: &'b Backend, [left, right]: [&Picture; 2], config: &Config) -> Result<Self> {
+    pub async fn new(backend: &'b Backend, [left, right]: [&'b Picture; 2], config: &Config) -> Result<Self> {
         let pair = with_colours(backend, [left, right], config).await?;
         let views = pair.views();
         // Before demosaicking, which mixes the edge of a border with the scene.
