@@ -199,6 +199,10 @@ impl Job {
                 let diagnosis = format!("no warp that matches tell helps, since {refused}; {diagnosis}");
                 return Err(Error::NotRectified { diagnosis }.into());
             }
+            Err(Error::SizesDiffer { left, right }) => {
+                let reason = format!("{refused} (the left view is {left} and the right view {right} pixels)");
+                return Err(Error::NotRectifiable { reason }.into());
+            }
             as_is => as_is?,
         };
         Ok(as_taken(outcome))

@@ -26,8 +26,8 @@ use crate::{
 /// Number of pixels above which strong interest points alone are matched.
 const LARGE: u64 = 1 << 19;
 /// Largest number of interest points of a view that are matched, the strongest, spread over the view: the time to match points grows
-/// with the square of their number, and a thousand matches are more than enough.
-const MOST_POINTS: u32 = 4000;
+/// with the square of their number. A view of half the scale has few points in common with those of the other.
+const MOST_POINTS: u32 = 8000;
 /// Number of inliers below which more points are sought along the rows of a first rectification.
 const FEW: usize = 200;
 /// Number of times that they are sought, the second time along better rows.

@@ -115,7 +115,7 @@ fn are_level(seeds: &[Seed], rows: &Rectification) -> bool {
 
 /// The second view resampled by `map`, with the rows of the first view and all columns that it covers, limited to one
 /// width of the first view beyond either side.
-pub(super) async fn turned(
+async fn turned(
     detectors: &mut DetectorCache<'_>,
     first: &Luma,
     second: &Luma,

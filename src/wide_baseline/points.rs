@@ -1,19 +1,17 @@
 //! Matches at the positions of the interest points themselves, for geometry.
 
-use glam::{DAffine2, DVec2};
+use glam::DVec2;
 
 use super::{DetectorCache, NEIGHBOURHOOD, View, WideBaselineConfig, agreement::agreement, align};
 use crate::{
     backend::Backend,
     error::Result,
     features::Feature,
-    image::{Luma, Size, reduced},
+    image::Luma,
     matching::{MatchConfig, Seed, match_features},
     rectify::Correspondence,
 };
 
-/// Number of pixels that tell turn and scale.
-const SMALL: u64 = 1 << 19;
 /// Smallest share of the neighbours that must agree with a match.
 const LEAST_AGREEMENT: f32 = 0.25;
 
@@ -33,22 +31,9 @@ pub(crate) async fn match_points(
 ) -> Result<Vec<Correspondence>> {
     let mut detectors = DetectorCache::new(backend);
     let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
-    // Turn and scale are found in small views: the positions of the points are those of the last detection.
-    let factor = [first, second].into_iter().map(|view| reduction(view.size())).max().unwrap_or(1);
-    let small = View::new(&mut detectors, reduced(first, factor), features).await?;
-    let aligned = align::align(&mut detectors, &small, &reduced(second, factor), features, matching).await?;
-    let (first, align::Aligned { view: second, map, .. }) = if factor == 1 {
-        (small, aligned)
-    } else {
-        let enlarge = DAffine2::from_scale_angle_translation(
-            DVec2::splat(factor.into()),
-            0.0,
-            DVec2::splat((f64::from(factor) - 1.0) / 2.0),
-        );
-        let map = enlarge * aligned.map * enlarge.inverse();
-        let second = align::turned(&mut detectors, first, second, map, features).await?;
-        (View::new(&mut detectors, first.clone(), features).await?, second)
-    };
+    let first = View::new(&mut detectors, first.clone(), features).await?;
+    let align::Aligned { view: second, map, .. } =
+        align::align(&mut detectors, &first, second, features, matching).await?;
     let back = map.inverse();
     let found = supported([&first.features, &second.features], matching, reach)?;
     let place = |Correspondence { left, right }| Correspondence { left, right: back.transform_point2(right) };
@@ -72,11 +57,6 @@ pub(crate) async fn match_upright(
     let second = detectors.features(second, features).await?;
     let matching = MatchConfig { max_dy, ..matching.clone() };
     Ok(supported([&first, &second], &matching, reach)?.collect())
-}
-
-/// The integer factor by which views of `size` are reduced for turn and scale.
-fn reduction(size: Size) -> u32 {
-    (1..).find(|&factor| size.pixels() <= SMALL * u64::from(factor).pow(2)).unwrap_or(1)
 }
 
 /// The matches that enough neighbours within `reach` pixels agree with.

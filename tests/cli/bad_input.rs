@@ -50,7 +50,7 @@ fn sizes_that_do_not_fit() {
     let [small, tiny] = ["small.png", "tiny.png"].map(|name| temporary.path().join(name));
     grey_png(&small, &noise(40, 9, 1));
     grey_png(&tiny, &Plane::filled((1, 1), 7));
-    pair_fails(&scene("planes", "left.png"), &small, &[], 1, "340x255 and the right view 40x9");
+    pair_fails(&scene("planes", "left.png"), &small, &[], 3, "340x255 and the right view 40x9");
     pair_fails(&tiny, &tiny, &[], 1, "1x1 pixels is too small for a window of 5x5");
     pair_fails(&small, &small, &["--window", "11"], 1, "40x9 pixels is too small for a window of 11x11");
     let out = temporary.path().join("out");

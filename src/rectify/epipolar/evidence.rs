@@ -8,15 +8,18 @@ use super::{
     fundamental::Fundamental,
     homography,
     relation::Relation,
+    similarity::Similarity,
 };
 use crate::rectify::Correspondence;
 
 /// Smallest number of inliers, and smallest share of all points, of views of one scene.
 const RELATED: (usize, f64) = (20, 0.6);
-/// Distance from the best homography from which a point shows depth, in pixels, and the smallest share of such points.
+/// Distance from the best homography from which a point shows depth, in pixels of the left view, and the smallest share of such points.
 const DEPTH: (f64, f64) = (4.0, 0.04);
 /// The distance of points that even an obliquely seen plane does not show, over the one above.
 const OBLIQUE: f64 = 3.0;
+/// Smallest and largest scale of the right view that counts: beyond them matches are less precise than depth.
+const SCALES: (f64, f64) = (0.4, 2.5);
 /// Median displacement up to which the views were taken from one place in one direction, in pixels.
 const STILL: f64 = 0.5;
 /// Smallest share of the inliers whose rows agree as they are, for a scene without depth to count as rectified.
@@ -70,11 +73,12 @@ impl Evidence {
         found: &Fundamental,
         frame: &Frame,
     ) -> Self {
-        let plane = homography::consensus(inliers, DEPTH.0 / frame.unit);
+        // Distances are measured in the right view, where depth shows in proportion to the scale.
+        let unit = frame.unit / Similarity::between(inliers).scale.clamp(SCALES.0, SCALES.1);
+        let plane = homography::consensus(inliers, DEPTH.0 / unit);
         let off = |pixels: f64| {
-            let is_off = |point: &&Correspondence| {
-                plane.is_none_or(|plane| homography::distance(&plane, point) > pixels / frame.unit)
-            };
+            let is_off =
+                |point: &&Correspondence| plane.is_none_or(|plane| homography::distance(&plane, point) > pixels / unit);
             inliers.iter().filter(is_off).count() as f64 / inliers.len().max(1) as f64
         };
         let (off_plane, far_off_plane) = (off(DEPTH.0), off(OBLIQUE * DEPTH.0));
