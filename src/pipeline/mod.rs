@@ -22,7 +22,7 @@ use web_time::{Duration, Instant};
 
 use range::range_to_search;
 use search::{Found, Search};
-use trust::{in_proportion, shows_no_parallax, trust, without_ends};
+use trust::{in_proportion, shows_no_parallax, trust, without_constant, without_ends};
 use views::Views;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -30,7 +30,7 @@ use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     config::Config,
-    dense::{Brightness, Dense},
+    dense::{Brightness, Dense, View},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Detected, Feature, FeatureConfig},
@@ -219,6 +219,8 @@ async fn run_on(
     let search = Search { views: &views, pictures: given.pictures, config, brightness };
     let Found { range, dense, at_ends } = search.widening(range, range_source, progress).await?;
     let dense = without_ends(dense, range, range_source.ends_at_zero());
+    let (left, right) = views.pair.views();
+    let dense = without_constant(dense, if config.reference == View::Left { left } else { right });
     let trust = trust(&dense, config, &seeding);
     let dense = in_proportion(dense, trust);
     enter(None);

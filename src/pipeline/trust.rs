@@ -9,7 +9,7 @@ use crate::{
     config::{Config, Method},
     dense::{Aggregation, Compared, Dense, FILLED, View},
     disparity::{DisparityRange, pixels},
-    image::Size,
+    image::{Luma, Size},
     seeding::Seeding,
 };
 
@@ -27,6 +27,8 @@ const CONTRADICTION: f32 = 2.0;
 const COVERED: f32 = 0.5;
 /// Part of the evidence that does not depend on the number of seeds, and number of seeds at which half of the rest is there.
 const SEEDS: (f32, f32) = (0.6, 400.0);
+/// Pixels on either side of a pixel that its census transform sees.
+const CONSTANT: u32 = 2;
 /// Largest magnitude of half of the disparities of a pair without parallax, in pixels.
 const ZERO: f32 = 0.25;
 /// Largest magnitude of nearly all disparities of such a pair, in pixels, and their smallest share, 0 to 1. Six pictures with
@@ -102,6 +104,20 @@ pub(super) fn without_ends(mut dense: Dense, range: DisparityRange, ends_at_zero
     dense
 }
 
+/// The map of `view` with confidence 0 where the view is constant around a pixel, as where it is overexposed: such a pixel costs
+/// the same with all disparities whose partner is alike, and only its surroundings tell which it has.
+pub(super) fn without_constant(mut dense: Dense, view: &Luma) -> Dense {
+    let Size { width, height } = view.size();
+    let around = |at: u32, length: u32| at.saturating_sub(CONSTANT)..length.min(at + CONSTANT + 1);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let own = view.get(x, y);
+        if around(y, height).all(|j| around(x, width).all(|i| view.get(i, j) == own)) {
+            dense.confidence.set(x, y, 0);
+        }
+    }
+    dense
+}
+
 /// The map with confidences in proportion to `trust`, where that is below [`TRUSTED`].
 pub(super) fn in_proportion(mut dense: Dense, trust: f32) -> Dense {
     if trust < TRUSTED {
@@ -130,7 +146,7 @@ mod tests {
     use crate::{
         config::Preset,
         disparity::{NONE, SCALE},
-        image::{Luma, Plane},
+        image::Plane,
         seeding::SeedingConfig,
     };
 
@@ -149,6 +165,18 @@ mod tests {
         assert_eq!(halves(without_ends(map(90), range(8, 22), false)), [90, 90]);
         assert_eq!(halves(without_ends(map(90), range(9, 22), false)), [0, 90]);
         assert_eq!(halves(without_ends(map(90), range(9, 21), true)), [90, 0]);
+    }
+
+    #[test]
+    fn constant_areas_have_no_confidence() {
+        // Constant from column 10 on, but for one pixel.
+        let view =
+            Luma::from_fn((40, 10), |x, y| if x < 10 { (37 * x + 59 * y) as u8 } else { 255 - 9 * u8::from(x == 30) });
+        let confidence = without_constant(map(90), &view).confidence;
+        for x in 0..40 {
+            let is_constant = x >= 12 && !(28..=32).contains(&x);
+            assert_eq!(confidence.get(x, 5), if is_constant { 0 } else { 90 }, "column {x}");
+        }
     }
 
     #[test]
