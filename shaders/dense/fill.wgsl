@@ -3,7 +3,8 @@
 //
 // The price of a candidate is its distance, plus its difference in colour, plus a penalty if the other view speaks
 // against it: where no disparity points at the partner (project.wgsl), the pixel would have been measured, and where a
-// smaller one does, the candidate would hide what the other view shows. The pixel gets the weighted median of the
+// smaller one does, the candidate would hide what the other view shows; and plus a penalty for a small surface, which
+// rays would draw out into streaks. The pixel gets the weighted median of the
 // candidates; the weight halves with every 2^HALVING_BITS that a price exceeds the least price.
 
 #import bitmap_rows
@@ -22,6 +23,8 @@
 //   COLOUR_LIMIT       largest difference in colour that counts
 //   UNCLAIMED          price of a partner at which no disparity points
 //   HIDING             price of a partner at which a smaller disparity points
+//   OF_SMALL           price of a small surface
+//   SMALL              mark of a small surface, above its colour
 //   HALVING_BITS       log2 of the price that halves the weight
 //   FILLED             largest confidence of a filled pixel
 //   PRICE_BITS         log2 of the price that lowers the confidence of a filled pixel by 1
@@ -139,7 +142,9 @@ fn candidate(source: u32, way: vec2<i32>, hole: Hole) -> vec2<i32> {
 
     let difference = abs(hole.colour - channels(tangents[3u * source + 2u]));
     let contrast = max(max(difference.r, difference.g), difference.b);
-    var price = abs(way.x) + abs(way.y) + COLOUR * min(contrast, COLOUR_LIMIT);
+    let is_small = (tangents[3u * source + 2u] & SMALL) != 0u;
+    var price = abs(way.x) + abs(way.y) + COLOUR * min(contrast, COLOUR_LIMIT)
+        + select(0, OF_SMALL, is_small);
 
     let partner = partner_of(hole.at.x, disparity, params.direction);
     let inside = clamp(partner, 0, i32(params.width) - 1);

@@ -4,6 +4,8 @@
 // disparities around it, on a grid of every STEP-th pixel up to STEPS steps away, that differ from its own by at most TOLERANCE. The two
 // normal equations are solved by ROUNDS rounds of Gauss-Seidel from slopes of 0, in integers. The colour is the mean of
 // the pixel and its neighbours left and right whose disparities differ by at most SCALE.
+//
+// Where fewer than one in SMALL_SHARE of the samples belong to the surface, it is small: a speck or a wire.
 
 #import words
 #import bitmap_rows
@@ -18,6 +20,8 @@
 //   STEPS              samples on either side of the pixel, along a row or a column
 //   SIDE               samples along a row: 2 STEPS + 1
 //   LEAST_SAMPLES      samples of a plane with slopes, at least
+//   SMALL_SHARE        samples per sample of a surface that is just not small
+//   SMALL              mark of a small surface, above its colour
 //   TOLERANCE          largest difference of a sample from the pixel's disparity, in 1/256 px
 //   STEEPEST_X         largest slope along a row, in 1/16 of 1/256 px per STEP pixels
 //   STEEPEST_Y         largest slope along a column, in 1/16 of 1/256 px per STEP pixels
@@ -36,7 +40,8 @@ struct Params {
 // Which pixels have a disparity, as bitmap.wgsl writes them.
 @group(0) @binding(2) var<storage, read> bitmaps: array<u32>;
 // Three u32 per pixel: the height of the plane at the pixel, an i32 in 1/256 px; the slopes, along x in the lower half
-// and along y in the upper half, in the units of STEEPEST; the mean colour, red in the lowest byte, then green and blue.
+// and along y in the upper half, in the units of STEEPEST; the mean colour, red in the lowest byte, then green and blue,
+// with SMALL where the surface is small.
 // Behind them the picture, which is read: one u32 per pixel, as the mean colour.
 //
 // Only pixels that have a disparity and, of eight neighbours, one without, are written: the others end no ray. Those of
@@ -85,9 +90,16 @@ fn mean_colour(x: i32, y: i32, own: i32) -> u32 {
         | (quotient(sum.b + half, count) << 16u);
 }
 
+// Number of samples inside the picture around `place`, along an axis of `length` pixels.
+fn samples_inside(place: i32, length: u32) -> i32 {
+    return min(place / STEP, STEPS) + min((i32(length) - 1 - place) / STEP, STEPS) + 1;
+}
+
 struct Tangent {
     height: i32,
     slopes: vec2<i32>,
+    // SMALL or 0.
+    mark: u32,
 }
 
 fn tangent(x: i32, y: i32, own: i32) -> Tangent {
@@ -118,8 +130,10 @@ fn tangent(x: i32, y: i32, own: i32) -> Tangent {
         squares += vec3<i32>(row_uu, v * row_u, v * v * row_n);
         moments += vec2<i32>(row_ue, v * row_e);
     }
+    let inside = samples_inside(x, params.width) * samples_inside(y, params.height);
+    let mark = select(0u, SMALL, SMALL_SHARE * n < inside);
     if n < LEAST_SAMPLES {
-        return Tangent(own, vec2<i32>(0));
+        return Tangent(own, vec2<i32>(0), mark);
     }
     // The normal equations with the mean removed; all products stay below 2^30. A slope beyond what a division is exact for
     // is held at its bound.
@@ -134,7 +148,7 @@ fn tangent(x: i32, y: i32, own: i32) -> Tangent {
         slopes.y = clamp(rounded_div(16 * ve - slopes.x * uv, vv), -STEEPEST_Y, STEEPEST_Y);
     }
     let height = rounded_div(16 * first.z - first.x * slopes.x - first.y * slopes.y, 16 * n);
-    return Tangent(own + height, slopes);
+    return Tangent(own + height, slopes, mark);
 }
 
 // A workgroup first lists the pixels of its tile that are beside holes, and then shares them out among its threads:
@@ -171,14 +185,15 @@ fn main(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_index)
         let y = first.y + place / 32 / TILE_WORDS;
         let pixel = u32(y) * params.width + u32(x);
         let own = bitcast<i32>(word_at(pixel));
-        var plane = Tangent(own, vec2<i32>(0));
+        var plane = tangent(x, y, own);
         var colour = tangents[3u * pixels + pixel] & 0xffffffu;
         if places[i] >= 0x80000000u {
-            plane = tangent(x, y, own);
             colour = mean_colour(x, y, own);
+        } else {
+            plane = Tangent(own, vec2<i32>(0), plane.mark);
         }
         tangents[3u * pixel] = bitcast<u32>(plane.height);
         tangents[3u * pixel + 1u] = u32(plane.slopes.x & 0xffff) | (u32(plane.slopes.y) << 16u);
-        tangents[3u * pixel + 2u] = colour;
+        tangents[3u * pixel + 2u] = colour | plane.mark;
     }
 }

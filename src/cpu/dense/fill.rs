@@ -12,7 +12,7 @@ use crate::{
         Dense, FILLED, View,
         kernels::{
             fit::SLOPE_UNITS,
-            rays::{COLOUR, COLOUR_LIMIT, FARTHEST, HALVING_BITS, HIDING, LONGEST, PRICE_BITS, UNCLAIMED},
+            rays::{COLOUR, COLOUR_LIMIT, FARTHEST, HALVING_BITS, HIDING, LONGEST, OF_SMALL, PRICE_BITS, UNCLAIMED},
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -85,7 +85,7 @@ fn candidate(
 ) -> (i32, u32) {
     let way = [0, 1].map(|axis| hole[axis].wrapping_sub(source[axis]).cast_signed());
     let tangent = tangents.get(source[0], source[1]);
-    let Tangent { height, slopes, colour } = tangent.expect("a ray ends beside a hole");
+    let Tangent { height, slopes, colour, is_small } = tangent.expect("a ray ends beside a hole");
     let change = (slopes[0] * way[0] + slopes[1] * way[1] + SLOPE_UNITS / 2).div_euclid(SLOPE_UNITS);
     let continued = height + change.clamp(-FARTHEST, FARTHEST);
     let disparity = continued.clamp(range.min * SCALE, range.last() * SCALE);
@@ -103,5 +103,6 @@ fn candidate(
             _ => 0,
         }
     };
-    (disparity, (price + penalty).cast_unsigned())
+    let of_small = if is_small { OF_SMALL } else { 0 };
+    (disparity, (price + penalty + of_small).cast_unsigned())
 }

@@ -1,7 +1,7 @@
 //! Tangent planes of the surfaces beside holes, from the definition.
 
 use crate::{
-    dense::kernels::fit::{LEAST_SAMPLES, ROUNDS, STEEPEST, STEP, STEPS, TOLERANCE},
+    dense::kernels::fit::{LEAST_SAMPLES, ROUNDS, SMALL_SHARE, STEEPEST, STEP, STEPS, TOLERANCE},
     disparity::{DisparityMap, NONE, SCALE},
     image::{Plane, Size},
 };
@@ -15,6 +15,8 @@ pub struct Tangent {
     pub slopes: [i32; 2],
     /// Mean colour of the surface at the pixel: red, green, blue.
     pub colour: [u8; 3],
+    /// Whether the surface is small: less than one in [`SMALL_SHARE`] of the samples around the pixel belong to it.
+    pub is_small: bool,
 }
 
 /// The tangent planes of the pixels that have a disparity and, of their eight neighbours, one without: a plane is fitted where
@@ -28,7 +30,8 @@ pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>) -> Plane<O
             return None;
         }
         if holes(x, y).all(|(i, j, _)| i * j != 0) {
-            return Some(Tangent { height: own, slopes: [0, 0], colour: rgb(picture, x, y) });
+            let is_small = is_small(disparities, x, y);
+            return Some(Tangent { height: own, slopes: [0, 0], colour: rgb(picture, x, y), is_small });
         }
         let is_surface = |other: i32| other != NONE && (other - own).abs() <= SCALE;
         let surface = around(x, y).filter(|&(_, j, other)| j == 0 && is_surface(other));
@@ -39,15 +42,29 @@ pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>) -> Plane<O
             ((sum + count / 2) / count) as u8
         };
         let (height, slopes) = plane(disparities, x, y);
-        Some(Tangent { height, slopes, colour: [0, 1, 2].map(mean) })
+        Some(Tangent { height, slopes, colour: [0, 1, 2].map(mean), is_small: is_small(disparities, x, y) })
     })
+}
+
+/// Whether the surface at a pixel is small.
+fn is_small(disparities: &DisparityMap, x: u32, y: u32) -> bool {
+    let own = disparities.get(x, y);
+    let samples = neighbours(disparities, x, y, STEPS, STEP);
+    let (surface, all) =
+        samples.fold((0, 0), |(surface, all), (.., other)| (surface + i32::from(is_sample(other, own)), all + 1));
+    SMALL_SHARE * surface < all
+}
+
+/// Whether the disparity `other` belongs to the surface of a pixel of the disparity `own`.
+fn is_sample(other: i32, own: i32) -> bool {
+    other != NONE && (other - own).abs() <= TOLERANCE
 }
 
 /// Height and slopes of the plane through the samples around a pixel, by least squares.
 fn plane(disparities: &DisparityMap, x: u32, y: u32) -> (i32, [i32; 2]) {
     let own = disparities.get(x, y);
     let samples: Vec<(i32, i32, i32)> = neighbours(disparities, x, y, STEPS, STEP)
-        .filter(|&(_, _, other)| other != NONE && (other - own).abs() <= TOLERANCE)
+        .filter(|&(_, _, other)| is_sample(other, own))
         .map(|(i, j, other)| (i / STEP, j / STEP, other - own))
         .collect();
     let n = samples.len() as i32;

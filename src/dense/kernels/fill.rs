@@ -29,6 +29,8 @@ pub mod rays {
     pub const UNCLAIMED: i32 = 32;
     /// Price of a partner at which a smaller disparity points.
     pub const HIDING: i32 = 256;
+    /// Price of a small surface.
+    pub const OF_SMALL: i32 = 128;
     /// Base-2 logarithm of the price that halves the weight.
     pub const HALVING_BITS: u32 = 3;
     /// Base-2 logarithm of the price that lowers the confidence by 1.
@@ -80,6 +82,8 @@ impl Fill {
                 ("COLOUR_LIMIT", rays::COLOUR_LIMIT.into()),
                 ("UNCLAIMED", rays::UNCLAIMED.into()),
                 ("HIDING", rays::HIDING.into()),
+                ("OF_SMALL", rays::OF_SMALL.into()),
+                ("SMALL", fit::SMALL.into()),
                 ("HALVING_BITS", rays::HALVING_BITS.into()),
                 ("FILLED", FILLED.into()),
                 ("PRICE_BITS", rays::PRICE_BITS.into()),

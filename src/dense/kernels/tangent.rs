@@ -20,6 +20,10 @@ pub mod fit {
     pub const STEPS: i32 = 4;
     /// Fewest samples of a plane with slopes; with fewer the plane is level.
     pub const LEAST_SAMPLES: i32 = 8;
+    /// Samples inside the picture per sample of a surface that is just not small.
+    pub const SMALL_SHARE: i32 = 12;
+    /// Mark of a small surface, above its colour.
+    pub const SMALL: u32 = 1 << 24;
     /// Largest difference of a sample from the pixel's disparity, in 1/256 px.
     pub const TOLERANCE: i32 = 2 * SCALE;
     /// Units of a slope per 1/256 px per pixel.
@@ -59,6 +63,8 @@ impl Tangents {
                 ("STEPS", fit::STEPS.into()),
                 ("SIDE", (2 * fit::STEPS + 1).into()),
                 ("LEAST_SAMPLES", fit::LEAST_SAMPLES.into()),
+                ("SMALL_SHARE", fit::SMALL_SHARE.into()),
+                ("SMALL", fit::SMALL.into()),
                 ("TOLERANCE", fit::TOLERANCE.into()),
                 ("STEEPEST_X", fit::STEEPEST[0].into()),
                 ("STEEPEST_Y", fit::STEEPEST[1].into()),

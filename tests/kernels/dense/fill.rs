@@ -114,3 +114,17 @@ fn filled_disparities_lie_in_the_range() {
     assert_eq!(disparities[20 * 60 + 35], 3 * 256 + 40 * 6);
     assert_eq!(disparities[20 * 60 + 59], 4 * 256);
 }
+
+#[test]
+fn a_speck_is_not_drawn_out() {
+    // A speck that is nearer to these pixels of the hole than the surface beside.
+    let map = Plane::from_fn((120, 60), |x, y| match x {
+        0..40 => 9 * 256,
+        70..74 if (28..32).contains(&y) => 5 * 256,
+        _ => NONE,
+    });
+    let (disparities, _) = filled(&plain(map));
+    for (x, y) in [(60, 30), (69, 30), (72, 20), (80, 22)] {
+        assert_eq!(disparities[y * 120 + x], 9 * 256, "column {x}, row {y}");
+    }
+}

@@ -88,3 +88,21 @@ fn bounds() {
     let picture = Plane::from_fn((3, 1), |x, _| [[1, 1, 1, 1], [50, 60, 70, 1], [9; 4]][x as usize]);
     assert_eq!(at(&TangentTrial { disparities: step, picture }, 1, 0), (4000, [0, 0], [50, 60, 70]));
 }
+
+#[test]
+fn specks_and_wires_are_small() {
+    // Of the 81 samples around its pixels a surface has at least 7, or it is small; beside the picture's edge fewer do.
+    let mark = |width: u32, rows: std::ops::Range<u32>, [x, y]: [u32; 2]| {
+        let surface = |x: u32, y: u32| (20..20 + width).contains(&x) && rows.contains(&y);
+        let disparities = Plane::from_fn((60, 60), |x, y| if surface(x, y) { 700 } else { NONE });
+        let found = leaves(&TangentTrial { disparities, picture: Plane::filled((60, 60), [255; 4]) });
+        let Values::U32(colours) = &found[2] else { panic!("colours") };
+        colours[(y * 60 + x) as usize] >> 24
+    };
+    assert_eq!((mark(8, 20..28, [20, 20]), mark(8, 20..32, [20, 20])), (1, 1));
+    assert_eq!(mark(12, 20..32, [20, 20]), 0);
+    assert_eq!((mark(1, 10..31, [20, 30]), mark(1, 0..60, [20, 30])), (1, 0));
+    assert_eq!(mark(40, 56..60, [59, 59]), 0);
+    // A corner, too.
+    assert_eq!(mark(2, 20..22, [21, 21]), 1);
+}

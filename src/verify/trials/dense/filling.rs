@@ -8,7 +8,7 @@ use crate::{
     cpu::dense::{Surroundings, Tangent, bitmaps, fill, project, tangents},
     dense::{
         Dense, FILLED, View,
-        kernels::{self, Bitmaps, Fill, MapBuffer, MapLayout, Project, Tangents},
+        kernels::{self, Bitmaps, Fill, MapBuffer, MapLayout, Project, Tangents, fit},
     },
     disparity::{DisparityMap, DisparityRange, NONE},
     error::Result,
@@ -53,7 +53,10 @@ fn tangent_words(tangents: &Plane<Option<Tangent>>) -> Vec<u32> {
     let slopes = |[x, y]: [i32; 2]| x.cast_unsigned() & 0xffff | y.cast_unsigned() << 16;
     let colour = |[red, green, blue]: [u8; 3]| u32::from_le_bytes([red, green, blue, 0]);
     let words = |plane: &Option<Tangent>| {
-        plane.map_or([0; 3], |plane| [plane.height.cast_unsigned(), slopes(plane.slopes), colour(plane.colour)])
+        let mark = |plane: &Tangent| if plane.is_small { fit::SMALL } else { 0 };
+        plane.map_or([0; 3], |plane| {
+            [plane.height.cast_unsigned(), slopes(plane.slopes), colour(plane.colour) | mark(&plane)]
+        })
     };
     tangents.data().iter().flat_map(words).collect()
 }
