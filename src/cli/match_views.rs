@@ -31,8 +31,8 @@ const NAMES: Names = Names {
 /// Writes disparity.pfm (32-bit float, in pixels, +inf for no disparity), disparity.png (16 bit, 256
 /// times the disparity, 0 for no disparity), disparity-color.png, confidence.png and report.json;
 /// with a calibration also depth.pfm (in metres) and cloud.ply. A left pixel (x, y) with disparity d
-/// corresponds to the right pixel (x - d, y). Without --disparities the range is found from matching
-/// interest points.
+/// corresponds to the right pixel (x - d, y). Without --disparities the range is found from a
+/// coarse map of the pair and from matching interest points.
 ///
 /// A pair that is not rectified is rectified first, by the calibration or from its matches (see hsad
 /// rectify); disparities are then those of rectified-left.png and rectified-right.png, which are written

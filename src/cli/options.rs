@@ -144,7 +144,7 @@ pub struct MatchOptions {
     /// [default: 0], without it a lower limit of the range that is found [default: none, paper 0]
     #[arg(long, value_name = "PX", allow_negative_numbers = true)]
     min_disparity: Option<i32>,
-    /// Number of disparities to search, at least 1 [default: found from matching interest points]
+    /// Number of disparities to search, at least 1 [default: found from a coarse map and matching interest points]
     #[arg(long, value_name = "N")]
     disparities: Option<u32>,
     /// Reference view, whose pixels get a disparity [default: left, paper right]

@@ -30,6 +30,11 @@ const INTERRUPTED: i32 = 130;
 /// # Errors
 /// If the system refuses the handler.
 pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
+    #[cfg(unix)]
+    // SAFETY: no handler is installed. A write beyond a limit of file sizes is an error, as others are, and ends no process.
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+    }
     let ignored = ignored_signals();
     let handled = ctrlc::set_handler(|| {
         let created = created();

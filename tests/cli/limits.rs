@@ -166,6 +166,14 @@ fn memory_that_the_system_refuses_is_an_error_that_leaves_nothing() {
 }
 
 #[test]
+fn a_limit_of_file_sizes_is_an_error_that_leaves_nothing() {
+    let installed = Installed::new();
+    let command = installed.matching("out", &["-q"]);
+    let text = refused(limited(command, libc::RLIMIT_FSIZE, 100 << 10), &installed.path("out"));
+    assert!(text.contains("disparity.pfm"), "{text}");
+}
+
+#[test]
 fn little_memory_gives_the_same_map() {
     let installed = Installed::new();
     // In one piece the costs along all paths would take 265 MB.
