@@ -27,6 +27,11 @@ const CONTRADICTION: f32 = 2.0;
 const COVERED: f32 = 0.5;
 /// Part of the evidence that does not depend on the number of seeds, and number of seeds at which half of the rest is there.
 const SEEDS: (f32, f32) = (0.6, 400.0);
+/// Least confidence of a filled pixel that a surface nearby speaks for and no view against, as in a wall that shows nothing; beyond
+/// the frame of the other view it is less.
+const FILLED_WITHIN: u8 = 8;
+/// Share of such pixels up to which they are the gaps of any map, and how much more of them leave no trust, 0 to 1.
+const GAPS: (f32, f32) = (0.21, 0.11);
 /// Pixels on either side of a pixel that its census transform sees.
 const CONSTANT: u32 = 2;
 /// Largest magnitude of half of the disparities of a pair without parallax, in pixels.
@@ -42,13 +47,15 @@ const FAR: (f32, u8, f32) = (2.0, 128, 0.002);
 const IMBALANCE: f32 = 0.03;
 
 /// Trust in a map, 0 to 1: mean confidence, 0 where a pixel was filled, reduced by the share of the map that contradicts the coarse map, for a coarse map
-/// that shows little, and for few seeds.
+/// that shows little, for few seeds, and where much of what the other view should show was filled.
 pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let around = seeding.coarse.around();
-    let (mut known, mut sure, mut contradicted) = (0u64, 0u64, 0u64);
+    let (mut known, mut sure, mut contradicted, mut filled) = (0u64, 0u64, 0u64, 0u64);
     for ((x, y), disparity) in known_pixels(dense) {
         known += 1;
-        sure += u64::from(Some(dense.confidence.get(x, y)).filter(|&value| value > FILLED).unwrap_or(0));
+        let confidence = dense.confidence.get(x, y);
+        sure += u64::from(if confidence > FILLED { confidence } else { 0 });
+        filled += u64::from((FILLED_WITHIN..=FILLED).contains(&confidence));
         let shift = if config.reference == View::Left { 0.0 } else { disparity };
         contradicted += u64::from(around.contradicts(x as f32 + shift, y, disparity));
     }
@@ -59,7 +66,9 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let seeds = seeding.seeds.len() as f32;
     let by_seeds = SEEDS.0 + (1.0 - SEEDS.0) * seeds / (seeds + SEEDS.1);
     let covered = (seeding.coarse.coverage() / COVERED).min(1.0);
-    let evidence = share(sure) / 255.0 * (1.0 - CONTRADICTION * share(contradicted)).max(0.0) * by_seeds * covered;
+    let gaps = (1.0 - (share(filled) - GAPS.0).max(0.0) / GAPS.1).max(0.0);
+    let consistent = (1.0 - CONTRADICTION * share(contradicted)).max(0.0);
+    let evidence = share(sure) / 255.0 * consistent * by_seeds * covered * gaps;
     let full = match &config.method {
         Method::Hsad(parameters) if parameters.refinement.is_none() => match parameters.aggregation {
             Aggregation::Sad { compared: Compared::SoftRank, .. } => FULL_BY_MARGIN_OF_RANKS,
@@ -224,6 +233,14 @@ mod tests {
             let by_margin = trust(&flat(102), &preset.config(), &seeding);
             assert!((by_margin - expected * 0.71 / full).abs() < 1e-6, "{preset}");
         }
+        // Gaps of a fifth are those of any map, of a third are the most of what both views show.
+        let with_gaps = |columns: u32| {
+            let confidence = Plane::from_fn((40, 10), |x, _| if x < columns { FILLED } else { 102 });
+            trust(&Dense { confidence, ..flat(102) }, &config, &seeding)
+        };
+        assert!((with_gaps(8) - 0.8 * expected).abs() < 1e-6);
+        assert!((with_gaps(10) - 0.75 * expected * (1.0 - 0.04 / 0.11)).abs() < 1e-6);
+        assert_eq!(with_gaps(13), 0.0);
         // What the surfaces contradict, and views without content, are not trusted.
         assert_eq!(trust(&map(255), &config, &seeding), 0.0);
         let grey = Luma::filled((40, 10), 90);
