@@ -83,7 +83,8 @@ pub struct Outcome {
     /// Whether the left and the right view are raw mosaics of a Bayer colour filter array; the luma of their colours was
     /// matched then.
     pub mosaics: [bool; 2],
-    /// Disparities and confidences of the reference view.
+    /// Disparities and confidences of the reference view; confidence 0 also where a disparity lies at an end of the range or the view is
+    /// constant around the pixel.
     pub dense: Dense,
     /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
     pub trust: f32,

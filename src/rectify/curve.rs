@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use super::cholesky::solved;
+
 /// Largest number of free parameters: those of a projective model, and the distortion of the lens.
 pub(super) const MOST: usize = 6;
 /// Widths of the Cauchy weights, in pixels, the widest first: the first one reaches what a start within the tolerance of
@@ -11,6 +13,8 @@ const WIDTHS: [f64; 3] = [3.0, 1.0, PRECISION];
 pub(super) const PRECISION: f64 = 0.3;
 /// Largest number of steps per width.
 const STEPS: usize = 8;
+/// Smallest share of a diagonal element of the normal equations that has to remain.
+const LEAST: f64 = 1e-10;
 /// Steps end when no parameter changes by more, in units of the picture.
 const SETTLED: f64 = 1e-9;
 
@@ -86,7 +90,7 @@ impl Curve {
                         }
                     }
                 }
-                let step = solved(normal, moment, free)?;
+                let step = solved(normal, moment, free, LEAST)?;
                 self.parameters.iter_mut().zip(step).for_each(|(parameter, change)| *parameter += change);
                 if step.iter().all(|change| change.abs() <= SETTLED) {
                     break;
@@ -102,52 +106,9 @@ fn deviation(error: f64, width: f64) -> f64 {
     error * error / (2.0 * width * width)
 }
 
-/// Solution of the first `free` normal equations, given by their lower triangle (Cholesky); zeros for the others; `None` if
-/// the equations are singular.
-fn solved(mut normal: [[f64; MOST]; MOST], mut moment: [f64; MOST], free: usize) -> Option<[f64; MOST]> {
-    /// Smallest share of a diagonal element that has to remain.
-    const LEAST: f64 = 1e-10;
-    for i in 0..free {
-        let whole = normal[i][i];
-        for j in 0..=i {
-            let known: f64 = (0..j).map(|k| normal[i][k] * normal[j][k]).sum();
-            let rest = normal[i][j] - known;
-            if i != j {
-                normal[i][j] = rest / normal[j][j];
-            } else if rest > LEAST * whole {
-                normal[i][i] = rest.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    for i in 0..free {
-        let known: f64 = (0..i).map(|k| normal[i][k] * moment[k]).sum();
-        moment[i] = (moment[i] - known) / normal[i][i];
-    }
-    for i in (0..free).rev() {
-        let known: f64 = (i + 1..free).map(|k| normal[k][i] * moment[k]).sum();
-        moment[i] = (moment[i] - known) / normal[i][i];
-    }
-    moment[free..].fill(0.0);
-    Some(moment)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn equations_are_solved_by_hand() {
-        // 4 a + 2 b = 2 and 2 a + 5 b = -3: a = 1, b = -1.
-        let mut normal = [[0.0; MOST]; MOST];
-        (normal[0][0], normal[1][0], normal[1][1]) = (4.0, 2.0, 5.0);
-        let step = solved(normal, [2.0, -3.0, 9.0, 9.0, 9.0, 9.0], 2).unwrap();
-        assert!((step[0] - 1.0).abs() < 1e-12 && (step[1] + 1.0).abs() < 1e-12, "{step:?}");
-        assert_eq!(step[2..], [0.0; 4]);
-        normal[1][1] = 1.0;
-        assert_eq!(solved(normal, [0.0; MOST], 2), None, "2 a + b = 0 twice");
-    }
 
     #[test]
     fn derivatives_are_those_of_the_error() {

@@ -9,6 +9,7 @@
 
 mod calibrated;
 mod catmull_rom;
+mod cholesky;
 mod curve;
 pub mod epipolar;
 pub(crate) mod fit;

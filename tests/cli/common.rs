@@ -62,6 +62,18 @@ pub fn noise(width: u32, height: u32, seed: u32) -> Plane<u8> {
     })
 }
 
+/// The files of `hsad rectify`.
+pub const RECTIFIED: [&str; 8] = [
+    "epipolar-lines.png",
+    "left-mask.png",
+    "left.png",
+    "rectification.json",
+    "rectification.yml",
+    "report.json",
+    "right-mask.png",
+    "right.png",
+];
+
 /// The names in a folder, sorted.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)

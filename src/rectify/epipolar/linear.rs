@@ -1,36 +1,6 @@
-//! Linear algebra in double precision: normal equations, null spaces, eigenvalues and singular values of 3x3 matrices.
+//! Linear algebra in double precision: null spaces, eigenvalues and singular values of 3x3 matrices.
 
 use glam::{DMat3, DQuat, DVec3};
-
-/// Solution of symmetric positive definite equations, given by their lower triangle (Cholesky); `None` if the equations are
-/// singular.
-pub(super) fn solved<const N: usize>(mut normal: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
-    /// Smallest share of a diagonal element that has to remain.
-    const LEAST: f64 = 1e-13;
-    for i in 0..N {
-        let whole = normal[i][i];
-        for j in 0..=i {
-            let known: f64 = (0..j).map(|k| normal[i][k] * normal[j][k]).sum();
-            let rest = normal[i][j] - known;
-            if i != j {
-                normal[i][j] = rest / normal[j][j];
-            } else if rest > LEAST * whole {
-                normal[i][i] = rest.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    for i in 0..N {
-        let known: f64 = (0..i).map(|k| normal[i][k] * right[k]).sum();
-        right[i] = (right[i] - known) / normal[i][i];
-    }
-    for i in (0..N).rev() {
-        let known: f64 = (i + 1..N).map(|k| normal[k][i] * right[k]).sum();
-        right[i] = (right[i] - known) / normal[i][i];
-    }
-    Some(right)
-}
 
 /// A basis of the null space of `R` equations with `C` unknowns, `K = C - R` vectors, by elimination with full pivoting;
 /// `None` if the equations depend on each other.
@@ -132,14 +102,6 @@ mod tests {
     use super::*;
 
     const MATRIX: DMat3 = DMat3::from_cols_array(&[2.0, -1.0, 0.5, 0.3, 1.7, 4.0, -2.2, 0.1, 0.9]);
-
-    #[test]
-    fn equations_are_solved_by_hand() {
-        // 4 a + 2 b = 2 and 2 a + 5 b = -3: a = 1, b = -1.
-        let [a, b] = solved([[4.0, 0.0], [2.0, 5.0]], [2.0, -3.0]).unwrap();
-        assert!((a - 1.0).abs() < 1e-12 && (b + 1.0).abs() < 1e-12);
-        assert_eq!(solved([[4.0, 0.0], [2.0, 1.0]], [0.0; 2]), None, "2 a + b = 0 twice");
-    }
 
     #[test]
     fn a_null_space_solves_its_equations() {

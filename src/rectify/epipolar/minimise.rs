@@ -1,7 +1,9 @@
 //! Robust least squares with a few parameters.
 
-use super::linear::solved;
+use crate::rectify::cholesky::solved;
 
+/// Smallest share of a diagonal element of normal equations that has to remain.
+pub(super) const SINGULAR: f64 = 1e-13;
 /// Largest number of steps.
 const STEPS: usize = 60;
 /// Steps end when the cost falls by a smaller share.
@@ -73,7 +75,7 @@ pub(super) fn minimise<const N: usize>(start: [f64; N], errors: impl Fn(&[f64; N
         while damping < 1e9 {
             let mut damped = normal;
             (0..N).for_each(|i| damped[i][i] += damping * (normal[i][i] + 1e-12));
-            let Some(step) = solved(damped, moment) else {
+            let Some(step) = solved(damped, moment, N, SINGULAR) else {
                 damping *= 10.0;
                 continue;
             };

@@ -5,10 +5,9 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{
     frame::PRECISION,
     fundamental::Fundamental,
-    linear::solved,
-    minimise::{Errors, minimise},
+    minimise::{Errors, SINGULAR, minimise},
 };
-use crate::rectify::{Correspondence, RowKind};
+use crate::rectify::{Correspondence, RowKind, cholesky::solved};
 
 /// Widths of the Cauchy loss, in pixels, the widest first: the first one reaches what an affine start leaves of a perspective,
 /// the last one is the precision of a match.
@@ -63,7 +62,7 @@ fn affine(points: &[Correspondence]) -> Option<Parameters> {
             (0..3).for_each(|j| normal[i][j] += slopes[i] * slopes[j]);
         }
     }
-    let [p0, p1, p2] = solved(normal, moment)?;
+    let [p0, p1, p2] = solved(normal, moment, 3, SINGULAR)?;
     Some([p0, p1, p2, 0.0, 0.0])
 }
 
