@@ -3,7 +3,7 @@
 //! # The text that is compiled
 //!
 //! The driver does not get a shader's file as it is: constants and imported parts are put in front of it, and loops are
-//! unrolled; for lavapipe, `main` copies the uniforms. If the environment variable `HSAD_DUMP_WGSL` names a folder, which
+//! unrolled; for lavapipe, `main` copies the uniforms, and stores are rewritten. If the environment variable `HSAD_DUMP_WGSL` names a folder, which
 //! is created, each compiled kernel also writes its WGSL there, as `<stage>-<hash of the text>.wgsl`, so that every variant
 //! of a stage has its own file. A failed write is only a warning in the log. Browsers write no files.
 
@@ -18,8 +18,8 @@ mod dump;
 mod guard;
 mod handle;
 mod imports;
-mod inlinable;
 pub(crate) mod kernel;
+mod lavapipe;
 mod limits;
 mod pipeline;
 #[cfg(all(feature = "files", not(target_arch = "wasm32")))]

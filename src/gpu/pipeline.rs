@@ -33,7 +33,7 @@ impl Pipeline {
 
     fn compile(&self, gpu: &Gpu) -> wgpu::ComputePipeline {
         let (device, label) = (&gpu.device, Some(self.stage.name));
-        let text = if gpu.is_lavapipe() { self.stage.wgsl_without_inlinable_uniforms() } else { self.stage.wgsl() };
+        let text = if gpu.is_lavapipe() { self.stage.wgsl_for_lavapipe() } else { self.stage.wgsl() };
         #[cfg(not(target_arch = "wasm32"))]
         super::dump::dump(self.stage.name, &text);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -1,6 +1,6 @@
 //! A stage: WGSL text, its bindings, and the constants that host and shader share.
 
-use super::{imports::imported, inlinable::without_inlinable_uniforms, shader_struct::Shape, unroll::unrolled};
+use super::{imports::imported, lavapipe::for_lavapipe, shader_struct::Shape, unroll::unrolled};
 
 /// One binding of a kernel's only bind group, in the order of `@binding`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +42,8 @@ impl Stage {
         text + &unrolled(&imported(self.source), &self.constants)
     }
 
-    /// [`Self::wgsl`] for lavapipe, without uniforms that its compiler could inline: see `src/gpu/inlinable.rs`.
-    pub fn wgsl_without_inlinable_uniforms(&self) -> String {
-        without_inlinable_uniforms(&self.wgsl())
+    /// [`Self::wgsl`] for lavapipe: see `src/gpu/lavapipe/`.
+    pub fn wgsl_for_lavapipe(&self) -> String {
+        for_lavapipe(&self.wgsl())
     }
 }
