@@ -55,6 +55,12 @@ impl DisparityRange {
     /// Largest accepted magnitude of a disparity, in pixels.
     pub const LIMIT: i32 = 1 << 20;
 
+    /// Disparities of volumes for a range of `count`: rounded up to whole sixteens, packed in four `u32` that kernels load at
+    /// once. What is more than the range is never selected.
+    pub(crate) const fn padded(count: u32) -> u32 {
+        count.next_multiple_of(16)
+    }
+
     /// A range of `count` disparities from `min`, in whole pixels.
     ///
     /// # Errors

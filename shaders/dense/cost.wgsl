@@ -1,9 +1,10 @@
 // Matching cost of each pixel and disparity, 8 bits each: the Hamming distance of the census transforms, the difference
 // of the lumas and the difference of their horizontal gradients, each weighted, the two differences truncated. Where the
-// reference view has weak texture, the Hamming distance of the wide census transforms takes the place of the lumas.
+// reference view has weak texture, the wide census transforms take the place of the census transforms, and the lumas have
+// no part.
 //
-// One thread owns eight pixels and visits the disparities, four per step. A step needs eleven pixels of the other view
-// and their two neighbours; four of these are new. A partner outside the picture is replaced by the nearest pixel of
+// One thread owns PIXELS pixels and visits the disparities, four per step. A step needs three pixels more of the other
+// view, and their two neighbours; four of these are new. A partner outside the picture is replaced by the nearest pixel of
 // its row.
 //
 // The shader is built for two layouts of the volume, in its own file in shared/, which has the words of a pixel:
@@ -12,6 +13,8 @@
 // Constants:
 //   WORKGROUP_WIDTH     threads per workgroup along x
 //   WORKGROUP_HEIGHT    threads per workgroup along y
+//   PIXELS              pixels per thread
+//   QUADS               PIXELS / 4
 //   DIRECTION           partner column = column + DIRECTION * disparity: -1 if the reference is the left view, 1 if the
 //                       right view
 //   FRONT               element of `b` that holds the partner of the first pixel at a step's first disparity
@@ -23,8 +26,6 @@
 //   GRADIENT_WEIGHT     weight of the difference of gradients, in 2^-WEIGHT_BITS
 //   GRADIENT_LIMIT      truncation of the difference of gradients, in grey levels
 //   WEAK_TEXTURE        1: pixels of weak texture have a cost of their own
-//   WEAK_CENSUS_WEIGHT  weight of the Hamming distance there, per bit, in 2^-WEIGHT_BITS
-//   WIDE_CENSUS_WEIGHT  weight of the Hamming distance of the wide census transforms there, likewise
 //   WEIGHT_BITS         fractional bits of the weights
 //   MAX_COST            largest cost
 
@@ -61,88 +62,65 @@ fn luma(word: u32) -> i32 {
     return i32(word & 255u);
 }
 
-// Weights of the parts of four pixels' costs that depend on their texture.
-struct Weights {
+// Four pixels of the reference view, or four of the other view.
+struct Pixels {
+    // Census bits above the luma.
     census: vec4<u32>,
-    wide_census: vec4<u32>,
-    difference: vec4<u32>,
-}
-
-// Weights of four pixels of the reference view with the wide census transforms `wide`.
-fn weights_of(wide: vec4<u32>) -> Weights {
-    let is_weak = (wide & vec4<u32>(1u)) != vec4<u32>(0u);
-    return Weights(
-        select(vec4<u32>(CENSUS_WEIGHT), vec4<u32>(WEAK_CENSUS_WEIGHT), is_weak),
-        select(vec4<u32>(0u), vec4<u32>(WIDE_CENSUS_WEIGHT), is_weak),
-        select(vec4<u32>(DIFFERENCE_WEIGHT), vec4<u32>(0u), is_weak),
-    );
-}
-
-// The bits of four census transforms that differ.
-fn hamming(a: vec4<u32>, b: vec4<u32>) -> vec4<u32> {
-    return countOneBits((a ^ b) >> vec4<u32>(8u));
-}
-
-// Costs of four pixels, from census and luma of the pixels `a` and their partners `b`, and from the gradients of both.
-// If WEAK_TEXTURE, `wide` are the Hamming distances of their wide census transforms.
-fn cost(
-    a: vec4<u32>,
-    b: vec4<u32>,
-    gradient_a: vec4<i32>,
-    gradient_b: vec4<i32>,
+    // Wide census bits above the mark of weak texture.
     wide: vec4<u32>,
-    weights: Weights,
-) -> vec4<u32> {
-    let difference = vec4<u32>(abs(vec4<i32>(a & vec4<u32>(255u)) - vec4<i32>(b & vec4<u32>(255u))));
-    let gradient = vec4<u32>(abs(gradient_a - gradient_b));
-    var sum = weights.census * hamming(a, b)
-        + weights.difference * min(difference, vec4<u32>(DIFFERENCE_LIMIT))
-        + GRADIENT_WEIGHT * min(gradient, vec4<u32>(GRADIENT_LIMIT));
+    gradient: vec4<i32>,
+}
+
+// Costs of the pixels `a` and their partners `b`.
+fn cost(a: Pixels, b: Pixels) -> vec4<u32> {
+    let difference = vec4<u32>(abs(vec4<i32>(a.census & vec4<u32>(255u)) - vec4<i32>(b.census & vec4<u32>(255u))));
+    let gradient = vec4<u32>(abs(a.gradient - b.gradient));
+    var bits = a.census ^ b.census;
+    var limit = vec4<u32>(DIFFERENCE_LIMIT);
     if WEAK_TEXTURE != 0 {
-        sum += weights.wide_census * wide;
+        let is_weak = (a.wide & vec4<u32>(1u)) != vec4<u32>(0u);
+        bits = select(bits, a.wide ^ b.wide, is_weak);
+        limit = select(limit, vec4<u32>(0u), is_weak);
     }
+    let sum = CENSUS_WEIGHT * countOneBits(bits >> vec4<u32>(8u))
+        + DIFFERENCE_WEIGHT * min(difference, limit)
+        + GRADIENT_WEIGHT * min(gradient, vec4<u32>(GRADIENT_LIMIT));
     return min(sum >> vec4<u32>(WEIGHT_BITS), vec4<u32>(MAX_COST));
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let x = i32(8u * id.x);
+    let x = i32(PIXELS * id.x);
     if u32(x) >= params.width || id.y >= params.rows {
         return;
     }
     let row = (params.first_row + id.y) * params.width;
-    var a_row: array<u32, 10>;
-    for (var i = 0; i < 10; i++) { // unroll
+    var a_row: array<u32, PIXELS + 2>;
+    for (var i = 0; i < PIXELS + 2; i++) { // unroll
         a_row[i] = reference[row + inside(x - 1 + i)];
     }
-    var a: array<vec4<u32>, 2>;
-    var gradient_a: array<vec4<i32>, 2>;
-    for (var q = 0; q < 2; q++) { // unroll
-        a[q] = vec4<u32>(a_row[4 * q + 1], a_row[4 * q + 2], a_row[4 * q + 3], a_row[4 * q + 4]);
-        gradient_a[q] = vec4<i32>(
+    var a: array<Pixels, QUADS>;
+    for (var q = 0; q < QUADS; q++) { // unroll
+        a[q].census = vec4<u32>(a_row[4 * q + 1], a_row[4 * q + 2], a_row[4 * q + 3], a_row[4 * q + 4]);
+        a[q].gradient = vec4<i32>(
             luma(a_row[4 * q + 2]) - luma(a_row[4 * q]),
             luma(a_row[4 * q + 3]) - luma(a_row[4 * q + 1]),
             luma(a_row[4 * q + 4]) - luma(a_row[4 * q + 2]),
             luma(a_row[4 * q + 5]) - luma(a_row[4 * q + 3]),
         );
-    }
-    var wide_a: array<vec4<u32>, 2>;
-    var weights: array<Weights, 2>;
-    for (var q = 0; q < 2; q++) { // unroll
         if WEAK_TEXTURE != 0 {
             for (var t = 0; t < 4; t++) { // unroll
-                wide_a[q][t] = reference[params.wide_offset + row + inside(x + 4 * q + t)];
+                a[q].wide[t] = reference[params.wide_offset + row + inside(x + 4 * q + t)];
             }
         }
-        weights[q] = weights_of(wide_a[q]);
     }
-    // Consecutive pixels of the other view: the eleven partners of a step and one neighbour on either side. Before the
-    // loop the nine pixels are loaded that the first step shares with a step before it.
+    // Consecutive pixels of the other view: the PIXELS + 3 partners of a step and one neighbour on either side.
+    // Before the loop the pixels are loaded that the first step shares with a step before it.
     let span = span_at(u32(x), params.top + id.y);
     let begin = x + DIRECTION * (params.min_disparity + 4 * i32(span.first)) - FRONT;
-    var b: array<u32, 13>;
-    var wide_b: array<u32, 13>;
-    for (var i = 0; i < 9; i++) { // unroll
+    var b: array<u32, PIXELS + 5>;
+    var wide_b: array<u32, PIXELS + 5>;
+    for (var i = 0; i < PIXELS + 1; i++) { // unroll
         let pixel = row + inside(begin + i + KEPT - DIRECTION * 4);
         b[i + KEPT] = other[pixel];
         if WEAK_TEXTURE != 0 {
@@ -152,12 +130,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var step = 0u; step < span.count; step++) {
         let first = begin + DIRECTION * 4 * i32(step);
         if DIRECTION < 0 {
-            for (var i = 0; i < 9; i++) { // unroll
-                b[12 - i] = b[8 - i];
-                wide_b[12 - i] = wide_b[8 - i];
+            for (var i = 0; i < PIXELS + 1; i++) { // unroll
+                b[PIXELS + 4 - i] = b[PIXELS - i];
+                wide_b[PIXELS + 4 - i] = wide_b[PIXELS - i];
             }
         } else {
-            for (var i = 0; i < 9; i++) { // unroll
+            for (var i = 0; i < PIXELS + 1; i++) { // unroll
                 b[i] = b[i + 4];
                 wide_b[i] = wide_b[i + 4];
             }
@@ -169,39 +147,34 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 wide_b[NEW + i] = other[params.wide_offset + pixel];
             }
         }
-        var gradient_b: array<i32, 11>;
-        for (var i = 0; i < 11; i++) { // unroll
+        var gradient_b: array<i32, PIXELS + 3>;
+        for (var i = 0; i < PIXELS + 3; i++) { // unroll
             gradient_b[i] = luma(b[i + 2]) - luma(b[i]);
         }
-        for (var q = 0; q < 2; q++) { // unroll
+        for (var q = 0; q < QUADS; q++) { // unroll
             var costs_of = vec4<u32>(0u);
             for (var k = 0; k < 4; k++) { // unroll
-                let costs = cost(
-                    a[q],
+                let partners = Pixels(
                     vec4<u32>(
                         b[FRONT + 4 * q + DIRECTION * k],
                         b[FRONT + 4 * q + DIRECTION * k + 1],
                         b[FRONT + 4 * q + DIRECTION * k + 2],
                         b[FRONT + 4 * q + DIRECTION * k + 3],
                     ),
-                    gradient_a[q],
+                    vec4<u32>(
+                        wide_b[FRONT + 4 * q + DIRECTION * k],
+                        wide_b[FRONT + 4 * q + DIRECTION * k + 1],
+                        wide_b[FRONT + 4 * q + DIRECTION * k + 2],
+                        wide_b[FRONT + 4 * q + DIRECTION * k + 3],
+                    ),
                     vec4<i32>(
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k],
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k + 1],
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k + 2],
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k + 3],
                     ),
-                    hamming(
-                        wide_a[q],
-                        vec4<u32>(
-                            wide_b[FRONT + 4 * q + DIRECTION * k],
-                            wide_b[FRONT + 4 * q + DIRECTION * k + 1],
-                            wide_b[FRONT + 4 * q + DIRECTION * k + 2],
-                            wide_b[FRONT + 4 * q + DIRECTION * k + 3],
-                        ),
-                    ),
-                    weights[q],
                 );
+                let costs = cost(a[q], partners);
                 costs_of |= costs << vec4<u32>(8u * k);
             }
             for (var t = 0; t < 4; t++) { // unroll

@@ -6,13 +6,14 @@
 // Constants:
 //   WORKGROUP   threads per workgroup
 //   WORDS       u32 per pixel of a volume, four disparities packed per u32
+//   QUADS       vectors per pixel of a volume: WORDS / 4
 
 struct Params {
     width: u32,
     // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
-    // Index in `paths` where the band begins in the volume of this path.
+    // Index in `paths`, in vectors, where the band begins in the volume of this path.
     path_start: u32,
     // 1: lines continue from the row before the band, whose path costs are in `paths`.
     goes_on: u32,
@@ -21,7 +22,7 @@ struct Params {
     dy: i32,
     // Members from here on are read by select.wgsl alone, whose uniform has this layout too.
     volumes_start: u32,
-    volume_words: u32,
+    volume_quads: u32,
     min_disparity: i32,
     disparities: u32,
     uniqueness: u32,
@@ -32,10 +33,10 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 // One u32 per pixel: luma in the lowest byte.
 @group(0) @binding(1) var<storage, read> reference: array<u32>;
-// Matching costs: WORDS u32 per pixel, four disparities packed per u32, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<u32>;
+// Matching costs: QUADS vectors per pixel, four disparities packed per u32, 8 bits each.
+@group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
 // Volumes of path costs, packed as the matching costs.
-@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
+@group(0) @binding(3) var<storage, read_write> paths: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -45,11 +46,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var line = first_pixel(id.x);
     for (var i = 0u; i < line_length(); i++) {
         let luma = luma_at(line);
-        let words = path_costs(line, luma);
-        let start = params.path_start + (u32(line.y) * params.width + u32(line.x)) * WORDS;
-        for (var k = 0; k < WORDS; k++) { // unroll
-            paths[start + k] = words[k];
+        let packed = path_costs(line, luma);
+        let start = params.path_start + (u32(line.y) * params.width + u32(line.x)) * QUADS;
+        for (var q = 0; q < QUADS; q++) { // unroll
+            paths[start + q] = packed[q];
         }
-        line = next_pixel(line, words, luma);
+        line = next_pixel(line, packed, luma);
     }
 }

@@ -8,6 +8,7 @@
 // Constants:
 //   WORKGROUP   threads per workgroup
 //   WORDS       u32 per pixel of a volume, four disparities packed per u32
+//   QUADS       vectors per pixel of a volume: WORDS / 4
 //   STORED      volumes of stored paths, without the last path
 //   FULL        1: confidences are written too
 //   KEYS        1: the winners' keys are written too
@@ -17,16 +18,16 @@ struct Params {
     // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
-    // Index in `paths` where the band begins in the volume of this path.
+    // Index in `paths`, in vectors, where the band begins in the volume of this path.
     path_start: u32,
     // 1: lines continue from the row before the band, whose path costs are in `paths`.
     goes_on: u32,
     // Step to the next pixel of a line, -1, 0 or 1 each.
     dx: i32,
     dy: i32,
-    // Index in `paths` of the first path's volume, and u32 from one volume to the next.
+    // Index in `paths` of the first path's volume, and the distance from one volume to the next, in vectors.
     volumes_start: u32,
-    volume_words: u32,
+    volume_quads: u32,
     min_disparity: i32,
     disparities: u32,
     // Uniqueness: least excess of the rival's cost over the winner's cost, in per cent.
@@ -39,10 +40,10 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 // One u32 per pixel: luma in the lowest byte.
 @group(0) @binding(1) var<storage, read> reference: array<u32>;
-// Matching costs: WORDS u32 per pixel, four disparities packed per u32, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<u32>;
+// Matching costs: QUADS vectors per pixel, four disparities packed per u32, 8 bits each.
+@group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
 // Volumes of path costs, packed as the matching costs.
-@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
+@group(0) @binding(3) var<storage, read_write> paths: array<vec4<u32>>;
 // One u32 per pixel: the bits of the disparity, fixed-point. If FULL, the confidences, 0 to 255, four packed per u32.
 // If KEYS, one u32 per pixel: the winner's key.
 @group(0) @binding(4) var<storage, read_write> matches: array<atomic<u32>>;
@@ -50,21 +51,23 @@ struct Params {
 // Keys of a pixel's disparities, four per vector.
 alias Keys = array<vec4<u32>, WORDS>;
 
-// Keys from the sum of the stored paths' costs and the last path's costs `words`.
-fn keys_of(pixel: u32, words: array<u32, WORDS>) -> Keys {
+// Keys from the sum of the stored paths' costs and the last path's costs `packed`.
+fn keys_of(pixel: u32, packed: PackedCosts) -> Keys {
     var keys: Keys;
-    for (var k = 0; k < WORDS; k++) { // unroll
+    for (var q = 0; q < QUADS; q++) { // unroll
         // Sums of the even and of the odd disparities, two packed per u32, 16 bits each.
-        var even = words[k] & 0x00ff00ffu;
-        var odd = (words[k] >> 8u) & 0x00ff00ffu;
+        var even = packed[q] & vec4<u32>(0x00ff00ffu);
+        var odd = (packed[q] >> vec4<u32>(8u)) & vec4<u32>(0x00ff00ffu);
         for (var p = 0; p < STORED; p++) { // unroll
-            let word = paths[params.volumes_start + p * params.volume_words + pixel * WORDS + k];
-            even += word & 0x00ff00ffu;
-            odd += (word >> 8u) & 0x00ff00ffu;
+            let stored = paths[params.volumes_start + p * params.volume_quads + pixel * QUADS + q];
+            even += stored & vec4<u32>(0x00ff00ffu);
+            odd += (stored >> vec4<u32>(8u)) & vec4<u32>(0x00ff00ffu);
         }
-        let index = vec4<u32>(4u * k) + vec4<u32>(0u, 1u, 2u, 3u);
-        let sums = vec4<u32>(even << 16u, odd << 16u, even & 0xffff0000u, odd & 0xffff0000u);
-        keys[k] = select(vec4<u32>(NO_KEY), sums | index, index < vec4<u32>(params.disparities));
+        for (var t = 0; t < 4; t++) { // unroll
+            let index = vec4<u32>(16u * q + 4u * t) + vec4<u32>(0u, 1u, 2u, 3u);
+            let sums = vec4<u32>(even[t] << 16u, odd[t] << 16u, even[t] & 0xffff0000u, odd[t] & 0xffff0000u);
+            keys[4 * q + t] = select(vec4<u32>(NO_KEY), sums | index, index < vec4<u32>(params.disparities));
+        }
     }
     return keys;
 }
@@ -108,9 +111,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var line = first_pixel(id.x);
     for (var i = 0u; i < line_length(); i++) {
         let luma = luma_at(line);
-        let words = path_costs(line, luma);
+        let packed = path_costs(line, luma);
         let pixel = u32(line.y) * params.width + u32(line.x);
-        let keys = keys_of(pixel, words);
+        let keys = keys_of(pixel, packed);
         let best = best_key(keys);
         let compared = rival_and_neighbours(keys, best);
         let result = disparity_and_confidence(best, compared.x, compared.y, compared.z);
@@ -123,6 +126,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if KEYS != 0 {
             atomicStore(&matches[params.key_offset + pixel], best);
         }
-        line = next_pixel(line, words, luma);
+        line = next_pixel(line, packed, luma);
     }
 }

@@ -16,9 +16,12 @@
 
 // Constants:
 //   WORDS   u32 per pixel of a volume, four disparities packed per u32
+//   QUADS   vectors per pixel of a volume: WORDS / 4
 
 // Path costs of a pixel, four disparities per vector, between two vectors of sentinels.
 alias PathCosts = array<vec4<u32>, WORDS + 2>;
+// The same, packed: 16 disparities per vector. Software drivers load and store a vector in little more time than a u32.
+alias PackedCosts = array<vec4<u32>, QUADS>;
 
 // M: the least path cost of a pixel.
 fn min_cost(path: PathCosts) -> u32 {
@@ -70,8 +73,11 @@ fn first_pixel(index: u32) -> Line {
     if params.dy != 0 && params.goes_on != 0u && came_from >= 0 && came_from < width {
         let pixel = (line.y - params.dy) * width + came_from;
         line.luma = reference[u32(i32(params.first_row) * width + pixel)] & 255u;
-        for (var k = 0; k < WORDS; k++) { // unroll
-            line.path[k + 1] = unpack(paths[params.path_start + u32(pixel) * WORDS + k]);
+        for (var q = 0; q < QUADS; q++) { // unroll
+            let packed = paths[params.path_start + u32(pixel) * QUADS + q];
+            for (var t = 0; t < 4; t++) { // unroll
+                line.path[4 * q + t + 1] = unpack(packed[t]);
+            }
         }
         line.starts = false;
     }
@@ -84,27 +90,33 @@ fn luma_at(line: Line) -> u32 {
 }
 
 // Path costs of the line's pixel, of luma `luma`, packed: equation 13.
-fn path_costs(line: Line, luma: u32) -> array<u32, WORDS> {
+fn path_costs(line: Line, luma: u32) -> PackedCosts {
     let p2 = penalty(luma, line.luma);
     // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
     let mask = select(0xffffffffu, 0u, line.starts);
     let minimum = min_cost(line.path) & mask;
     let jump = (minimum + p2) & mask;
-    let start = (u32(line.y) * params.width + u32(line.x)) * WORDS;
-    var words: array<u32, WORDS>;
-    for (var k = 0; k < WORDS; k++) { // unroll
-        let cost = unpack(costs[start + k]);
-        words[k] = pack(advance(line.path[k], line.path[k + 1], line.path[k + 2], jump, cost) - minimum);
+    let start = (u32(line.y) * params.width + u32(line.x)) * QUADS;
+    var result: PackedCosts;
+    for (var q = 0; q < QUADS; q++) { // unroll
+        let packed = costs[start + q];
+        for (var t = 0; t < 4; t++) { // unroll
+            let before = line.path[4 * q + t];
+            let after = line.path[4 * q + t + 2];
+            result[q][t] = pack(advance(before, line.path[4 * q + t + 1], after, jump, unpack(packed[t])) - minimum);
+        }
     }
-    return words;
+    return result;
 }
 
-// The line at its next pixel, from the path costs `words` and the luma of this pixel. The path costs are packed and
+// The line at its next pixel, from the path costs `packed` and the luma of this pixel. The path costs are packed and
 // unpacked again, so that software drivers pack whole vectors instead of single lanes.
-fn next_pixel(line: Line, words: array<u32, WORDS>, luma: u32) -> Line {
+fn next_pixel(line: Line, packed: PackedCosts, luma: u32) -> Line {
     var next = line;
-    for (var k = 0; k < WORDS; k++) { // unroll
-        next.path[k + 1] = unpack(words[k]);
+    for (var q = 0; q < QUADS; q++) { // unroll
+        for (var t = 0; t < 4; t++) { // unroll
+            next.path[4 * q + t + 1] = unpack(packed[q][t]);
+        }
     }
     next.luma = luma;
     next.x += params.dx;

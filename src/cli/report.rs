@@ -5,7 +5,7 @@ use hsad::{
     config::{Config, Method},
     dense::{
         Aggregation, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference, Penalties, Pyramid,
-        Refinement, Search, WeakTexture,
+        Refinement, Search,
     },
     disparity::{DisparityRange, SCALE, coverage},
     image::Plane,
@@ -195,9 +195,7 @@ fn aggregation_of(aggregation: &Aggregation) -> Value {
         "census_weight": cost.census,
         "difference": part(cost.difference),
         "gradient": part(cost.gradient),
-        "weak_texture": cost.weak.map(|WeakTexture { spread, census, wide_census }| {
-            json!({ "spread": spread, "census_weight": census, "wide_census_weight": wide_census })
-        }),
+        "weak_spread": cost.weak_spread,
         "p1": penalty(|penalties| penalties.p1),
         "p2": penalty(|penalties| penalties.p2),
         "least_p2": penalty(|penalties| penalties.least_p2),

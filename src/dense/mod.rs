@@ -28,7 +28,7 @@ pub(crate) use compute::compute_over;
 pub(crate) use compute::compute_uploaded;
 pub use config::{
     Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters, Difference,
-    FILLED, Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
+    FILLED, Interpolation, Median, Paths, Penalties, Refinement, Search, SemiGlobal, View,
 };
 pub(crate) use config::{Direction, Filters, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;

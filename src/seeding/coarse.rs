@@ -33,7 +33,7 @@ const AGREEMENT: f32 = 1.25 * SCALE as f32;
 /// Semi-global matching, with a second search for the left-right consistency check and without any filling.
 const PARAMETERS: DenseParameters = DenseParameters {
     aggregation: Aggregation::Costs(CostAggregation {
-        cost: Cost { weak: None, ..CostAggregation::TUNED.cost },
+        cost: Cost { weak_spread: None, ..CostAggregation::TUNED.cost },
         cross_check: CrossCheck::Searched,
         search: Search::Whole,
         ..CostAggregation::TUNED

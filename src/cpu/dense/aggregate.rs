@@ -65,7 +65,7 @@ mod tests {
     use crate::{
         cpu::dense::{Transforms, box_mean, cell_cost, cell_path, cost, path, refined::tests::pair},
         dense::{
-            Aggregation, Brightness, CostAggregation, DenseConfig, Paths, SemiGlobal, View, WeakTexture,
+            Aggregation, Brightness, CostAggregation, DenseConfig, Paths, SemiGlobal, View,
             pyramid::{CellRange, CellTable},
         },
         disparity::DisparityRange,
@@ -127,8 +127,7 @@ mod tests {
     /// Costs by the usual census, or by the wide one everywhere.
     fn costs(is_weak: bool) -> CostAggregation {
         let mut costs = CostAggregation::TUNED;
-        let spread = if is_weak { 9 * 255 } else { 0 };
-        costs.cost.weak = Some(WeakTexture { spread, census: 8, wide_census: 12 });
+        costs.cost.weak_spread = Some(if is_weak { 9 * 255 } else { 0 });
         costs
     }
 

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::{CellVolume, Transforms, box_mean, cell_cost, cell_path, cost, cut::Cut, path};
 use crate::{
     dense::{CostAggregation, DenseConfig, Direction, View, kernels::HALO_ROWS, pyramid::CellTable},
+    disparity::DisparityRange,
     image::{Luma, Plane, Size},
 };
 
@@ -63,7 +64,7 @@ impl Task<'_> {
     /// Bytes of a row of a volume.
     fn row(&self, y: u32) -> usize {
         match self.table {
-            None => self.left.width() as usize * self.config.range.count.next_multiple_of(4) as usize,
+            None => self.left.width() as usize * DisparityRange::padded(self.config.range.count) as usize,
             Some(table) => 4 * table.row_words(y) as usize,
         }
     }

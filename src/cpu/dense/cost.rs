@@ -14,16 +14,16 @@ use crate::{
 /// The census transforms of a view.
 #[derive(Clone, Debug)]
 pub struct Transforms {
-    /// From the stage `census`.
+    /// The census transforms.
     pub census: Plane<u32>,
-    /// From the stage `wide_census`, if weak texture has a cost of its own.
+    /// The wide census transforms, if the costs of weak texture need them.
     pub wide: Option<Plane<u32>>,
 }
 
 impl Transforms {
     /// The census transforms that `cost` needs.
     pub fn new(luma: &Luma, cost: &Cost) -> Self {
-        Self { census: census(luma), wide: cost.weak.map(|weak| wide_census(luma, weak.spread)) }
+        Self { census: census(luma), wide: cost.weak_spread.map(|spread| wide_census(luma, spread)) }
     }
 
     /// The given rows.
@@ -32,11 +32,11 @@ impl Transforms {
     }
 }
 
-/// The matching costs of each pixel of `reference`, padded to a multiple of four disparities; a pixel without a partner
+/// The matching costs of each pixel of `reference`, padded to a multiple of 16 disparities; a pixel without a partner
 /// is compared with the nearest pixel of the row. Texture counts as weak where both views have wide census transforms.
 pub fn cost(views: [&Transforms; 2], view: View, cost: &Cost, range: DisparityRange) -> Vec<u8> {
     let size = views[0].census.size();
-    let disparities = 0..range.count.next_multiple_of(4);
+    let disparities = 0..DisparityRange::padded(range.count);
     let row_bytes = size.width as usize * disparities.len();
     let mut costs = vec![0; row_bytes * size.height as usize];
     costs.par_chunks_mut(row_bytes).zip(0..size.height).for_each(|(row, y)| {
@@ -60,26 +60,22 @@ pub(super) fn write_row(
     let hamming = |a: u32, b: u32| ((a ^ b) >> 8).count_ones();
     let (own, others) = (reference.census.row(y), other.census.row(y));
     let wide = reference.wide.as_ref().zip(other.wide.as_ref()).map(|(own, others)| (own.row(y), others.row(y)));
-    let weak_texture = cost.weak.zip(wide);
     for column in 0..reference.census.width() {
         let x = i64::from(column);
         let (a, slope) = (at(own, x), gradient(own, x));
-        let weak = weak_texture.filter(|(_, (wide, _))| at(wide, x) & 255 != 0);
+        let weak = wide.filter(|(own, _)| at(own, x) & 255 != 0);
         let disparities = disparities(column);
         let of_pixel = costs.split_off_mut(..disparities.len()).expect("room for each pixel");
         for (place, index) in of_pixel.iter_mut().zip(disparities) {
             let disparity = i64::from(min) + i64::from(index);
             let partner = if view == View::Left { x - disparity } else { x + disparity };
             let b = at(others, partner);
-            let distance = hamming(a, b);
             let change = slope.abs_diff(gradient(others, partner)) as u32;
             let texture = match weak {
-                Some((weak, (own, others))) => {
-                    weak.census * distance + weak.wide_census * hamming(at(own, x), at(others, partner))
-                }
+                Some((own, others)) => cost.census * hamming(at(own, x), at(others, partner)),
                 None => {
                     let difference = luma(a).abs_diff(luma(b)) as u32;
-                    cost.census * distance + cost.difference.weight * difference.min(cost.difference.limit)
+                    cost.census * hamming(a, b) + cost.difference.weight * difference.min(cost.difference.limit)
                 }
             };
             let sum = texture + cost.gradient.weight * change.min(cost.gradient.limit);

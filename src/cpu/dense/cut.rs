@@ -3,6 +3,7 @@
 use super::bands::Task;
 use crate::{
     dense::{CostAggregation, CrossCheck, DenseConfig, pyramid::CellTable},
+    disparity::DisparityRange,
     error::Result,
     image::Size,
     memory::{self, Left},
@@ -78,7 +79,7 @@ impl Memory {
         let width = u64::from(size.width);
         let (row, all) = match table {
             None => {
-                let row = width * u64::from(config.range.count.next_multiple_of(4));
+                let row = width * u64::from(DisparityRange::padded(config.range.count));
                 (row, row * u64::from(size.height))
             }
             Some(table) => {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::block_match::decide;
 use crate::{
     dense::{Dense, DenseConfig},
+    disparity::DisparityRange,
     image::{Plane, Size},
 };
 
@@ -15,7 +16,7 @@ pub fn path_winners(
     Size { width, height }: Size,
     config: &DenseConfig,
 ) -> Plane<Option<(u32, i32)>> {
-    let count = config.range.count.next_multiple_of(4) as usize;
+    let count = DisparityRange::padded(config.range.count) as usize;
     Plane::from_fn((width, height), |x, y| {
         let pixel = (y * width + x) as usize * count;
         let sum = |d: usize| paths.iter().map(|path| u32::from(path[pixel + d])).sum();
@@ -26,7 +27,7 @@ pub fn path_winners(
 /// The disparity of each pixel with the least sum of costs on all `paths`, unless its best rival is too close. Ties go
 /// to the smaller disparity.
 pub fn select(paths: &[Vec<u8>], Size { width, height }: Size, config: &DenseConfig) -> Dense {
-    let count = config.range.count.next_multiple_of(4) as usize;
+    let count = DisparityRange::padded(config.range.count) as usize;
     let selected: Vec<(i32, u8)> = (0..width as usize * height as usize)
         .into_par_iter()
         .map_init(Vec::new, |sums, pixel| {

@@ -25,21 +25,11 @@ pub struct Cost {
     /// Truncated difference of the horizontal gradients of luma; a gradient is the difference of the two neighbours in
     /// the row.
     pub gradient: Difference,
-    /// The cost of pixels of the reference view with weak texture; `None`: as that of other pixels.
-    pub weak: Option<WeakTexture>,
-}
-
-/// The matching cost where the reference view has weak texture: census, wide census and the gradient as elsewhere, without
-/// luma, which says more about brightness there than about disparity.
-///
-/// The wide census compares the sum of the 3x3 lumas around a pixel with those around 5x5 pixels at a distance of two
-/// columns and two rows. Texture is weak where these 25 sums hardly differ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WeakTexture {
-    /// Largest difference of the sums of weak texture, 0 to 2295 (9 x 255).
-    pub spread: u32,
-    /// Weight of each of the 24 bits in which the census transforms differ, in 1/16, 0 to 4096.
-    pub census: u32,
-    /// Weight of each of the 24 bits in which the wide census transforms differ, in 1/16, 0 to 4096.
-    pub wide_census: u32,
+    /// Where the 3x3 lumas around pixels of the reference view have sums that differ by at most this, 0 to 2295 (9 x 255),
+    /// texture is weak. There the wide census takes the place of the census, and luma has no part, since it says more about
+    /// brightness than about disparity. `None`: no pixel has weak texture.
+    ///
+    /// Of the 24 bits of the wide census every second one, as on a chessboard, compares the sum of the 3x3 lumas around
+    /// the pixel with that around a neighbour twice as far away. The 13 sums are those that must hardly differ.
+    pub weak_spread: Option<u32>,
 }

@@ -1,6 +1,6 @@
 //! Matching by census, luma and gradient costs.
 
-use super::{Cost, Difference, Direction, Paths, Penalties, Search, WeakTexture};
+use super::{Cost, Difference, Direction, Paths, Penalties, Search};
 use crate::error::{Result, check, check_range};
 
 /// The largest side of a cost-averaging window, in pixels.
@@ -54,7 +54,7 @@ impl CostAggregation {
             census: 20,
             difference: Difference { weight: 4, limit: 24 },
             gradient: Difference { weight: 12, limit: 16 },
-            weak: Some(WeakTexture { spread: 130, census: 10, wide_census: 6 }),
+            weak_spread: Some(110),
         },
         window: 1,
         semi_global: Some(SemiGlobal::TUNED),
@@ -73,7 +73,7 @@ impl CostAggregation {
             self.window,
             format!("it must be odd and 1 to {MAX_WINDOW}"),
         )?;
-        let Cost { census, difference, gradient, weak } = self.cost;
+        let Cost { census, difference, gradient, weak_spread } = self.cost;
         for (name, value) in [
             ("the weight of the census", census),
             ("the weight of the difference", difference.weight),
@@ -83,10 +83,8 @@ impl CostAggregation {
         ] {
             check_range(name, value, 0..=1 << 12)?;
         }
-        if let Some(WeakTexture { spread, census, wide_census }) = weak {
+        if let Some(spread) = weak_spread {
             check_range("the spread of weak texture", spread, 0..=9 * 255)?;
-            check_range("the weight of the census of weak texture", census, 0..=1 << 12)?;
-            check_range("the weight of the wide census", wide_census, 0..=1 << 12)?;
         }
         self.semi_global.map_or(Ok(()), |semi_global| semi_global.penalties.validate())
     }

@@ -12,7 +12,7 @@ mod view;
 
 pub use brightness::Brightness;
 pub use compared::Compared;
-pub use cost::{Cost, Difference, MAX_COST, WEIGHT_BITS, WeakTexture};
+pub use cost::{Cost, Difference, MAX_COST, WEIGHT_BITS};
 pub use costs::{CostAggregation, CrossCheck, SemiGlobal};
 pub use interpolation::Interpolation;
 pub use paths::{Direction, Paths};

@@ -1,4 +1,4 @@
-//! The census transform, with the luma beside it. `shaders/dense/census.wgsl`.
+//! The census transform, with the luma beside it, and the wide census transform. `shaders/dense/census.wgsl`.
 
 use super::{pad::PadParams, rows_per_thread::rows_per_thread};
 use crate::{
@@ -16,6 +16,7 @@ shader_struct! {
         width: u32,
         rows: u32,
         stride: u32,
+        wide_offset: u32,
     }
 }
 
@@ -27,8 +28,9 @@ pub struct Census {
 }
 
 impl Census {
-    /// Source, bindings and constants of the kernel, with `rows` rows per thread.
-    pub fn stage(rows: u32) -> Stage {
+    /// Source, bindings and constants of the kernel, with `rows` rows per thread. With `weak_spread`, it makes wide census
+    /// transforms too: texture is weak where the sums of 3x3 lumas differ by at most that.
+    pub fn stage(weak_spread: Option<u32>, rows: u32) -> Stage {
         Stage {
             name: "census",
             source: include_str!("../../../shaders/dense/census.wgsl"),
@@ -37,19 +39,19 @@ impl Census {
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("ROWS", rows.into()),
-                ("HALO_WORDS", HALO_WORDS.into()),
-                ("HALO_ROWS", HALO_ROWS.into()),
+                ("WIDE", weak_spread.is_some().into()),
+                ("SPREAD", weak_spread.unwrap_or(0).into()),
             ],
         }
     }
 
     /// Compiles the kernel.
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu, weak_spread: Option<u32>) -> Self {
         let rows = rows_per_thread(gpu);
-        Self { kernel: Kernel::new(gpu, &Self::stage(rows)), rows }
+        Self { kernel: Kernel::new(gpu, &Self::stage(weak_spread, rows)), rows }
     }
 
-    /// The padding that this kernel and [`super::WideCensus`] need of rows `first_row` to `first_row + rows` of a picture
+    /// The padding that the kernel needs of rows `first_row` to `first_row + rows` of a picture
     /// of `size`, from the buffer's first word. Rows outside the picture repeat its edge.
     pub fn padding(Size { width, height }: Size, first_row: i32, rows: u32) -> PadParams {
         PadParams {
@@ -64,19 +66,20 @@ impl Census {
     }
 
     /// Words per row of the padding.
-    pub(super) fn stride(width: u32) -> u32 {
+    fn stride(width: u32) -> u32 {
         width.div_ceil(4) + 2 * HALO_WORDS
     }
 
     /// Transforms the rows in `padded`, laid out as [`Self::padding`] says, to one `u32` per pixel: the 24 census bits
-    /// of its window above its luma.
+    /// of its window above its luma. The wide census transforms follow from word `wide_offset` on.
     pub fn prepare(
         &self,
         Size { width, height: rows }: Size,
         padded: &wgpu::Buffer,
         census: &wgpu::Buffer,
+        wide_offset: u32,
     ) -> Dispatch {
-        let params = Params { width, rows, stride: Self::stride(width) };
+        let params = Params { width, rows, stride: Self::stride(width), wide_offset };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
         self.kernel.dispatch(&params, &[padded, census], groups)
     }

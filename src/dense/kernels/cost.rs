@@ -2,11 +2,13 @@
 
 use super::volume_band::VolumeBand;
 use crate::{
-    dense::config::{Cost, MAX_COST, View, WEIGHT_BITS, WeakTexture},
+    dense::config::{Cost, MAX_COST, View, WEIGHT_BITS},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
+/// Pixels of a row per thread.
+const PIXELS: u32 = 16;
 
 shader_struct! {
     /// Uniforms of both cost kernels.
@@ -28,13 +30,13 @@ pub(super) fn cost_constants(cost: &Cost, view: View) -> Vec<(&'static str, i64)
     // Each step appends pixels: in front when searching to the left, behind when searching to the right.
     let (direction, front, kept, new) = match view {
         View::Left => (-1, 4, 0, 0),
-        View::Right => (1, 1, 4, 9),
+        View::Right => (1, 1, 4, i64::from(PIXELS) + 1),
     };
-    // Without a cost of its own, weak texture costs as much as any other.
-    let weak = cost.weak.unwrap_or(WeakTexture { spread: 0, census: cost.census, wide_census: 0 });
     vec![
         ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
         ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+        ("PIXELS", PIXELS.into()),
+        ("QUADS", (PIXELS / 4).into()),
         ("DIRECTION", direction),
         ("FRONT", front),
         ("KEPT", kept),
@@ -44,17 +46,15 @@ pub(super) fn cost_constants(cost: &Cost, view: View) -> Vec<(&'static str, i64)
         ("DIFFERENCE_LIMIT", cost.difference.limit.into()),
         ("GRADIENT_WEIGHT", cost.gradient.weight.into()),
         ("GRADIENT_LIMIT", cost.gradient.limit.into()),
-        ("WEAK_TEXTURE", cost.weak.is_some().into()),
-        ("WEAK_CENSUS_WEIGHT", weak.census.into()),
-        ("WIDE_CENSUS_WEIGHT", weak.wide_census.into()),
+        ("WEAK_TEXTURE", cost.weak_spread.is_some().into()),
         ("WEIGHT_BITS", WEIGHT_BITS.into()),
         ("MAX_COST", MAX_COST.into()),
     ]
 }
 
-/// Workgroups of both cost kernels: a thread has eight pixels of a row.
+/// Workgroups of both cost kernels.
 pub(super) fn groups(width: u32, rows: u32) -> [u32; 3] {
-    [width.div_ceil(8 * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1]
+    [width.div_ceil(PIXELS * WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1]
 }
 
 /// The matching-cost kernel, for one view as the reference.
@@ -78,7 +78,7 @@ impl CostVolume {
     }
 
     /// Writes the cost volume of `band`: the pixels of `reference` against those of `other`, both from
-    /// [`super::Census`], and, for a cost of weak texture, from [`super::WideCensus`] from word `wide_offset` on.
+    /// [`super::Census`], whose wide census transforms begin at word `wide_offset`.
     pub fn prepare(
         &self,
         band: &VolumeBand,

@@ -31,7 +31,6 @@ mod support;
 mod tangent;
 mod volume_band;
 mod weighted_median;
-mod wide_census;
 
 pub use agreement::{AGREEMENT_REACH, AGREEMENT_TOLERANCE, Agreement, AgreementTile};
 pub use bitmap::Bitmaps;
@@ -67,11 +66,9 @@ pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use tangent::{Tangents, fit};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
-pub use wide_census::WideCensus;
 
 use super::config::{
     Aggregation, Compared, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
-    WeakTexture,
 };
 use crate::gpu::Stage;
 
@@ -102,9 +99,8 @@ pub fn stages() -> Vec<Stage> {
         BlockMatch::stage(&parameters, View::Left, ResultKind::Matches, Tile::HARDWARE)
     }));
     let part = Difference { weight: 1, limit: 1 };
-    let cost = Cost { census: 1, difference: part, gradient: part, weak: None };
-    let weak = WeakTexture { spread: 1, census: 1, wide_census: 1 };
-    for cost in [cost, Cost { weak: Some(weak), ..cost }] {
+    let cost = Cost { census: 1, difference: part, gradient: part, weak_spread: None };
+    for cost in [cost, Cost { weak_spread: Some(1), ..cost }] {
         stages.extend(View::ALL.map(|view| CostVolume::stage(&cost, view)));
         stages.extend(View::ALL.map(|view| CellCost::stage(&cost, view)));
     }
@@ -135,8 +131,8 @@ pub fn stages() -> Vec<Stage> {
     for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
         stages.extend([
             SoftRank::stage(rows),
-            Census::stage(rows),
-            WideCensus::stage(1, rows),
+            Census::stage(None, rows),
+            Census::stage(Some(1), rows),
             Support::stage(5, false, rows),
             Support::stage(5, true, rows),
         ]);

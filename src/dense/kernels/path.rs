@@ -19,7 +19,7 @@ shader_struct! {
         pub(super) dx: i32,
         pub(super) dy: i32,
         pub(super) volumes_start: u32,
-        pub(super) volume_words: u32,
+        pub(super) volume_quads: u32,
         pub(super) min_disparity: i32,
         pub(super) disparities: u32,
         pub(super) uniqueness: u32,
@@ -36,7 +36,7 @@ impl Params {
             width: band.width,
             rows: band.rows,
             first_row: band.first_row,
-            path_start: start,
+            path_start: start / 4,
             goes_on: goes_on.into(),
             dx: direction.dx,
             dy: direction.dy,
@@ -55,7 +55,7 @@ impl Params {
 
 /// Constants of both path kernels.
 pub(super) fn line_constants(penalties: &Penalties, words: u32) -> Vec<(&'static str, i64)> {
-    let mut constants = vec![("WORKGROUP", WORKGROUP.into()), ("WORDS", words.into())];
+    let mut constants = vec![("WORKGROUP", WORKGROUP.into()), ("WORDS", words.into()), ("QUADS", (words / 4).into())];
     constants.extend(penalty_constants(penalties));
     constants
 }

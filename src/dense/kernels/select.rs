@@ -65,8 +65,8 @@ impl Select {
         matches: MapBuffer<'_>,
     ) -> Dispatch {
         let params = Params {
-            volumes_start: volumes.start,
-            volume_words: volumes.volume_words,
+            volumes_start: volumes.start / 4,
+            volume_quads: volumes.volume_words / 4,
             uniqueness: self.selection.uniqueness,
             confidence_offset: matches.layout.confidence_offset(),
             key_offset: matches.layout.key_offset(),

@@ -3,7 +3,7 @@
 use crate::disparity::DisparityRange;
 
 /// Rows of the census transforms and the disparities of their pixels. A volume holds 8-bit values, four packed per
-/// `u32`; the words of a pixel are contiguous, pixel by pixel.
+/// `u32`; the words of a pixel, a multiple of four, are contiguous, pixel by pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeBand {
     /// Width of both views, in pixels.
@@ -19,7 +19,7 @@ pub struct VolumeBand {
 impl VolumeBand {
     /// Words per pixel.
     pub fn words(&self) -> u32 {
-        self.range.count.div_ceil(4)
+        DisparityRange::padded(self.range.count) / 4
     }
 
     /// Words per row.

@@ -211,7 +211,8 @@ impl Workspace {
             transform: Transform::new(gpu, plan, &costs.cost, (bands.size, transformed_rows), luma)?,
             costs: plan.buffer("costs", cost_words)?,
             box_mean,
-            paths: plan.buffer("paths", bands.path_words() * bands.directions.len() as u64)?,
+            // At least the four words that kernels load at once, where no path is stored.
+            paths: plan.buffer("paths", (bands.path_words() * bands.directions.len() as u64).max(4))?,
             path: (!bands.directions.is_empty()).then(|| Path::new(gpu, &penalties, bands.band(0).words())),
             bands,
         })
@@ -384,7 +385,7 @@ fn band_rows_within(
     (paths, radius): (u64, u32),
 ) -> Result<u32> {
     let limit = limits.bytes;
-    let row = 4 * u64::from(width) * u64::from(range.count.div_ceil(4));
+    let row = u64::from(width) * u64::from(DisparityRange::padded(range.count));
     // Census transforms, two `u32` per pixel at most, have a halo one row wider than that of the costs.
     let (around, transformed_row) = (2 * (u64::from(radius) + 1), row.max(8 * u64::from(width)));
     let needed = (row * 3 * paths).max(transformed_row * (1 + around));

@@ -4,7 +4,7 @@ use super::Plan;
 use crate::{
     dense::{
         config::{Cost, View},
-        kernels::{Census, Pad, WideCensus},
+        kernels::{Census, Pad},
     },
     error::Result,
     gpu::Gpu,
@@ -18,8 +18,6 @@ pub(super) struct Transform {
     pictures: [(wgpu::Buffer, wgpu::Buffer); 2],
     pad: Pad,
     transform: Census,
-    /// The kernel of the wide census, for a cost of weak texture.
-    transform_widely: Option<WideCensus>,
     padded: wgpu::Buffer,
     /// The census transforms of each view, and behind those of all rows the wide ones, if there are any.
     census: [wgpu::Buffer; 2],
@@ -36,15 +34,13 @@ impl Transform {
         [left, right]: [&wgpu::Buffer; 2],
     ) -> Result<Self> {
         let padding = Census::padding(size, 0, rows);
-        let transform_widely = cost.weak.map(|weak| WideCensus::new(gpu, weak.spread));
-        let transforms = if transform_widely.is_some() { 2 } else { 1 };
+        let transforms = if cost.weak_spread.is_some() { 2 } else { 1 };
         let transformed = transforms * u64::from(size.width) * u64::from(rows);
         Ok(Self {
             size,
             pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
             pad: Pad::new(gpu),
-            transform: Census::new(gpu),
-            transform_widely,
+            transform: Census::new(gpu, cost.weak_spread),
             padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
             census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
             wide_offset: size.width * rows,
@@ -56,10 +52,7 @@ impl Transform {
         for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
             let (padding, size) = (Census::padding(self.size, first_row, rows), Size::new(self.size.width, rows));
             plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
-            plan.run(self.transform.prepare(size, &self.padded, census));
-            if let Some(transform) = &self.transform_widely {
-                plan.run(transform.prepare(size, &self.padded, census, self.wide_offset));
-            }
+            plan.run(self.transform.prepare(size, &self.padded, census, self.wide_offset));
         }
     }
 

@@ -42,7 +42,7 @@ pub struct CellTable {
 impl CellRange {
     /// The whole of a range of `count` disparities.
     pub fn whole(count: u32) -> Self {
-        Self { first: 0, words: count.div_ceil(4).next_multiple_of(GRAIN) }
+        Self { first: 0, words: DisparityRange::padded(count) / 4 }
     }
 
     /// The cell range of a range of `count` disparities that holds the disparities number `low` to `high`, with what is

@@ -35,7 +35,7 @@ fn on_device(
 }
 
 fn costs(width: u32, height: u32, count: u32) -> Vec<u8> {
-    picture((width * count.next_multiple_of(4), height), 78).data().to_vec()
+    picture((width * count.next_multiple_of(16), height), 78).data().to_vec()
 }
 
 #[test]
@@ -63,12 +63,12 @@ fn no_quotient_is_off() {
 #[test]
 fn a_band_needs_no_more_than_half_a_window_around_it() {
     let (width, height, side) = (37, 40, 7);
-    let costs = costs(width, height, 8);
+    let costs = costs(width, height, 16);
     let expected = box_mean(&costs, Size::new(width, height), side);
     for output_rows in [0..1_u32, 2..9, 20..21, 30..40, 0..40] {
         let input_rows = output_rows.start.saturating_sub(3)..(output_rows.end + 3).min(height);
-        let actual = on_device(&costs, width, side, input_rows, output_rows.clone(), 8);
-        let row = 8 * width as usize;
+        let actual = on_device(&costs, width, side, input_rows, output_rows.clone(), 16);
+        let row = 16 * width as usize;
         let expected = &expected[row * output_rows.start as usize..row * output_rows.end as usize];
         assert_same(&format!("rows {output_rows:?}"), &actual, expected);
     }
@@ -76,13 +76,15 @@ fn a_band_needs_no_more_than_half_a_window_around_it() {
 
 #[test]
 fn by_hand() {
-    // Four disparities of 3x2 pixels: ramps along the row and along the column, a lone pixel, a constant.
-    let pixel = |x: u8, y: u8| [10 * x, 30 * y, if (x, y) == (2, 0) { 90 } else { 0 }, 255];
+    // Four disparities of 3x2 pixels, four times: ramps along the row and along the column, a lone pixel, a constant.
+    let pixel = |x: u8, y: u8| [10 * x, 30 * y, if (x, y) == (2, 0) { 90 } else { 0 }, 255].repeat(4);
     let costs: Vec<u8> = (0..2).flat_map(|y| (0..3).flat_map(move |x| pixel(x, y))).collect();
     // Means along the row: 0 0 10 is 3, 0 10 20 is 10, 10 20 20 is 17; along the column: 0 0 30 is 10, 0 30 30 is 20.
     // The lone pixel counts once in its row beside it and twice at the edge: 30, 60; likewise in the columns.
     let expected =
-        [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]];
-    assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 4), expected.concat());
-    assert_eq!(box_mean(&costs, Size::new(3, 2), 3), expected.concat());
+        [[3, 10, 0, 255], [10, 10, 20, 255], [17, 10, 40, 255], [3, 20, 0, 255], [10, 20, 10, 255], [17, 20, 20, 255]]
+            .map(|pixel| pixel.repeat(4))
+            .concat();
+    assert_eq!(on_device(&costs, 3, 3, 0..2, 0..2, 16), expected);
+    assert_eq!(box_mean(&costs, Size::new(3, 2), 3), expected);
 }

@@ -1,7 +1,7 @@
 //! The matching cost at the disparities of cells.
 
 use hsad::{
-    dense::{Cost, Difference, View, WeakTexture},
+    dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::{Plane, Size},
     internals::{
@@ -18,7 +18,7 @@ const COST: Cost = Cost {
     census: 40,
     difference: Difference { weight: 16, limit: 24 },
     gradient: Difference { weight: 8, limit: 40 },
-    weak: Some(WeakTexture { spread: 200, census: 10, wide_census: 6 }),
+    weak_spread: Some(200),
 };
 
 #[test]

@@ -1,7 +1,7 @@
 //! The matching cost.
 
 use hsad::{
-    dense::{Cost, Difference, View, WeakTexture},
+    dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::{Plane, Size},
     internals::cpu::dense::Transforms,
@@ -14,9 +14,9 @@ const COST: Cost = Cost {
     census: 40,
     difference: Difference { weight: 16, limit: 24 },
     gradient: Difference { weight: 8, limit: 40 },
-    weak: None,
+    weak_spread: None,
 };
-const WEAK: WeakTexture = WeakTexture { spread: 300, census: 20, wide_census: 12 };
+const WEAK: Cost = Cost { weak_spread: Some(300), ..COST };
 
 fn compare(Size { width, height }: Size, view: View, cost: &Cost, (min, count): (i32, u32)) {
     let range = DisparityRange::new(min, count).unwrap();
@@ -34,21 +34,20 @@ fn the_twin_costs_the_same() {
     for size in SIZES {
         for view in [View::Left, View::Right] {
             compare(size, view, &COST, (0, 17));
-            compare(size, view, &Cost { weak: Some(WEAK), ..COST }, (0, 17));
+            compare(size, view, &WEAK, (0, 17));
         }
     }
     for range in [(0, 1), (-20, 41), (5, 3), (-500, 12), (90, 100)] {
         for view in [View::Left, View::Right] {
             compare(Size::new(97, 5), view, &COST, range);
-            compare(Size::new(97, 5), view, &Cost { weak: Some(WEAK), ..COST }, range);
+            compare(Size::new(97, 5), view, &WEAK, range);
         }
     }
     let none = Difference { weight: 0, limit: 0 };
-    let all_weak = WeakTexture { spread: 2295, census: 0, wide_census: 255 };
     for cost in [
         Cost { census: 255, ..COST },
         Cost { difference: none, gradient: none, ..COST },
-        Cost { weak: Some(all_weak), ..COST },
+        Cost { weak_spread: Some(2295), ..COST },
     ] {
         compare(Size::new(97, 5), View::Left, &cost, (0, 17));
     }
@@ -62,8 +61,8 @@ fn by_hand() {
     let range = DisparityRange::new(0, 1).unwrap();
     let views = [a, b].map(|census| Transforms { census, wide: None });
     let trial = CostTrial { views, view: View::Left, cost: COST, range, rows: 0..1 };
-    let [Values::U8(costs)] = &leaves(&trial)[..] else { panic!("four costs a word") };
-    assert_eq!(costs[4], 36);
+    let [Values::U8(costs)] = &leaves(&trial)[..] else { panic!("costs") };
+    assert_eq!(costs[16], 36);
 }
 
 #[test]
@@ -76,10 +75,9 @@ fn of_weak_texture_by_hand() {
     let b = Plane::new((3, 1), vec![50, 70, 70]).unwrap();
     let views = [(a, wide_a), (b, wide_b)].map(|(census, wide)| Transforms { census, wide: Some(wide) });
     let range = DisparityRange::new(0, 1).unwrap();
-    let cost = Cost { weak: Some(WEAK), ..COST };
-    let [Values::U8(costs)] = &leaves(&CostTrial { views, view: View::Left, cost, range, rows: 0..1 })[..] else {
-        panic!("four costs a word")
+    let [Values::U8(costs)] = &leaves(&CostTrial { views, view: View::Left, cost: WEAK, range, rows: 0..1 })[..] else {
+        panic!("costs")
     };
-    // Weak: (20 * 3 + 12 * 5 + 8 * 10) / 16 = 12.5. Not weak: luma by 10, gradients -40 and 0: (16 * 10 + 8 * 40) / 16.
-    assert_eq!((costs[4], costs[8]), (12, 30));
+    // Weak: (40 * 5 + 8 * 10) / 16 = 17.5. Not weak: luma by 10, gradients -40 and 0: (16 * 10 + 8 * 40) / 16.
+    assert_eq!((costs[16], costs[32]), (17, 30));
 }

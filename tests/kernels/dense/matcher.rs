@@ -7,7 +7,7 @@ use hsad::{
     config::Preset,
     dense::{
         self, Aggregation, Brightness, Compared, Cost, CostAggregation, CrossCheck, DenseConfig, DenseParameters,
-        Destination, Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View, WeakTexture,
+        Destination, Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
     gpu::Gpu,
@@ -40,10 +40,9 @@ const FILLED: Option<Refinement> =
 
 fn costs(reference: View, window: u32, paths: Option<Paths>, cross_check: CrossCheck) -> DenseConfig {
     let part = |weight, limit| Difference { weight, limit };
-    // With the other view as the reference, all texture costs the same.
-    let weak = WeakTexture { spread: 700, census: 20, wide_census: 12 };
-    let weak = (reference == View::Left).then_some(weak);
-    let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32), weak };
+    // With the right view as the reference, all texture costs the same.
+    let weak_spread = (reference == View::Left).then_some(700);
+    let cost = Cost { census: 40, difference: part(16, 24), gradient: part(8, 32), weak_spread };
     let penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
     let semi_global = paths.map(|paths| SemiGlobal { penalties, paths });
     config(reference).with(|parameters| {

@@ -26,4 +26,3 @@ mod soft_rank;
 mod support;
 mod tangent;
 mod weighted_median;
-mod wide_census;

@@ -18,7 +18,7 @@ fn the_twin_selects_the_same() {
     for Size { width, height } in SIZES {
         for (count, stored, uniqueness) in [(1_u32, 3, 0), (2, 1, 0), (17, 3, 10), (40, 7, 1)] {
             for interpolation in [Interpolation::None, Interpolation::Parabola, Interpolation::Equiangular] {
-                let volume = |seed| picture((width * count.next_multiple_of(4), height), seed).into_data();
+                let volume = |seed| picture((width * count.next_multiple_of(16), height), seed).into_data();
                 let trial = SelectTrial {
                     reference: picture((width, height), 99).map(|&value| value.into()),
                     costs: volume(55).iter().map(|&cost| cost / 2).collect(),
@@ -43,8 +43,8 @@ fn by_hand() {
     let trial = SelectTrial {
         // The path costs of the first pixel of a line are its matching costs.
         reference: Plane::filled((1, 1), 0),
-        costs: vec![10, 5, 20, 40],
-        stored: vec![vec![50, 15, 10, 40]],
+        costs: [&[10, 5, 20, 40], &[0; 12][..]].concat(),
+        stored: vec![[&[50, 15, 10, 40], &[0; 12][..]].concat()],
         range: DisparityRange::new(0, 4).unwrap(),
         last: BACK,
         penalties: PENALTIES,

@@ -4,8 +4,8 @@ use super::words::{bytes, words};
 use crate::{
     cpu::dense::{Transforms, box_mean, census, cost, pad, wide_census},
     dense::{
-        Brightness, Cost, Difference, View, WeakTexture,
-        kernels::{BoxMean, Census, CostVolume, VolumeBand, WideCensus},
+        Brightness, Cost, Difference, View,
+        kernels::{BoxMean, Census, CostVolume, VolumeBand},
     },
     disparity::DisparityRange,
     error::Result,
@@ -15,65 +15,28 @@ use crate::{
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
-    Subject::kernel("wide_census", |size, dice| Box::new(WideCensusTrial::draw(size, dice))),
     Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
     Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
 ];
 
-/// A picture for the census transform.
+/// A picture for the census transforms.
 #[derive(Clone, Debug)]
-pub struct CensusTrial(pub Luma);
+pub struct CensusTrial {
+    /// The picture.
+    pub picture: Luma,
+    /// Largest difference of the sums of weak texture; `None`: no wide census transforms.
+    pub weak_spread: Option<u32>,
+}
 
 impl CensusTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self(dice.picture(size))
+        Self { picture: dice.picture(size), weak_spread: dice.coin().then(|| dice.pick(&[0, 130, 700, 2295])) }
     }
 }
 
 impl Trial for CensusTrial {
     fn parameters(&self) -> String {
-        String::new()
-    }
-
-    fn input(&self) -> Vec<Array> {
-        vec![Array::exact("picture", self.0.data().to_vec())]
-    }
-
-    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let size = self.0.size();
-        let plane = pad(&self.0, &Census::padding(size, 0, size.height), Brightness::SAME);
-        let transformed = bench.output(size.width * size.height)?;
-        let kernel = Census::new(bench.gpu);
-        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
-        bench.run(|encoder| dispatch.record(encoder));
-        Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
-    }
-
-    fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("census", census(&self.0).into_data())])
-    }
-}
-
-/// A picture for the wide census transform.
-#[derive(Clone, Debug)]
-pub struct WideCensusTrial {
-    /// The picture.
-    pub picture: Luma,
-    /// Largest difference of the sums of weak texture.
-    pub spread: u32,
-    /// Word where the transforms begin.
-    pub offset: u32,
-}
-
-impl WideCensusTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self { picture: dice.picture(size), spread: dice.pick(&[0, 130, 700, 2295]), offset: dice.below(9) }
-    }
-}
-
-impl Trial for WideCensusTrial {
-    fn parameters(&self) -> String {
-        format!("spread {}, from word {}", self.spread, self.offset)
+        format!("weak spread {:?}", self.weak_spread)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -82,17 +45,19 @@ impl Trial for WideCensusTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.picture.size();
+        let pixels = size.width * size.height;
         let plane = pad(&self.picture, &Census::padding(size, 0, size.height), Brightness::SAME);
-        let transformed = bench.output(self.offset + size.width * size.height)?;
-        let kernel = WideCensus::new(bench.gpu, self.spread);
-        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed, self.offset);
+        let transformed = bench.output(if self.weak_spread.is_some() { 2 * pixels } else { pixels })?;
+        let kernel = Census::new(bench.gpu, self.weak_spread);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed, pixels);
         bench.run(|encoder| dispatch.record(encoder));
-        let words = bench.download::<u32>(&transformed)?;
-        Ok(vec![Array::exact("wide census", words[self.offset as usize..].to_vec())])
+        Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("wide census", wide_census(&self.picture, self.spread).into_data())])
+        let wide = self.weak_spread.map(|spread| wide_census(&self.picture, spread).into_data());
+        let transforms = [census(&self.picture).into_data(), wide.unwrap_or_default()].concat();
+        Ok(vec![Array::exact("census", transforms)])
     }
 }
 
@@ -112,7 +77,7 @@ pub struct BoxMeanTrial {
 impl BoxMeanTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let disparities = dice.below(33) + 1;
-        let row = size.width * disparities.next_multiple_of(4);
+        let row = size.width * DisparityRange::padded(disparities);
         let costs = dice.picture((row, size.height)).into_data();
         Self { size, costs, disparities, side: dice.pick(&[1, 3, 5, 7, 9, 31]) }
     }
@@ -166,8 +131,8 @@ impl CostTrial {
         let first = dice.below(size.height.min(4));
         let pair = dice.pair(size);
         let rows = first..size.height - dice.below(size.height - first);
-        let weak = weak_texture(dice);
-        let cost = Cost { census: census_weight, difference, gradient, weak };
+        let weak_spread = weak_spread(dice);
+        let cost = Cost { census: census_weight, difference, gradient, weak_spread };
         Self { views: pair.map(|luma| Transforms::new(&luma, &cost)), view, cost, range, rows }
     }
 }
@@ -202,12 +167,8 @@ impl Trial for CostTrial {
     }
 }
 
-pub(super) fn weak_texture(dice: &mut Dice) -> Option<WeakTexture> {
-    dice.coin().then(|| WeakTexture {
-        spread: dice.pick(&[60, 200, 700]),
-        census: dice.pick(&[0, 10, 255]),
-        wide_census: dice.pick(&[6, 40, 255]),
-    })
+pub(super) fn weak_spread(dice: &mut Dice) -> Option<u32> {
+    dice.coin().then(|| dice.pick(&[60, 200, 700]))
 }
 
 /// The census transforms of a view, and behind them the wide ones.

@@ -2,7 +2,7 @@
 
 use super::{
     blocks::signed,
-    costs::{transforms, weak_texture},
+    costs::{transforms, weak_spread},
     paths::penalties,
     words::{bytes, words},
 };
@@ -82,8 +82,8 @@ impl CellCostTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
         let mut part = || Difference { weight: dice.below(40), limit: dice.below(60) };
         let (difference, gradient) = (part(), part());
-        let weak = weak_texture(dice);
-        let cost = Cost { census: dice.pick(&[0, 20, 40]), difference, gradient, weak };
+        let weak_spread = weak_spread(dice);
+        let cost = Cost { census: dice.pick(&[0, 20, 40]), difference, gradient, weak_spread };
         let (view, table) = (dice.view(), table(size, 90, dice));
         let views = dice.pair(size).map(|luma| Transforms::new(&luma, &cost));
         Self { views, view, cost, table, band_rows: 1 + dice.below(size.height) }

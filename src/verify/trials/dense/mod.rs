@@ -14,7 +14,7 @@ mod words;
 pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
 pub use checks::{AgreementTrial, ConsistencyTrial};
-pub use costs::{BoxMeanTrial, CensusTrial, CostTrial, WideCensusTrial};
+pub use costs::{BoxMeanTrial, CensusTrial, CostTrial};
 pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
 pub use maps::{MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};

@@ -34,9 +34,9 @@ pub(super) fn penalties(dice: &mut Dice) -> Penalties {
     Penalties { p1: dice.below(least_p2 + 1), p2, least_p2, p2_scale: dice.pick(&[1, 8, 16, 255]) }
 }
 
-/// Costs of all pixels, 0 to 127, padded to a multiple of four disparities.
+/// Costs of all pixels, 0 to 127, padded to a multiple of 16 disparities.
 fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
-    let noise = smooth_noise((width * count.next_multiple_of(4), height), seed);
+    let noise = smooth_noise((width * DisparityRange::padded(count), height), seed);
     noise.data().iter().map(|&value| value / 2).collect()
 }
 
@@ -45,7 +45,7 @@ fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
 pub struct PathTrial {
     /// The reference view, its luma in the lowest byte.
     pub reference: Plane<u32>,
-    /// Costs of each pixel, a multiple of four disparities.
+    /// Costs of each pixel, a multiple of 16 disparities.
     pub costs: Vec<u8>,
     /// Direction of the path.
     pub direction: Direction,
@@ -57,7 +57,7 @@ pub struct PathTrial {
 
 impl PathTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        let (penalties, count) = (penalties(dice), dice.pick(&[4, 12, 20, 64]));
+        let (penalties, count) = (penalties(dice), dice.pick(&[16, 32, 80]));
         let direction = dice.pick(&Direction::ALL);
         let band_rows = if dice.coin() { size.height } else { 1 + dice.below(size.height) };
         let high_bits = dice.word() << 8;
@@ -154,7 +154,7 @@ impl SelectTrial {
         let (stored, count) = (dice.pick(&[1, 2, 3, 7]), dice.pick(&[1_u32, 2, 17, 40, 61]));
         let (penalties, interpolation) = (penalties(dice), dice.interpolation());
         let uniqueness = dice.pick(&[0, 1, 10, 100]);
-        let volume = |seed| smooth_noise((size.width * count.next_multiple_of(4), size.height), seed).into_data();
+        let volume = |seed| smooth_noise((size.width * DisparityRange::padded(count), size.height), seed).into_data();
         Self {
             range: DisparityRange { min: dice.between(-9, 9), count },
             last: dice.pick(&Direction::ALL[..2]),
