@@ -4,7 +4,7 @@
 use super::{
     config::DenseConfig,
     kernels::Halve,
-    matcher::Dense,
+    map::Dense,
     outputs::{Disparities, Outputs},
     plan::{BandLimits, LevelKernels, LevelTask},
     pyramid::{CellTable, Level, Pyramid, filters},

@@ -15,6 +15,7 @@ pub(crate) mod config;
 mod inputs;
 pub(crate) mod kernels;
 mod levels;
+mod map;
 mod matcher;
 mod outputs;
 mod plan;
@@ -32,7 +33,8 @@ pub use config::{
 };
 pub(crate) use config::{Direction, Filters, MAX_COST, WEIGHT_BITS};
 pub use inputs::Inputs;
-pub use matcher::{Dense, Matcher};
+pub use map::Dense;
+pub use matcher::Matcher;
 pub use outputs::{Destination, Outputs};
 pub(crate) use plan::After;
 pub use pyramid::Pyramid;
