@@ -1,9 +1,11 @@
 //! A pair of views as luma, on the backend that matches them.
 
+use std::borrow::Cow;
+
 use crate::{
     backend::Backend,
     cpu,
-    dense::{Dense, DenseConfig, View, compute_uploaded},
+    dense::{Dense, DenseConfig, DenseParameters, Masks, UploadedPair, View, compute_uploaded, kernels::Loss},
     error::{Error, Result, check},
     features::{Detected, Detector, FeatureConfig},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
@@ -22,6 +24,15 @@ pub struct Pair<'b> {
     /// The pictures of either view on the host, without a device and unless other views took their place.
     pictures: [Option<&'b Picture>; 2],
     device: Option<OnDevice<'b>>,
+}
+
+/// What does not show the scene in the dense matching of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<'m> {
+    /// Which pixels of the reference view and of the other one show the scene: 255 or 0; `None`: all do.
+    pub masks: [Option<&'m Luma>; 2],
+    /// What a pixel with a hidden partner loses before the refinement; after it the confidence.
+    pub loss: Loss,
 }
 
 /// Packed luma of both views on a device.
@@ -101,13 +112,25 @@ impl<'b> Pair<'b> {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub(crate) async fn with_views(mut self, views: [Option<Luma>; 2]) -> Result<Self> {
-        for ((view, own), side) in views.into_iter().zip([&mut self.left, &mut self.right]).zip(0..) {
-            let Some(view) = view else { continue };
-            if let Some(OnDevice { gpu, luma, colours }) = &mut self.device {
-                luma[side] = upload(gpu, &view).await?;
+        for (side, _) in (0..).zip(&views).filter(|(_, view)| view.is_some()) {
+            self.pictures[side] = None;
+            if let Some(OnDevice { colours, .. }) = &mut self.device {
                 colours[side] = None;
             }
-            self.pictures[side] = None;
+        }
+        self.with_luma(views).await
+    }
+
+    /// The pair with other luma in place of that of the views that are given; their colours stay.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) async fn with_luma(mut self, views: [Option<Luma>; 2]) -> Result<Self> {
+        for ((view, own), side) in views.into_iter().zip([&mut self.left, &mut self.right]).zip(0..) {
+            let Some(view) = view else { continue };
+            if let Some(OnDevice { gpu, luma, .. }) = &mut self.device {
+                luma[side] = upload(gpu, &view).await?;
+            }
             *own = view;
         }
         Ok(self)
@@ -181,22 +204,42 @@ impl<'b> Pair<'b> {
     /// # Errors
     /// See [`crate::dense::compute`].
     pub async fn dense(&self, config: &DenseConfig) -> Result<Dense> {
-        self.dense_with_progress(config, |_| ()).await
+        self.dense_seen(config, None, |_| ()).await
     }
 
-    /// [`Self::dense`] with calls of `progress` with the share of the work that a device has done, 0 to 1.
-    pub(crate) async fn dense_with_progress(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
+    /// [`Self::dense`], where only pixels that show the scene take part in the refinement. Calls `progress` with the share of the
+    /// work that a device has done, 0 to 1.
+    pub(crate) async fn dense_seen(
+        &self,
+        config: &DenseConfig,
+        seen: Option<Seen<'_>>,
+        progress: impl FnMut(f32),
+    ) -> Result<Dense> {
         let reference = usize::from(config.reference == View::Right);
-        match &self.device {
-            Some(OnDevice { gpu, luma, colours }) => {
-                let views = (luma.clone(), colours[reference].clone());
-                compute_uploaded(gpu, self.size(), config, views, progress).await
-            }
-            None => match self.pictures[reference] {
-                Some(picture) => cpu::dense::compute_in_colour([&self.left, &self.right], picture, config),
-                None => cpu::dense::compute(&self.left, &self.right, config),
-            },
+        let views = [&self.left, &self.right];
+        if let Some(OnDevice { gpu, luma, colours }) = &self.device {
+            let masks = match seen {
+                Some(Seen { masks, loss }) => Some(Masks::new(gpu, self.size(), masks, loss).await?),
+                None => None,
+            };
+            let pair = UploadedPair { luma: luma.clone(), colours: colours[reference].clone(), masks };
+            return compute_uploaded(gpu, self.size(), config, pair, progress).await;
         }
+        let matched = |config: &DenseConfig| match self.pictures[reference] {
+            Some(picture) => cpu::dense::compute_in_colour(views, picture, config),
+            None => cpu::dense::compute(views[0], views[1], config),
+        };
+        let (Some(Seen { masks: [own, other], loss }), Some(refinement)) = (seen, config.parameters.refinement) else {
+            return matched(config);
+        };
+        let parameters = DenseParameters { refinement: None, ..config.parameters };
+        let mut dense = matched(&DenseConfig { parameters, ..config.clone() })?;
+        cpu::dense::unseen(&mut dense, config.reference, own, other, loss);
+        let picture =
+            self.pictures[reference].map_or_else(|| Cow::Owned(cpu::luma::rgba(views[reference])), Cow::Borrowed);
+        let mut dense = cpu::dense::refined(views, &picture, dense, &refinement, config);
+        cpu::dense::unseen(&mut dense, config.reference, own, other, Loss::Confidence);
+        Ok(dense)
     }
 }
 

@@ -10,7 +10,7 @@ use std::{
 
 use hsad::{
     Backend,
-    config::Preset,
+    config::{Config, Preset},
     dense::View,
     disparity::NONE,
     gpu::DeviceChoice,
@@ -109,7 +109,7 @@ fn rows_that_are_off_are_aligned() {
     let truth = pfm::read(&folder.join("disp_left.pfm")).unwrap();
     let lower = |rows: u32| Picture::from_fn(right.size(), |x, y| right.get(x, y.saturating_sub(rows)));
     let wrong = |right: &Picture, align: bool| {
-        let config = hsad::Config { align, force: true, ..Preset::Fast.config() };
+        let config = Config { align, force: true, ..Preset::Fast.config() };
         let outcome = pipeline::run(&Backend::Cpu, (&left, right), &config, |_| ()).unwrap();
         hsad::eval::score(&outcome.dense.disparity, &truth, None, &[1.0]).unwrap().bad[0].of_known
     };
@@ -120,5 +120,31 @@ fn rows_that_are_off_are_aligned() {
         // The lowest rows of the left view lie outside the right one.
         let lost = f64::from(rows) / f64::from(right.height());
         assert!(aligned < level + lost + 0.005 && as_is > level + 0.1, "{rows} rows: {level}, {aligned}, {as_is}");
+    }
+}
+
+/// Pixels that do not show the scene take no part in the refinement, on a device and on the CPU.
+#[test]
+fn what_is_masked_is_refined_alike_on_device_and_cpu() {
+    let folder = scene("weak");
+    let views = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    // Alpha is 0 in a disc of one view and in a wedge of the other one.
+    let [left, right] = [0, 1].map(|view: usize| {
+        let picture = &views[view];
+        let hidden = |x: u32, y: u32| {
+            if view == 0 { (x as i32 - 90).pow(2) + (y as i32 - 70).pow(2) < 900 } else { x + 2 * y < 90 }
+        };
+        let shown = |x, y| picture.get(x, y).map(|value| if hidden(x, y) { 0 } else { value });
+        Picture::from_fn(picture.size(), shown)
+    });
+    let device = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    for (preset, reference) in
+        [(Preset::Balanced, View::Left), (Preset::Quality, View::Right), (Preset::Fast, View::Left)]
+    {
+        let config = Config { reference, ..preset.config() };
+        let [found, expected] =
+            [&device, &Backend::Cpu].map(|backend| pipeline::run(backend, (&left, &right), &config, |_| ()).unwrap());
+        assert!(found.masks.iter().all(Option::is_some));
+        assert_eq!(found.dense, expected.dense, "{preset}, {reference:?}");
     }
 }

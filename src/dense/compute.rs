@@ -1,11 +1,13 @@
 //! Dense matching of one pair on a device.
 
-use super::{Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, pyramid::Pyramid};
+use super::{
+    Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, pyramid::Pyramid, uploaded::UploadedPair,
+};
 use crate::{
     error::{Error, Result},
     gpu::{Gpu, check_limits},
     image::{Luma, Size},
-    luma::{Colours, check_size, upload},
+    luma::{check_size, upload},
 };
 
 /// Matches one pair on `gpu`, over a [`Pyramid`] where `config` asks for one.
@@ -19,28 +21,27 @@ pub async fn compute(gpu: &Gpu, left: &Luma, right: &Luma, config: &DenseConfig)
     check_size(left.size())?;
     check_limits(gpu)?;
     let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
-    compute_uploaded(gpu, left.size(), config, (luma, None), |_| ()).await
+    compute_uploaded(gpu, left.size(), config, UploadedPair { luma, colours: None, masks: None }, |_| ()).await
 }
 
-/// [`compute`] for packed luma, and for the colours of the reference view if it has any, that are on the device. Calls
-/// `progress` with the share of the work that is done, 0 to 1, where the work has parts.
+/// [`compute`] for a pair that is on the device. Calls `progress` with the share of the work that is done, 0 to 1, where the work
+/// has parts.
 pub(crate) async fn compute_uploaded(
     gpu: &Gpu,
     size: Size,
     config: &DenseConfig,
-    (luma, colours): ([wgpu::Buffer; 2], Option<Colours>),
+    mut pair: UploadedPair,
     progress: impl FnMut(f32),
 ) -> Result<Dense> {
     config.validate()?;
     check_limits(gpu)?;
-    let colours = match colours {
-        Some(colours) => Some(colours),
-        None => ReferenceColours::without_colours(gpu, size, config, luma.each_ref()).await?,
-    };
-    if let Some(pyramid) = Pyramid::of(config, size) {
-        return levels::compute(gpu, (luma, colours.as_ref()), config, &pyramid, u32::MAX, progress).await;
+    if pair.colours.is_none() {
+        pair.colours = ReferenceColours::without_colours(gpu, size, config, pair.luma.each_ref()).await?;
     }
-    Matcher::build(gpu, size, config, Some((luma, colours)), u32::MAX).await?.run_by_parts(progress).await
+    if let Some(pyramid) = Pyramid::of(config, size) {
+        return levels::compute(gpu, pair, config, &pyramid, u32::MAX, progress).await;
+    }
+    Matcher::build(gpu, size, config, Some(pair), u32::MAX).await?.run_by_parts(progress).await
 }
 
 /// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.
@@ -54,5 +55,5 @@ pub(crate) async fn compute_over(
 ) -> Result<Dense> {
     let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
     let colours = ReferenceColours::without_colours(gpu, left.size(), config, luma.each_ref()).await?;
-    levels::compute(gpu, (luma, colours.as_ref()), config, pyramid, band_rows, |_| ()).await
+    levels::compute(gpu, UploadedPair { luma, colours, masks: None }, config, pyramid, band_rows, |_| ()).await
 }

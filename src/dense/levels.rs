@@ -9,28 +9,29 @@ use super::{
     plan::{BandLimits, LevelKernels, LevelTask},
     pyramid::{CellTable, Level, Pyramid, filters},
     readback::MapReadback,
+    uploaded::UploadedPair,
 };
 use crate::{
     error::Result,
     gpu::{Gpu, Readback, buffer_limit, guarded, storage_buffer},
     image::Size,
-    luma::{Colours, packed_bytes},
+    luma::packed_bytes,
 };
 
 /// Most bytes of the volumes of a band: more take no less time.
 const MOST_BYTES: u64 = 1 << 27;
 
-/// Matches packed `luma` over `pyramid`, in bands of at most `band_rows` rows, and calls `progress` with the share of the
-/// work that is done, 0 to 1. Holes are filled by the `colours` of the reference view.
+/// Matches a `pair` over `pyramid`, in bands of at most `band_rows` rows, and calls `progress` with the share of the
+/// work that is done, 0 to 1. Holes are filled by the colours of the reference view.
 pub(super) async fn compute(
     gpu: &Gpu,
-    (luma, colours): ([wgpu::Buffer; 2], Option<&Colours>),
+    pair: UploadedPair,
     config: &DenseConfig,
     pyramid: &Pyramid,
     band_rows: u32,
     mut progress: impl FnMut(f32),
 ) -> Result<Dense> {
-    let pictures = halved(gpu, luma, pyramid.levels()).await?;
+    let pairs = halved(gpu, pair, pyramid.levels()).await?;
     let kernels = guarded(gpu, "dense matching", || Ok(LevelKernels::new(gpu, config))).await?;
     let limits = BandLimits { bytes: buffer_limit(gpu).min(MOST_BYTES), rows: band_rows };
     let (coarse_filters, refinement) = (filters(), config.parameters.refinement.as_ref().map(Into::into));
@@ -38,7 +39,7 @@ pub(super) async fn compute(
     let work: f32 = (0..pyramid.levels().len()).map(|level| 0.25_f32.powi(level as i32)).sum();
     let mut done = 0.0;
     let mut map = None;
-    for (number, (level, [left, right])) in pyramid.levels().iter().zip(&pictures).enumerate().rev() {
+    for (number, (level, pair)) in pyramid.levels().iter().zip(&pairs).enumerate().rev() {
         let table = match &map {
             None => CellTable::whole(level.size, level.range),
             Some(Dense { disparity, .. }) => CellTable::below(disparity, level.size, level.range),
@@ -47,13 +48,7 @@ pub(super) async fn compute(
         log::debug!("{:?}: {:.1} % of the disparities", level.size, 100.0 * table.share());
         let filters = if number > 0 { Some(&coarse_filters) } else { refinement.as_ref() };
         let config = if number > 0 { level.coarse(config) } else { level.finest(config) };
-        let task = LevelTask {
-            config: &config,
-            table: &table,
-            filters,
-            luma: [left, right],
-            colours: colours.filter(|_| number == 0),
-        };
+        let task = LevelTask { config: &config, table: &table, filters, pair };
         let part = 0.25_f32.powi(number as i32) / work;
         map = Some(matched(gpu, &kernels, task, limits, |share| progress(done + part * share)).await?);
         done += part;
@@ -61,22 +56,22 @@ pub(super) async fn compute(
     Ok(map.expect("a pyramid has a level"))
 }
 
-/// Packed luma of all levels, the finest first.
-async fn halved(gpu: &Gpu, luma: [wgpu::Buffer; 2], levels: &[Level]) -> Result<Vec<[wgpu::Buffer; 2]>> {
+/// The pairs of all levels, the finest first, which alone has colours and masks.
+async fn halved(gpu: &Gpu, pair: UploadedPair, levels: &[Level]) -> Result<Vec<UploadedPair>> {
     guarded(gpu, "the pyramid", || {
         let halve = Halve::new(gpu);
-        let mut pictures = vec![luma];
+        let mut pairs = vec![pair];
         let mut encoder = gpu.encoder("pyramid");
         for sizes in levels.windows(2) {
-            let [left, right] = pictures[pictures.len() - 1].each_ref().map(|picture| -> Result<wgpu::Buffer> {
+            let [left, right] = pairs[pairs.len() - 1].luma.each_ref().map(|picture| -> Result<wgpu::Buffer> {
                 let half = storage_buffer(gpu, "half the picture", packed_bytes(sizes[1].size))?;
                 halve.prepare(sizes[0].size, picture, &half).record(&mut encoder);
                 Ok(half)
             });
-            pictures.push([left?, right?]);
+            pairs.push(UploadedPair { luma: [left?, right?], colours: None, masks: None });
         }
         gpu.queue.submit([encoder.finish()]);
-        Ok(pictures)
+        Ok(pairs)
     })
     .await
 }
@@ -92,7 +87,7 @@ async fn matched(
     let size = task.table.size;
     let (plan, mut readback) = guarded(gpu, "dense matching", || {
         let plan = kernels.plan(gpu, task, limits)?;
-        Ok((plan, readback(gpu, size, task.luma[0])))
+        Ok((plan, readback(gpu, size, &task.pair.luma[0])))
     })
     .await?;
     plan.run_by_parts(readback.outputs(), progress).await?;

@@ -6,7 +6,7 @@
 //! matches; only the reference view is matched at full size.
 //! Semi-global matching: padding -> census, wide census -> cost -> optional mean over a window -> paths -> selection, of one
 //! view or both; without paths it is block matching by these costs. Both then go on: left-right consistency -> agreement of
-//! neighbours -> residuals and support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for
+//! neighbours -> removal of what does not show the scene -> residuals and support -> medians and filling. All arithmetic is integer and equals the CPU twins bit for
 //! bit.
 
 mod colours;
@@ -21,6 +21,7 @@ mod outputs;
 mod plan;
 pub(crate) mod pyramid;
 mod readback;
+mod uploaded;
 mod word_copy;
 
 pub use compute::compute;
@@ -39,3 +40,4 @@ pub use outputs::{Destination, Outputs};
 pub(crate) use plan::After;
 pub use pyramid::Pyramid;
 pub use readback::MapReadback;
+pub(crate) use uploaded::{Masks, UploadedPair};

@@ -10,8 +10,6 @@ pub(crate) use borders::without_borders;
 pub(crate) use unseen::{drowned, extended};
 
 use crate::{
-    dense::{Dense, View},
-    disparity::{NONE, SCALE},
     features::Feature,
     image::{Luma, Plane, Size},
     io::Picture,
@@ -22,38 +20,6 @@ pub type Mask = Plane<u8>;
 
 /// The value of a pixel that shows the scene.
 pub const SEEN: u8 = 255;
-
-/// The map of the view `reference` without the pixels that `own` hides, and without those whose partner `other` hides.
-pub(crate) fn without_unseen(mut dense: Dense, reference: View, own: Option<&Mask>, other: Option<&Mask>) -> Dense {
-    let Size { width, height } = dense.disparity.size();
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let hidden = own.is_some_and(|mask| mask.get(x, y) == 0);
-        if hidden || other.is_some_and(|mask| hides_partner(mask, &dense, reference, (x, y))) {
-            dense.disparity.set(x, y, NONE);
-            dense.confidence.set(x, y, 0);
-        }
-    }
-    dense
-}
-
-/// The map of the view `reference` with confidence 0 where `other` hides the partner.
-pub(crate) fn unconfirmed_beyond(mut dense: Dense, reference: View, other: &Mask) -> Dense {
-    let Size { width, height } = dense.disparity.size();
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        if hides_partner(other, &dense, reference, (x, y)) {
-            dense.confidence.set(x, y, 0);
-        }
-    }
-    dense
-}
-
-/// Whether `mask` hides the partner of a pixel that has a disparity.
-fn hides_partner(mask: &Mask, dense: &Dense, reference: View, (x, y): (u32, u32)) -> bool {
-    let disparity = dense.disparity.get(x, y);
-    let nearest = (i64::from(disparity) + i64::from(SCALE) / 2).div_euclid(SCALE.into());
-    let partner = i64::from(x) + i64::from(reference.direction()) * nearest;
-    disparity != NONE && mask.get_clamped(partner, y.into()) == 0
-}
 
 /// The mask of a view from its alpha and its constant borders; `None` if every pixel shows the scene.
 pub(crate) fn mask_of(picture: &Picture, luma: &Luma) -> Option<Mask> {
@@ -85,24 +51,6 @@ pub(crate) fn reduced(mask: &Mask, factor: u32) -> Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn hidden_pixels_and_hidden_partners_are_not_seen() {
-        let dense = Dense {
-            disparity: Plane::new((4, 1), vec![2 * SCALE, NONE, SCALE, SCALE + 127]).unwrap(),
-            confidence: Plane::new((4, 1), vec![9, 0, 8, 7]).unwrap(),
-        };
-        let hides = |place: u32| Mask::from_fn((4, 1), |x, _| if x == place { 0 } else { SEEN });
-        let left = without_unseen(dense.clone(), View::Left, Some(&hides(0)), Some(&hides(2)));
-        assert_eq!(
-            (left.disparity.data(), left.confidence.data()),
-            (&[NONE, NONE, SCALE, NONE][..], &[0, 0, 8, 0][..])
-        );
-        let right = unconfirmed_beyond(dense.clone(), View::Right, &hides(2));
-        assert_eq!((&right.disparity, right.confidence.data()), (&dense.disparity, &[0, 0, 8, 7][..]));
-        let beyond = unconfirmed_beyond(dense.clone(), View::Right, &hides(3));
-        assert_eq!((&beyond.disparity, beyond.confidence.data()), (&dense.disparity, &[9, 0, 0, 0][..]));
-    }
 
     #[test]
     fn alpha_is_a_mask() {

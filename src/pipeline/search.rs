@@ -61,7 +61,7 @@ impl Search<'_, '_> {
             Method::Hsad(parameters) => {
                 let task = config.dense(parameters, range, brightness);
                 let range = task.searched(width)?;
-                (range, views.dense(self.pictures, &DenseConfig { range, ..task }, progress).await?)
+                (range, views.dense(&DenseConfig { range, ..task }, progress).await?)
             }
             Method::Kamencay(parameters) => {
                 let task = config.kamencay(parameters, range, brightness);

@@ -6,15 +6,15 @@ use super::rectified::RectifiedPair;
 use crate::{
     backend::Backend,
     config::{Config, Method},
-    cpu,
-    dense::{Dense, DenseConfig, DenseParameters, View},
+    cpu::{self, dense::unseen},
+    dense::{Dense, DenseConfig, View, kernels::Loss},
     error::Result,
     features::{Detected, FeatureConfig},
     image::{self, Luma, Size},
     io::Picture,
     mask::{self, Mask},
     mosaic::demosaicked,
-    pair::Pair,
+    pair::{Pair, Seen},
     rectify::{RowModel, WarpMap},
 };
 
@@ -61,7 +61,7 @@ impl<'b> Views<'b> {
         let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
-        let pair = pair.with_views(extended).await?;
+        let pair = pair.with_luma(extended).await?;
         Ok(Self { pair, masks, within: None, mosaics, rectified: None, map: None })
     }
 
@@ -120,7 +120,7 @@ impl<'b> Views<'b> {
         let (left, right) = self.pair.views();
         let shown = [(left, &self.masks[0], 0), (right, &self.masks[1], 1)];
         let drowned = shown.map(|(view, mask, seed)| mask.as_ref().map(|mask| mask::drowned(view, mask, seed)));
-        Ok(Self { pair: self.pair.with_views(drowned).await?, ..self })
+        Ok(Self { pair: self.pair.with_luma(drowned).await?, ..self })
     }
 
     /// The pictures of the views in colour, the right one with its rows aligned; grey for mosaics. `left` and `right` are the pictures
@@ -139,63 +139,26 @@ impl<'b> Views<'b> {
         ]
     }
 
-    /// Matches the pair, whose `pictures` are as given: a disparity and a confidence for each pixel of the reference view that
-    /// both views show. Calls `progress` with the share of the work that a device has done, 0 to 1.
+    /// Matches the pair: a disparity and a confidence for each pixel of the reference view. Calls `progress` with the share of the
+    /// work that a device has done, 0 to 1.
     ///
-    /// Unseen pixels must not take part in the refinement, which fills holes from their neighbours. The twins refine a masked
-    /// pair; their results are the device's.
-    pub async fn dense(
-        &self,
-        pictures: [&Picture; 2],
-        config: &DenseConfig,
-        progress: impl FnMut(f32),
-    ) -> Result<Dense> {
-        let masked = self.kept_out(config.reference).iter().any(Option::is_some);
-        let Some(refinement) = config.parameters.refinement.filter(|_| masked) else {
-            return self.pair.dense_with_progress(config, progress).await;
-        };
-        let parameters = DenseParameters { refinement: None, ..config.parameters };
-        let raw = self.pair.dense_with_progress(&DenseConfig { parameters, ..config.clone() }, progress).await?;
-        let (left, right) = self.pair.views();
-        let seen = self.seen(raw, config.reference);
-        let picture = self.colours(pictures, config.reference);
-        Ok(cpu::dense::refined([left, right], &picture, seen, &refinement, config))
-    }
-
-    /// The `reference` view in colour; grey for a mosaic and for a resampled view.
-    fn colours<'p>(&self, [left, right]: [&'p Picture; 2], reference: View) -> Cow<'p, Picture> {
-        let (left_luma, right_luma) = self.pair.views();
-        match reference {
-            View::Left if !self.mosaics[0] => Cow::Borrowed(left),
-            View::Left => Cow::Owned(cpu::luma::rgba(left_luma)),
-            View::Right if !self.mosaics[1] && self.map.is_none() => Cow::Borrowed(right),
-            View::Right => Cow::Owned(cpu::luma::rgba(right_luma)),
-        }
-    }
-
-    /// A map of the `reference` view without what the views do not show.
-    pub fn seen(&self, dense: Dense, reference: View) -> Dense {
-        let [own, other] = self.kept_out(reference);
-        mask::without_unseen(dense, reference, own, other)
+    /// Unseen pixels, and those whose partner is unseen, must not take part in the refinement, which fills holes from their
+    /// neighbours. Beyond the edges of a rectified picture its view goes on, and partners may lie there.
+    pub async fn dense(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
+        let masks = self.own_and_other(config.reference);
+        let is_masked = masks.iter().any(Option::is_some) && config.parameters.refinement.is_some();
+        let loss = if self.rectified.is_some() { Loss::Nothing } else { Loss::Disparity };
+        self.pair.dense_seen(config, is_masked.then_some(Seen { masks, loss }), progress).await
     }
 
     /// A map of the `reference` view without what it does not show, and without confidence where the other view does not
     /// show the partner.
-    pub fn confirmed(&self, dense: Dense, reference: View) -> Dense {
+    pub fn confirmed(&self, mut dense: Dense, reference: View) -> Dense {
         let [own, other] = self.own_and_other(reference);
-        let dense = mask::without_unseen(dense, reference, own, None);
+        unseen(&mut dense, reference, own, other, Loss::Confidence);
         let beyond = self.within.as_ref().filter(|_| reference == View::Left);
-        [other, beyond]
-            .into_iter()
-            .flatten()
-            .fold(dense, |dense, mask| mask::unconfirmed_beyond(dense, reference, mask))
-    }
-
-    /// The masks of what takes no part in the refinement: of the `reference` view and of the other one, which in a rectified pair goes on
-    /// beyond its edges.
-    fn kept_out(&self, reference: View) -> [Option<&Mask>; 2] {
-        let [own, other] = self.own_and_other(reference);
-        [own, other.filter(|_| self.rectified.is_none())]
+        unseen(&mut dense, reference, None, beyond, Loss::Confidence);
+        dense
     }
 
     /// The masks of the `reference` view and of the other one.

@@ -30,6 +30,7 @@ mod select;
 mod soft_rank;
 mod support;
 mod tangent;
+mod unseen;
 mod weighted_median;
 mod wide_census;
 
@@ -59,5 +60,6 @@ pub use select::{path_winners, select};
 pub use soft_rank::soft_rank;
 pub use support::support;
 pub use tangent::{Tangent, tangents};
+pub use unseen::unseen;
 pub use weighted_median::weighted_median;
 pub use wide_census::wide_census;

@@ -29,6 +29,7 @@ mod selection;
 mod soft_rank;
 mod support;
 mod tangent;
+mod unseen;
 mod volume_band;
 mod weighted_median;
 
@@ -64,6 +65,7 @@ pub use selection::ResultKind;
 pub use soft_rank::{SOFT_RANK_LIMIT, SOFT_RANK_MIDDLE, SoftRank};
 pub use support::{SUPPORT_RADIUS, SUPPORT_TOLERANCE, Support};
 pub use tangent::{Tangents, fit};
+pub use unseen::{Loss, Unseen};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
 
@@ -124,7 +126,14 @@ pub fn stages() -> Vec<Stage> {
             );
         }
     }
-    stages.extend([Residual::stage(), Project::stage(), Bitmaps::stage(), Tangents::stage(), Fill::stage()]);
+    stages.extend([
+        Residual::stage(),
+        Project::stage(),
+        Bitmaps::stage(),
+        Tangents::stage(),
+        Fill::stage(),
+        Unseen::stage(),
+    ]);
     let refinement = Refinement { support: 5, majority: true, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     stages.extend([AgreementTile::SOFTWARE, AgreementTile::HARDWARE].map(Agreement::stage));

@@ -35,7 +35,7 @@ impl Matcher {
         let input = |name, source, luma| Input::named(&self.gpu, name, self.size, source, luma);
         for (name, source) in [("the left view", &left), ("the right view", &right)] {
             if let Source::Luma(buffer) = source
-                && self.luma.contains(*buffer)
+                && self.pair.luma.contains(*buffer)
             {
                 let value = "the matcher's own luma".into();
                 return Err(Error::Resource {
@@ -86,7 +86,7 @@ impl Matcher {
             }
             Destination::Texture(view) => Disparities::Texture(self.to_texture(view).await?),
         };
-        let mut buffers = self.luma.to_vec();
+        let mut buffers = self.pair.luma.to_vec();
         for (name, buffer) in [("the disparity map", disparities.buffer()), ("the confidence map", confidences)] {
             let Some(buffer) = buffer else { continue };
             if buffers.contains(buffer) {
@@ -95,7 +95,7 @@ impl Matcher {
             }
             buffers.push(buffer.clone());
         }
-        let outputs = Outputs { disparities, confidences: confidences.cloned(), matcher: self.luma[0].clone() };
+        let outputs = Outputs { disparities, confidences: confidences.cloned(), matcher: self.pair.luma[0].clone() };
         try_recording(&self.gpu, "the outputs", |encoder| self.plan.record(encoder, &outputs, None))
             .await
             .map_err(|error| refused("the outputs", error))?;

@@ -10,6 +10,7 @@ use super::{
     outputs::Outputs,
     plan::{BandLimits, Plan, blocks, costs},
     pyramid::Pyramid,
+    uploaded::{Masks, UploadedPair},
 };
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;
@@ -17,7 +18,7 @@ use crate::{
     error::{Result, check, check_range},
     gpu::{Dispatch, Gpu, buffer_limit, check_limits, guarded, storage_buffer},
     image::Size,
-    luma::{Colours, check_size, packed_bytes},
+    luma::{check_size, packed_bytes},
 };
 
 /// Dense matching of pairs of one size on an application's device.
@@ -39,8 +40,7 @@ pub struct Matcher {
     gpu: Gpu,
     size: Size,
     reference: View,
-    /// Packed luma, left and right.
-    luma: [wgpu::Buffer; 2],
+    pair: UploadedPair,
     /// The colours of the reference view, unless the caller has them or they do not matter.
     colours: Option<ReferenceColours>,
     plan: Plan,
@@ -79,13 +79,13 @@ impl Matcher {
         Self::build(gpu, size.into(), config, None, band_rows).await
     }
 
-    /// [`Self::with_band_rows`], for `views` that are on the device, if there are any: packed luma, left and right, and
-    /// the colours of the reference view, which must be there where holes are filled.
+    /// [`Self::with_band_rows`], for a `pair` that is on the device, if there is one; it has the colours of the reference view
+    /// where holes are filled.
     pub(super) async fn build(
         gpu: &Gpu,
         size: Size,
         config: &DenseConfig,
-        views: Option<([wgpu::Buffer; 2], Option<Colours>)>,
+        pair: Option<UploadedPair>,
         band_rows: u32,
     ) -> Result<Self> {
         config.validate()?;
@@ -100,24 +100,23 @@ impl Matcher {
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
             let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
-            let (luma, given, colours) = match views {
-                Some((luma, given)) => (luma, given, None),
+            let (pair, colours) = match pair {
+                Some(pair) => (pair, None),
                 None => {
                     let luma = [buffer("left luma")?, buffer("right luma")?];
-                    let colours = ReferenceColours::new(gpu, size, config, luma.each_ref())?;
-                    (luma, None, colours)
+                    let own = ReferenceColours::new(gpu, size, config, luma.each_ref())?;
+                    let colours = own.as_ref().map(|own| own.colours.clone());
+                    (UploadedPair { luma, colours, masks: None }, own)
                 }
             };
-            let picture = given.as_ref().or(colours.as_ref().map(|own| &own.colours));
-            let views = ([&luma[0], &luma[1]], picture);
             let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
             let plan = match &config.parameters.aggregation {
                 Aggregation::Sad { search, compared, .. } => {
-                    blocks::plan(gpu, size, config, (*search, *compared), views, limits)
+                    blocks::plan(gpu, size, config, (*search, *compared), &pair, limits)
                 }
-                Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, views, limits),
+                Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, &pair, limits),
             }?;
-            Ok(Self { gpu: gpu.clone(), size, reference: config.reference, luma, colours, plan })
+            Ok(Self { gpu: gpu.clone(), size, reference: config.reference, pair, colours, plan })
         })
         .await
     }
@@ -125,7 +124,8 @@ impl Matcher {
     /// Device memory of this matcher, in bytes.
     pub fn memory(&self) -> u64 {
         let colours = self.colours.as_ref().map_or(0, |own| own.colours.bytes());
-        self.luma.iter().map(wgpu::Buffer::size).sum::<u64>() + colours + self.plan.bytes
+        let masks = self.pair.masks.as_ref().map_or(0, Masks::bytes);
+        self.luma().map(wgpu::Buffer::size).iter().sum::<u64>() + colours + masks + self.plan.bytes
     }
 
     /// Number of bands of rows in which a pair is matched.
@@ -136,7 +136,7 @@ impl Matcher {
     /// Packed luma of the left and of the right view (see [`crate::luma`]), which [`Self::record`] writes and matches. A
     /// [`crate::Detector`] can read the same buffers. Usages: `STORAGE`, `COPY_SRC`, `COPY_DST`.
     pub fn luma(&self) -> [&wgpu::Buffer; 2] {
-        self.luma.each_ref()
+        self.pair.luma.each_ref()
     }
 
     /// Replaces [`DenseConfig::brightness`] for everything submitted after this call. No effect on a lost device.
@@ -156,8 +156,8 @@ impl Matcher {
     /// # Panics
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, inputs: &Inputs, outputs: &Outputs) {
-        inputs.assert_of(&self.luma[0]);
-        outputs.assert_of(&self.luma[0]);
+        inputs.assert_of(&self.pair.luma[0]);
+        outputs.assert_of(&self.pair.luma[0]);
         inputs.views.iter().for_each(|view| view.record(encoder));
         self.colouring(Some(inputs)).iter().for_each(|one| one.record(encoder));
         self.plan.record(encoder, outputs, None);
@@ -168,7 +168,7 @@ impl Matcher {
     /// # Panics
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
-        outputs.assert_of(&self.luma[0]);
+        outputs.assert_of(&self.pair.luma[0]);
         self.colouring(None).iter().for_each(|one| one.record(encoder));
         self.plan.record(encoder, outputs, None);
     }

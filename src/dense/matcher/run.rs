@@ -29,9 +29,9 @@ impl Matcher {
     /// If `inputs` or `outputs` were prepared for another matcher.
     pub async fn warm_up(&self, inputs: Option<&Inputs>, outputs: &Outputs) -> Result<()> {
         if let Some(inputs) = inputs {
-            inputs.assert_of(&self.luma[0]);
+            inputs.assert_of(&self.pair.luma[0]);
         }
-        outputs.assert_of(&self.luma[0]);
+        outputs.assert_of(&self.pair.luma[0]);
         let colouring = self.colouring(inputs);
         let inputs = inputs.into_iter().flat_map(|inputs| &inputs.views).filter_map(Input::dispatch);
         let matching = self.plan.dispatches().chain(outputs.disparities.dispatches());

@@ -14,13 +14,13 @@ use super::{
 };
 use crate::{
     dense::{
-        config::{Compared, DenseConfig, Search, View},
-        kernels::{BlockMatch, CELL, ComparedViews, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile},
+        config::{Compared, DenseConfig, Search},
+        kernels::{BlockMatch, CELL, Layout, MapBuffer, MapLayout, Ranges, ResultKind, Tile},
+        uploaded::UploadedPair,
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu, in_rows, most_words},
     image::Size,
-    luma::Colours,
 };
 
 /// Most rows of a band, to stay below 65,535 workgroups.
@@ -37,10 +37,11 @@ pub(in crate::dense) fn plan(
     size: Size,
     config: &DenseConfig,
     (search, compared): (Search, Compared),
-    ([left, right], colours): ([&wgpu::Buffer; 2], Option<&Colours>),
+    pair: &UploadedPair,
     limits: BandLimits,
 ) -> Result<Plan> {
     let Size { width, height } = size;
+    let [left, right] = &pair.luma;
     let tile = Tile::of(gpu, config.parameters.window());
     let unit = if search == Search::CoarseToFine { CELL.min(height) } else { 1 };
     let band_rows = band_rows_within(limits, 4 * most_words(gpu), size, config, tile, unit)?;
@@ -49,7 +50,8 @@ pub(in crate::dense) fn plan(
     let block_match = BlockMatch::new(gpu, &config.parameters, view, ResultKind::Matches, tile);
 
     let mut plan = Plan::new(gpu, config, height.div_ceil(band_rows) as usize);
-    if config.parameters.goes_on() {
+    let goes_on = config.parameters.goes_on() || pair.masks.is_some();
+    if goes_on {
         plan.keep(size)?;
     }
     let map = MapLayout { width, rows: band_rows };
@@ -77,12 +79,12 @@ pub(in crate::dense) fn plan(
         plan.run(block_match.prepare(&layout, &planes.1, ranges, confirming, matches));
         plan.hand_out(matches, first_row, rows);
     }
-    if config.parameters.goes_on() {
+    if goes_on {
         let map = matches.buffer;
-        let views = ComparedViews { luma: [left, right], brightness: &plan.brightness(View::Right), reference: view };
         let range = config.searched(width)?;
         let after = After::of(&config.parameters);
-        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views, colours }, limits)?;
+        let unrefined = Unrefined { matches: map, size, range, pair, reference: view };
+        plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
     }
     Ok(plan)
 }

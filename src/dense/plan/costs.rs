@@ -17,36 +17,37 @@ use crate::{
     dense::{
         config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
-            BoxMean, CheckedAgainst, Claim, ComparedViews, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout,
-            Path, PathVolumes, ResultKind, Select, Selection, VolumeBand,
+            BoxMean, CheckedAgainst, Claim, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout, Path,
+            PathVolumes, ResultKind, Select, Selection, VolumeBand,
         },
+        uploaded::UploadedPair,
         word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu},
     image::Size,
-    luma::Colours,
 };
 
-/// Plans the matching of packed `luma` of `size`, left and right, in bands within `limits`; holes are filled by the `colours`
+/// Plans the matching of a `pair` of `size` in bands within `limits`; holes are filled by the colours
 /// of the reference view.
 pub(in crate::dense) fn plan(
     gpu: &Gpu,
     size: Size,
     config: &DenseConfig,
     costs: &CostAggregation,
-    (luma, colours): ([&wgpu::Buffer; 2], Option<&Colours>),
+    pair: &UploadedPair,
     limits: BandLimits,
 ) -> Result<Plan> {
     let width = size.width;
     let range = config.searched(width)?;
     let bands = Bands::new(size, range, costs, limits)?;
     let mut plan = Plan::new(gpu, config, bands.count());
-    if config.parameters.goes_on() {
+    let goes_on = config.parameters.goes_on() || pair.masks.is_some();
+    if goes_on {
         plan.keep(size)?;
     }
-    let workspace = Workspace::new(gpu, &mut plan, bands, costs, luma)?;
+    let workspace = Workspace::new(gpu, &mut plan, bands, costs, pair.luma.each_ref())?;
     let layout = MapLayout { width, rows: workspace.bands.rows };
     let is_claimed = config.parameters.consistency.is_some() && costs.cross_check == CrossCheck::Claimed;
     let side = |plan: &mut Plan, view, kind, keys| {
@@ -107,11 +108,11 @@ pub(in crate::dense) fn plan(
         plan.hand_out(matches, workspace.bands.first_row(index), band.rows);
         plan.checkpoint();
     }
-    if config.parameters.goes_on() {
+    if goes_on {
         let map = &reference.matches;
-        let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
         let after = After::of(&config.parameters);
-        plan_after_bands(gpu, &mut plan, &after, Unrefined { matches: map, size, range, views, colours }, limits)?;
+        let unrefined = Unrefined { matches: map, size, range, pair, reference: config.reference };
+        plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
     }
     Ok(plan)
 }

@@ -14,16 +14,16 @@ use crate::{
     dense::{
         config::{Aggregation, Cost, DenseConfig, Direction, Filters, View},
         kernels::{
-            CellCost, CellLayout, CellPath, CellSelect, CheckedAgainst, Claim, ComparedViews, Consistency, LevelBand,
-            LineBuffers, MapBuffer, MapLayout, PathVolumes, ResultKind, Selection, row_words,
+            CellCost, CellLayout, CellPath, CellSelect, CheckedAgainst, Claim, Consistency, LevelBand, LineBuffers,
+            MapBuffer, MapLayout, PathVolumes, ResultKind, Selection, row_words,
         },
         pyramid::CellTable,
+        uploaded::UploadedPair,
         word_copy::{CopyTarget, WordCopy},
     },
     error::{Error, Result},
     gpu::{BUFFER_LIMITS, Gpu},
     image::Size,
-    luma::Colours,
 };
 
 /// Rows of a band are a multiple of these where a band can have so many: software drivers follow as many lines at once.
@@ -51,10 +51,8 @@ pub(in crate::dense) struct LevelTask<'a> {
     pub(in crate::dense) table: &'a CellTable,
     /// Filters of the map, if any.
     pub(in crate::dense) filters: Option<&'a Filters>,
-    /// Packed luma, left and right.
-    pub(in crate::dense) luma: [&'a wgpu::Buffer; 2],
-    /// The colours of the reference view, if the filters fill holes.
-    pub(in crate::dense) colours: Option<&'a Colours>,
+    /// The pair in the size of the level, with the colours of the reference view if the filters fill holes.
+    pub(in crate::dense) pair: &'a UploadedPair,
 }
 
 impl LevelKernels {
@@ -84,12 +82,12 @@ impl LevelKernels {
 
     /// Plans the matching of a level in bands within `limits`, with a checkpoint after each.
     pub(in crate::dense) fn plan(&self, gpu: &Gpu, task: LevelTask<'_>, limits: BandLimits) -> Result<Plan> {
-        let LevelTask { config, table, filters, luma, colours } = task;
+        let LevelTask { config, table, filters, pair } = task;
         let (size, range) = (table.size, table.range);
         let volumes = Volumes::new(table, self.directions.len() as u64, limits)?;
         let mut plan = Plan::new(gpu, config, volumes.bands.len());
         let after = After { filters: filters.cloned(), ..After::of(&config.parameters) };
-        let goes_on = after.filters.is_some() || after.agreement.is_some();
+        let goes_on = after.filters.is_some() || after.agreement.is_some() || pair.masks.is_some();
         if goes_on {
             plan.keep(size)?;
         }
@@ -115,14 +113,8 @@ impl LevelKernels {
             plan.checkpoint();
         }
         if goes_on {
-            let views = ComparedViews { luma, brightness: &plan.brightness(View::Right), reference: config.reference };
-            plan_after_bands(
-                gpu,
-                &mut plan,
-                &after,
-                Unrefined { matches: &level.matches, size, range, views, colours },
-                limits,
-            )?;
+            let unrefined = Unrefined { matches: &level.matches, size, range, pair, reference: config.reference };
+            plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
         }
         Ok(plan)
     }
@@ -132,7 +124,7 @@ impl LevelKernels {
         &'a self,
         gpu: &Gpu,
         plan: &mut Plan,
-        LevelTask { config, table, luma, .. }: LevelTask<'a>,
+        LevelTask { config, table, pair, .. }: LevelTask<'a>,
         volumes: Volumes,
     ) -> Result<LevelPlan<'a>> {
         let size = table.size;
@@ -141,7 +133,7 @@ impl LevelKernels {
         let key_words = if self.keys { map.pixels() } else { 0 };
         let (bands, row, with) = (volumes.bands.len() as u64, volumes.most_row, |dy| self.with(dy).count() as u64);
         Ok(LevelPlan {
-            transform: Transform::new(gpu, plan, &self.matching, (size, most_rows + 2), luma)?,
+            transform: Transform::new(gpu, plan, &self.matching, (size, most_rows + 2), pair.luma.each_ref())?,
             layout: CellLayout::new(gpu, table, &volumes.bands)?,
             costs: plan.buffer("costs", volumes.most_band)?,
             paths: plan.buffer("paths", volumes.words() * self.directions.len() as u64)?,

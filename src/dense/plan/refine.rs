@@ -8,9 +8,10 @@ use crate::{
     dense::{
         config::{DenseParameters, Filters, Median, View},
         kernels::{
-            AGREEMENT_REACH, Agreement, ComparedViews, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
-            Tangents, WeightedMedian,
+            AGREEMENT_REACH, Agreement, ComparedViews, Loss, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
+            Tangents, Unseen, WeightedMedian,
         },
+        uploaded::UploadedPair,
         word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
@@ -61,10 +62,10 @@ pub(super) struct Unrefined<'a> {
     pub(super) size: Size,
     /// The searched disparities; filled pixels stay within them.
     pub(super) range: DisparityRange,
-    /// Both views, and the reference view, to which the map belongs.
-    pub(super) views: ComparedViews<'a>,
-    /// The colours of the reference view, if holes are filled.
-    pub(super) colours: Option<&'a Colours>,
+    /// The pair, with the colours of the reference view if holes are filled.
+    pub(super) pair: &'a UploadedPair,
+    /// The reference view, to which the map belongs.
+    pub(super) reference: View,
 }
 
 /// The weighted-median kernels of a refinement. Most filters share their parameters, and each kernel is compiled once.
@@ -145,13 +146,8 @@ impl<'a> Refining<'a> {
             maps.swap(0, 1);
         }
         if let Some(filling) = &self.filling {
-            if maps[0] != confidences {
-                let words = u64::from(layout.width.div_ceil(4)) * u64::from(layout.rows);
-                let (from, to) = (confidences.clone(), CopyTarget::Buffer(maps[0].clone()));
-                let (from_word, to_word) = (layout.confidence_offset().into(), layout.confidence_offset().into());
-                plan.copy(WordCopy { from, from_word, to, to_word, words });
-                confidences = maps[0];
-            }
+            join(plan, maps[0], confidences, layout);
+            confidences = maps[0];
             filling.plan(plan, (range, views.reference), top, MapBuffer { buffer: maps[0], layout });
         }
         for &median in &self.filters.after {
@@ -170,12 +166,14 @@ pub(super) fn plan_after_bands(
     gpu: &Gpu,
     plan: &mut Plan,
     after: &After,
-    Unrefined { matches, size, range, views, colours }: Unrefined<'_>,
+    Unrefined { matches, size, range, pair, reference }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
     let Size { width, height } = size;
     let halo = after.halo();
-    let colours = after.fills().then(|| colours.expect("the colours of the reference view"));
+    let colours = after.fills().then(|| pair.colours.as_ref().expect("the colours of the reference view"));
+    let brightness = &plan.brightness(View::Right);
+    let views = ComparedViews { luma: pair.luma.each_ref(), brightness, reference };
     let rows = window_rows(gpu, size, halo, after.fills(), limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
     let map = StoredMap::new(plan, matches, size);
@@ -186,6 +184,7 @@ pub(super) fn plan_after_bands(
         Some(least) => Some((Agreement::new(gpu), least, plan.word_texture("map before the check", largest.words())?)),
         None => None,
     };
+    let unseen = pair.masks.as_ref().map(|masks| (Unseen::new(gpu), masks));
     let refining = match &after.filters {
         Some(filters) => Some(Refining::new(gpu, plan, filters, colours, largest)?),
         None => None,
@@ -203,10 +202,19 @@ pub(super) fn plan_after_bands(
             plan.fill_texture(&window, before);
             plan.run(agreement.prepare(before, *least, matches));
         }
-        let [disparities, confidences] = match &refining {
+        if let Some((unseen, masks)) = &unseen {
+            plan.run(unseen.prepare(matches, top, reference, [&masks.own, &masks.other], masks.loss));
+        }
+        let [disparities, mut confidences] = match &refining {
             None => [&window, &window],
             Some(refining) => refining.plan(plan, matches, top, (views, range)),
         };
+        if let Some((unseen, masks)) = &unseen {
+            join(plan, disparities, confidences, layout);
+            confidences = disparities;
+            let refined = MapBuffer { buffer: disparities, layout };
+            plan.run(unseen.prepare(refined, top, reference, [&masks.own, &masks.other], Loss::Confidence));
+        }
         let skipped = u64::from(first_row - top);
         for (from, start, row_words, to) in [
             (disparities, 0, width, CopyTarget::Disparities),
@@ -220,6 +228,16 @@ pub(super) fn plan_after_bands(
         plan.checkpoint();
     }
     Ok(())
+}
+
+/// Plans the copy of a map's confidences to the buffer of its disparities, if they lie in another one.
+fn join(plan: &mut Plan, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer, layout: MapLayout) {
+    if disparities != confidences {
+        let words = u64::from(layout.width.div_ceil(4)) * u64::from(layout.rows);
+        let (from, to) = (confidences.clone(), CopyTarget::Buffer(disparities.clone()));
+        let word = layout.confidence_offset().into();
+        plan.copy(WordCopy { from, from_word: word, to, to_word: word, words });
+    }
 }
 
 /// The map of all bands, in one or two buffers.

@@ -11,7 +11,7 @@ pub use dense::{
     AgreementTrial, BitmapTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial,
     CellSelectTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial,
     MedianTrial, PadTrial, PathTrial, ProjectTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial,
-    TangentTrial,
+    TangentTrial, UnseenTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,

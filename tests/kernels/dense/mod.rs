@@ -25,4 +25,5 @@ mod select;
 mod soft_rank;
 mod support;
 mod tangent;
+mod unseen;
 mod weighted_median;

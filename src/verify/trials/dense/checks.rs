@@ -1,21 +1,23 @@
-//! Checks of a map: consistency with the other view, agreement of neighbours.
+//! Checks of a map: consistency with the other view, agreement of neighbours, and what does not show the scene.
 
 use super::maps::{arrays, dense, map, matches};
 use crate::{
-    cpu::dense::{agreement, consistency},
+    cpu::dense::{agreement, consistency, unseen},
     dense::{
         Dense, View,
-        kernels::{Agreement, CheckedAgainst, Consistency, MapBuffer, MapLayout},
+        kernels::{Agreement, CheckedAgainst, Consistency, Loss, MapBuffer, MapLayout, Unseen},
     },
     disparity::{DisparityMap, NONE, SCALE},
     error::Result,
-    image::Size,
+    image::{Luma, Size},
+    luma::pack,
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("consistency", |size, dice| Box::new(ConsistencyTrial::draw(size, dice))),
     Subject::kernel("agreement", |size, dice| Box::new(AgreementTrial::draw(size, dice))),
+    Subject::kernel("unseen", |size, dice| Box::new(UnseenTrial::draw(size, dice))),
 ];
 
 /// Two maps to be compared.
@@ -129,6 +131,63 @@ impl Trial for AgreementTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         let mut dense = self.dense.clone();
         agreement(&mut dense, self.least);
+        Ok(arrays(&matches(&dense), dense.disparity.data().len()))
+    }
+}
+
+/// A map, and what the masks of both views hide.
+#[derive(Clone, Debug)]
+pub struct UnseenTrial {
+    /// The map.
+    pub dense: Dense,
+    /// The reference view.
+    pub view: View,
+    /// Masks of the reference view and of the other one, 0 for a hidden pixel.
+    pub masks: [Luma; 2],
+    /// Row of the masks of the first row of the map.
+    pub first_row: u32,
+    /// What a pixel with a hidden partner loses.
+    pub loss: Loss,
+}
+
+impl UnseenTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let first_row = dice.below(5);
+        let size_of_masks = Size::new(size.width, size.height + first_row);
+        let mut mask = || dice.picture(size_of_masks).map(|&value| if value < 90 { 0 } else { value });
+        let masks = [mask(), mask()];
+        let (view, loss) = (dice.view(), dice.pick(&Loss::ALL));
+        Self { dense: dense(size, dice), view, masks, first_row, loss }
+    }
+}
+
+impl Trial for UnseenTrial {
+    fn parameters(&self) -> String {
+        let Self { view, first_row, loss, .. } = self;
+        format!("{view:?}, from row {first_row}, loss of {loss:?}")
+    }
+
+    fn input(&self) -> Vec<Array> {
+        let [own, other] = self.masks.each_ref().map(pack);
+        vec![Array::exact("matches", matches(&self.dense)), Array::exact("own", own), Array::exact("other", other)]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Size { width, height } = self.dense.disparity.size();
+        let layout = MapLayout { width, rows: height };
+        let matches = bench.upload(&matches(&self.dense))?;
+        let [own, other] = self.masks.each_ref().map(|mask| bench.upload(&pack(mask)));
+        let map = MapBuffer { buffer: &matches, layout };
+        let dispatch = Unseen::new(bench.gpu).prepare(map, self.first_row, self.view, [&own?, &other?], self.loss);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(arrays(&bench.download(&matches)?, layout.pixels() as usize))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let mut dense = self.dense.clone();
+        let end = self.first_row + dense.disparity.height();
+        let [own, other] = self.masks.each_ref().map(|mask| mask.cut(self.first_row..end));
+        unseen(&mut dense, self.view, Some(&own), Some(&other), self.loss);
         Ok(arrays(&matches(&dense), dense.disparity.data().len()))
     }
 }

@@ -13,7 +13,7 @@ mod words;
 
 pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
-pub use checks::{AgreementTrial, ConsistencyTrial};
+pub use checks::{AgreementTrial, ConsistencyTrial, UnseenTrial};
 pub use costs::{BoxMeanTrial, CensusTrial, CostTrial};
 pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
