@@ -81,6 +81,33 @@ impl<'b> Pair<'b> {
         }
     }
 
+    /// Views of one size of which luma is known, and the pictures of those that have colours.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) async fn with_known_luma(
+        backend: &'b Backend,
+        [left, right]: [Luma; 2],
+        pictures: [Option<&'b Picture>; 2],
+    ) -> Result<Self> {
+        let Backend::Gpu(gpu) = backend else {
+            return Ok(Self { backend, left, right, pictures, device: None });
+        };
+        check_limits(gpu)?;
+        let luma = [upload(gpu, &left).await?, upload(gpu, &right).await?];
+        let uploaded = |picture: &Picture| -> Result<Colours> {
+            let colours = Colours::new(gpu, picture.size())?;
+            colours.write(gpu, picture);
+            Ok(colours)
+        };
+        let [left_colours, right_colours] = pictures;
+        let colours = guarded(gpu, "the picture", || {
+            Ok([left_colours.map(uploaded).transpose()?, right_colours.map(uploaded).transpose()?])
+        });
+        let device = Some(OnDevice { gpu, luma, colours: colours.await? });
+        Ok(Self { backend, left, right, pictures: [None, None], device })
+    }
+
     /// What the pair is matched on.
     pub(crate) fn backend(&self) -> &'b Backend {
         self.backend
@@ -219,7 +246,9 @@ impl<'b> Pair<'b> {
         let views = [&self.left, &self.right];
         if let Some(OnDevice { gpu, luma, colours }) = &self.device {
             let masks = match seen {
-                Some(Seen { masks, loss }) => Some(Masks::new(gpu, self.size(), masks, loss).await?),
+                Some(Seen { masks, loss }) => {
+                    Some(guarded(gpu, "the masks", || Masks::new(gpu, self.size(), masks, loss)).await?)
+                }
                 None => None,
             };
             let pair = UploadedPair { luma: luma.clone(), colours: colours[reference].clone(), masks };
@@ -250,11 +279,8 @@ async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Colours,
         let kernel = RgbaToLuma::new(gpu);
         let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
         let colours = Colours::new(gpu, picture.size())?;
-        let mut rest = picture.rgba();
+        colours.write(gpu, picture);
         for (first_row, size, rgba) in colours.bands() {
-            let pixels;
-            (pixels, rest) = rest.split_at(4 * size.pixels() as usize);
-            gpu.queue.write_buffer(rgba, 0, pixels);
             let band = storage_buffer(gpu, "luma of a band", packed_bytes(size))?;
             let mut encoder = gpu.encoder("luma");
             kernel.prepare(size, rgba, &band).record(&mut encoder);

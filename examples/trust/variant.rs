@@ -8,7 +8,7 @@ use hsad::{
     },
     glam::{DAffine2, DVec2},
     image::{Plane, Size},
-    internals::cpu::rectify::warp_picture,
+    internals::cpu::rectify::warp_colours,
     rectify::WarpMap,
 };
 
@@ -133,11 +133,7 @@ fn by<const N: usize>(scene: &Scene, changes: [[(Kind, f64); N]; 2]) -> Result<S
 fn lower(scene: &Scene, rows: f64) -> Result<Scene, AnyError> {
     let size = scene.right.size();
     let map = WarpMap::new(size, size, |place| place - DVec2::new(0.0, rows))?;
-    let (warped, visible) = (warp_picture(&scene.right, &map), map.visible());
-    let picture = Picture::from_fn(size, |x, y| {
-        let [red, green, blue, _] = warped.get(x, y);
-        [red, green, blue, visible.get(x, y)]
-    });
+    let (picture, visible) = (warp_colours(&scene.right, &map), map.visible());
     Ok(moved(scene, Changed { picture, map: DAffine2::from_translation(DVec2::new(0.0, rows)), visible }))
 }
 
@@ -170,7 +166,7 @@ fn resized(picture: &Picture, size: Size) -> Result<Picture, AnyError> {
     let source = picture.size();
     let side = |size: Size| DVec2::new(size.width.into(), size.height.into());
     let factor = side(source) / side(size);
-    Ok(warp_picture(picture, &WarpMap::new(size, source, |place| (place + 0.5) * factor - 0.5)?))
+    Ok(warp_colours(picture, &WarpMap::new(size, source, |place| (place + 0.5) * factor - 0.5)?))
 }
 
 #[cfg(test)]

@@ -2,12 +2,13 @@
 // x and y. Pixels beyond the source's edge have the luma of the edge.
 
 #import luma_words
+#import catmull_rom
 
 // Constants:
 //   WORKGROUP_WIDTH    threads per workgroup along x
 //   WORKGROUP_HEIGHT   threads per workgroup along y
 //   SUBPIXEL_BITS      bits after the point of positions and weights
-//   NONE               coordinates of a node without a position
+//   NONE_NODE          coordinates of a node without a position
 
 struct Params {
     // Pixels of the warped picture.
@@ -21,36 +22,12 @@ struct Params {
     spacing_bits: u32,
 }
 
-const ONE = 1 << SUBPIXEL_BITS;
-
 @group(0) @binding(0) var<uniform> params: Params;
 // Source and warped picture, four pixels packed per u32, rows of ceil(width / 4) u32; bytes beyond the width are 0.
 @group(0) @binding(1) var<storage, read> source: array<u32>;
 // Positions in the source at every 2^spacing_bits-th pixel along x and y.
 @group(0) @binding(2) var<storage, read> nodes: array<vec2<i32>>;
 @group(0) @binding(3) var<storage, read_write> warped: array<u32>;
-
-// (a (S - t) + b t) / S with S = 2^spacing_bits, rounded to the nearest, halves up. The difference fits in 32 bits, its
-// product with t may not.
-fn between(a: vec2<i32>, b: vec2<i32>, t: i32) -> vec2<i32> {
-    let difference = b - a;
-    let spacing = 1 << params.spacing_bits;
-    let bits = vec2<u32>(params.spacing_bits);
-    let rest = difference & vec2<i32>(spacing - 1);
-    return a + (difference >> bits) * t + ((rest * t + spacing / 2) >> bits);
-}
-
-fn outer_weight(near: i32, far: i32) -> i32 {
-    return -((near * far * far + ONE * ONE) >> u32(2 * SUBPIXEL_BITS + 1));
-}
-
-// Weights of the pixels at -1, 0, 1 and 2 for the position t. The sum is ONE, and a ramp is reproduced exactly.
-fn weights(t: i32) -> vec4<i32> {
-    let rest = ONE - t;
-    let first = outer_weight(t, rest);
-    let last = outer_weight(rest, t);
-    return vec4<i32>(first, rest - 2 * first + last, t - 2 * last + first, last);
-}
 
 // Weighted sum of four pixels of row y of the source.
 fn row_sum(columns: vec4<i32>, column_weights: vec4<i32>, y: i32) -> i32 {
@@ -77,14 +54,11 @@ fn interpolated(position: vec2<i32>) -> u32 {
 }
 
 fn luma_at(x: u32, y: u32) -> u32 {
-    let node = (y >> params.spacing_bits) * params.columns + (x >> params.spacing_bits);
-    let below = node + params.columns;
-    let corners = array<vec2<i32>, 4>(nodes[node], nodes[node + 1u], nodes[below], nodes[below + 1u]);
-    if any(vec4<i32>(corners[0].x, corners[1].x, corners[2].x, corners[3].x) == vec4<i32>(NONE)) {
+    let position = position_at(x, y);
+    if position.x == NONE_NODE {
         return 0u;
     }
-    let t = vec2<i32>(vec2<u32>(x, y)) & vec2<i32>((1 << params.spacing_bits) - 1);
-    return interpolated(between(between(corners[0], corners[2], t.y), between(corners[1], corners[3], t.y), t.x));
+    return interpolated(position);
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)

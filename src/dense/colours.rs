@@ -56,14 +56,19 @@ impl ReferenceColours {
         .await
     }
 
-    /// The conversion of a view called `name` in errors; `None` for packed luma, which has no colours.
-    pub(super) async fn input(&self, name: &'static str, source: &Source<'_>) -> Result<Option<Vec<Dispatch>>> {
+    /// The conversion of a view called `name` in errors to `colours`; `None` for packed luma, which has no colours.
+    pub(super) async fn input(
+        &self,
+        name: &'static str,
+        source: &Source<'_>,
+        colours: &Colours,
+    ) -> Result<Option<Vec<Dispatch>>> {
         let texture = source.texture().and_then(|(view, format)| Some((view, TexelFormat::new(format)?)));
         let Some((view, texel)) = texture else { return Ok(None) };
         let dispatches = guarded(&self.gpu, name, || {
             let kernel = RgbaTexture::new(&self.gpu);
             let band = |(first_row, size, pixels)| kernel.prepare(size, first_row, texel, view, pixels);
-            Ok(self.colours.bands().map(band).collect::<Vec<_>>())
+            Ok(colours.bands().map(band).collect::<Vec<_>>())
         })
         .await
         .map_err(|error| refused(name, error))?;

@@ -1,7 +1,8 @@
 //! Dense matching of one pair on a device.
 
 use super::{
-    Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, pyramid::Pyramid, uploaded::UploadedPair,
+    Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, matcher::Views, pyramid::Pyramid,
+    uploaded::UploadedPair,
 };
 use crate::{
     error::{Error, Result},
@@ -41,7 +42,7 @@ pub(crate) async fn compute_uploaded(
     if let Some(pyramid) = Pyramid::of(config, size) {
         return levels::compute(gpu, pair, config, &pyramid, u32::MAX, progress).await;
     }
-    Matcher::build(gpu, size, config, Some(pair), u32::MAX).await?.run_by_parts(progress).await
+    Matcher::build(gpu, size, config, Views::Uploaded(pair), u32::MAX).await?.run_by_parts(progress).await
 }
 
 /// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.

@@ -103,6 +103,7 @@ fn readback(gpu: &Gpu, size: Size, luma: &wgpu::Buffer) -> MapReadback {
         disparities: Disparities::Buffer(disparities.buffer().clone()),
         confidences: Some(confidences.buffer().clone()),
         matcher: luma.clone(),
+        back: None,
     };
     MapReadback { size, outputs, disparities, confidences }
 }

@@ -20,6 +20,17 @@ pub struct Outputs {
     pub(super) confidences: Option<wgpu::Buffer>,
     /// First buffer of the matcher that the outputs were prepared for.
     pub(super) matcher: wgpu::Buffer,
+    /// What becomes of a map that is taken back, once it is whole.
+    pub(super) back: Option<Box<Back>>,
+}
+
+/// The way of a whole map to the view as it was taken, and from there to the destinations.
+#[derive(Debug)]
+pub(super) struct Back {
+    pub(super) dispatch: Dispatch,
+    /// Disparities and confidences.
+    pub(super) copies: [WordCopy; 2],
+    pub(super) to: Outputs,
 }
 
 #[derive(Debug)]
@@ -59,6 +70,23 @@ impl Outputs {
             Disparities::Buffer(to) => copy.record(encoder, to),
             Disparities::Texture(dispatches) => dispatches[index].record(encoder),
         }
+    }
+
+    /// Records what follows when the map is whole.
+    pub(super) fn record_back(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(Back { dispatch, copies: [disparities, confidences], to }) = self.back.as_deref() {
+            dispatch.record(encoder);
+            to.record_disparities(encoder, disparities, 0);
+            to.record_confidences(encoder, confidences);
+        }
+    }
+
+    /// The dispatches that write to destinations.
+    pub(super) fn dispatches(&self) -> impl Iterator<Item = &Dispatch> {
+        let back = self.back.as_deref();
+        let of_back =
+            back.into_iter().flat_map(|back| std::iter::once(&back.dispatch).chain(back.to.disparities.dispatches()));
+        self.disparities.dispatches().iter().chain(of_back)
     }
 
     /// Records a copy of confidences, if there is a buffer for them.

@@ -3,9 +3,9 @@
 use super::kernels::Loss;
 use crate::{
     error::Result,
-    gpu::Gpu,
+    gpu::{Gpu, storage_buffer},
     image::{Luma, Size},
-    luma::{Colours, upload},
+    luma::{Colours, pack, packed_bytes},
 };
 
 /// A pair on a device.
@@ -32,11 +32,15 @@ impl Masks {
     /// Uploads the masks of the reference view and of the other one, both of `size`; `None`: the whole view shows the scene.
     ///
     /// # Errors
-    /// [`crate::Error::TooLarge`], [`crate::Error::OutOfMemory`].
-    pub async fn new(gpu: &Gpu, size: Size, [own, other]: [Option<&Luma>; 2], loss: Loss) -> Result<Self> {
-        let whole = Luma::filled(size, u8::MAX);
-        let [own, other] = [own.unwrap_or(&whole), other.unwrap_or(&whole)];
-        Ok(Self { own: upload(gpu, own).await?, other: upload(gpu, other).await?, loss })
+    /// [`crate::Error::TooLarge`].
+    pub fn new(gpu: &Gpu, size: Size, [own, other]: [Option<&Luma>; 2], loss: Loss) -> Result<Self> {
+        let uploaded = |mask: Option<&Luma>| -> Result<wgpu::Buffer> {
+            let buffer = storage_buffer(gpu, "mask", packed_bytes(size))?;
+            let words = mask.map_or_else(|| vec![u32::MAX; (packed_bytes(size) / 4) as usize], pack);
+            gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+            Ok(buffer)
+        };
+        Ok(Self { own: uploaded(own)?, other: uploaded(other)?, loss })
     }
 
     /// Bytes on the device.

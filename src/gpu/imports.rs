@@ -13,6 +13,7 @@ macro_rules! parts {
 const PARTS: &[(&str, &str)] = parts![
     "bitmap_rows",
     "brightness",
+    "catmull_rom",
     "cell_layout",
     "consistent",
     "edges",
@@ -28,6 +29,7 @@ const PARTS: &[(&str, &str)] = parts![
     "quotient",
     "selection",
     "texel_bytes",
+    "warp_map",
     "whole_layout",
     "words",
 ];

@@ -4,6 +4,7 @@ use crate::{
     error::Result,
     gpu::{Gpu, storage_buffer},
     image::Size,
+    io::Picture,
 };
 
 /// RGBA8 on a device, one `u32` per pixel with red in its lowest byte: in bands of rows, since colours take four times
@@ -30,6 +31,16 @@ impl Colours {
         };
         let bands = (0..size.height).step_by(rows as usize).map(band).collect::<Result<_>>()?;
         Ok(Self { size, rows, bands })
+    }
+
+    /// Uploads a picture of this size.
+    pub fn write(&self, gpu: &Gpu, picture: &Picture) {
+        let mut rest = picture.rgba();
+        for (_, size, buffer) in self.bands() {
+            let pixels;
+            (pixels, rest) = rest.split_at(4 * size.pixels() as usize);
+            gpu.queue.write_buffer(buffer, 0, pixels);
+        }
     }
 
     /// First row, size and buffer of each band.

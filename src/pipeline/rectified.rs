@@ -14,8 +14,9 @@ use crate::{
     dense::View,
     error::{Error, Result},
     features::FeatureConfig,
-    image::{Plane, Size},
+    image::{self, Luma, Plane, Size},
     io::Picture,
+    mask,
     rectify::{
         CalibratedRectification, Correspondence, Residual, RowModel, StereoRectification, WarpMap,
         epipolar::Uncalibrated,
@@ -48,6 +49,8 @@ pub struct RectifiedPair {
     pub points: Vec<Correspondence>,
     /// Row errors of the points that no fit used: a fifth of them, or all with a calibration.
     pub residual: Residual,
+    /// Luma of the rectified pictures, which goes on where they show nothing.
+    pub(super) luma: [Luma; 2],
     /// The right view, which is resampled anew if its rows are still slightly off.
     pub(super) right: TakenView,
 }
@@ -75,8 +78,10 @@ impl RectifiedPair {
     /// # Errors
     /// See [`WarpMap::new`].
     pub fn way_back(&self, reference: View, rows: &RowModel) -> Result<WayBack> {
-        let (view, rows) = if reference == View::Left { (0, None) } else { (1, Some(*rows)) };
-        Ok(WayBack::new(self.rectification.map_back(view)?, rows))
+        Ok(WayBack::new(match reference {
+            View::Left => self.rectification.map_back(0)?,
+            View::Right => self.rectification.right_map_back_along(rows)?,
+        }))
     }
 }
 
@@ -121,9 +126,9 @@ pub async fn rectify_async(backend: &Backend, (left, right): (&Picture, &Picture
     let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
     let residual = found.residual;
     let rectification = StereoRectification::Uncalibrated(found.into());
-    let pictures = warped(backend, &views, &rectification).await?;
+    let (pictures, luma) = warped(backend, &views, &rectification).await?;
     let [_, right] = views;
-    Ok(RectifiedPair { rectification, pictures, points, residual, right })
+    Ok(RectifiedPair { rectification, pictures, points, residual, luma, right })
 }
 
 /// Rectifies a pair by a calibration of its cameras.
@@ -148,11 +153,14 @@ pub async fn rectify_by_async(
     let views = [TakenView::new(left)?, TakenView::new(right)?];
     let found = CalibratedRectification::new(stereo, [left.size(), right.size()])?;
     let rectification = StereoRectification::Calibrated(found.into());
-    let pictures = warped(backend, &views, &rectification).await?;
+    let (pictures, luma) = warped(backend, &views, &rectification).await?;
 
     // Points in any row: how far their rows differ tells whether the calibration is that of the pictures.
     let factor = reduction(rectification.size());
-    let small = pictures.each_ref().map(|picture| Seen::of_rectified(picture).reduced(factor));
+    let small = [0, 1].map(|view: usize| Seen {
+        luma: image::reduced(&luma[view], factor),
+        mask: Some(mask::reduced(&pictures[view].map(|&[.., alpha]| alpha), factor)),
+    });
     let config = config(small.each_ref().map(|view| view.luma.size()));
     let mut matches = match_upright(backend, [&small[0].luma, &small[1].luma], &config, None).await?;
     matches.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
@@ -164,13 +172,21 @@ pub async fn rectify_by_async(
     };
     let points = level.iter().filter_map(taken).collect();
     let [_, right] = views;
-    Ok(RectifiedPair { rectification, pictures, points, residual, right })
+    Ok(RectifiedPair { rectification, pictures, points, residual, luma, right })
 }
 
-/// The rectified pictures; a left view that stays is not resampled.
-async fn warped(backend: &Backend, views: &[TakenView; 2], by: &StereoRectification) -> Result<[Picture; 2]> {
-    let left = if by.keeps_left() { views[0].picture.clone() } else { views[0].warped(backend, &by.map(0)?).await? };
-    Ok([left, views[1].warped(backend, &by.map(1)?).await?])
+/// The rectified pictures and their luma; a left view that stays is not resampled.
+async fn warped(
+    backend: &Backend,
+    [left, right]: &[TakenView; 2],
+    by: &StereoRectification,
+) -> Result<([Picture; 2], [Luma; 2])> {
+    let (left, left_luma) = match by.keeps_left() {
+        true => (left.picture.clone(), left.seen.luma.clone()),
+        false => left.warped(backend, &by.map(0)?).await?,
+    };
+    let (right, right_luma) = right.warped(backend, &by.map(1)?).await?;
+    Ok(([left, right], [left_luma, right_luma]))
 }
 
 /// Row of the left point minus row of the right point in the rectified pictures.

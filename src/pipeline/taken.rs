@@ -8,10 +8,10 @@ use crate::{
     error::Result,
     image::{Luma, reduced},
     io::Picture,
-    luma::check_size,
+    luma::{check_size, upload},
     mask::{self, Mask},
     mosaic::demosaicked,
-    rectify::{WarpMap, warp_picture},
+    rectify::{WarpMap, warp, warp_colours},
 };
 
 /// A view, continued where it does not show the scene.
@@ -52,17 +52,33 @@ impl TakenView {
         Ok(Self { picture, seen: Seen { luma: continued(luma), mask } })
     }
 
-    /// The view resampled by `map`, the same bytes on every backend; alpha 0 where it shows nothing of the scene.
-    pub async fn warped(&self, backend: &Backend, map: &WarpMap) -> Result<Picture> {
-        let picture = match backend {
-            Backend::Cpu => cpu::rectify::warp_picture(&self.picture, map),
-            Backend::Gpu(gpu) => warp_picture(gpu, &self.picture, map).await?,
+    /// The view resampled by `map`, the same bytes on every backend: in colour, alpha 0 where it shows nothing of the scene, and its
+    /// luma, which goes on there.
+    pub async fn warped(&self, backend: &Backend, map: &WarpMap) -> Result<(Picture, Luma)> {
+        let is_grey = self.picture.data().iter().all(|[red, green, blue, _]| red == green && green == blue);
+        let (luma, colours) = match backend {
+            Backend::Cpu => (
+                cpu::rectify::warp(&self.seen.luma, map),
+                (!is_grey).then(|| cpu::rectify::warp_colours(&self.picture, map)),
+            ),
+            Backend::Gpu(gpu) => (
+                warp(gpu, &upload(gpu, &self.seen.luma).await?, map).await?.1,
+                if is_grey { None } else { Some(warp_colours(gpu, &self.picture, map).await?) },
+            ),
         };
-        let visible = self.visible(map)?;
-        Ok(Picture::from_fn(picture.size(), |x, y| {
-            let [red, green, blue, _] = picture.get(x, y);
-            if visible.get(x, y) == 0 { [0; 4] } else { [red, green, blue, mask::SEEN] }
-        }))
+        let picture = match (colours, &self.seen.mask) {
+            // Alpha 0 where a pixel lies beyond the view.
+            (Some(picture), None) => picture,
+            (colours, _) => {
+                let visible = self.visible(map)?;
+                Picture::from_fn(map.size(), |x, y| match (visible.get(x, y), &colours) {
+                    (0, _) => [0; 4],
+                    (_, Some(picture)) => picture.get(x, y),
+                    (_, None) => [luma.get(x, y), luma.get(x, y), luma.get(x, y), mask::SEEN],
+                })
+            }
+        };
+        Ok((picture, luma))
     }
 
     /// Which pixels of the view resampled by `map` show the scene.
@@ -75,13 +91,6 @@ impl TakenView {
 }
 
 impl Seen {
-    /// A rectified picture, of which alpha tells what is seen.
-    pub fn of_rectified(picture: &Picture) -> Self {
-        let mask = picture.map(|&[.., alpha]| alpha);
-        let luma = mask::extended(&picture.luma(), &mask);
-        Self { luma, mask: Some(mask) }
-    }
-
     /// The view downscaled by `factor`.
     pub fn reduced(&self, factor: u32) -> Self {
         let mask = self.mask.as_ref().map(|mask| mask::reduced(mask, factor));

@@ -32,32 +32,32 @@ pub(super) struct Views<'b> {
     map: Option<WarpMap>,
 }
 
-/// The pair of two pictures, with the colours that `config` fills holes by.
-async fn with_colours<'b>(backend: &'b Backend, pictures: [&'b Picture; 2], config: &Config) -> Result<Pair<'b>> {
+/// Of which views `config` needs the colours, to fill holes by.
+fn coloured(config: &Config) -> [bool; 2] {
     let fills = matches!(&config.method, Method::Hsad(parameters) if parameters.fills());
-    Pair::with_colours(backend, pictures, View::ALL.map(|view| fills && view == config.reference)).await
+    View::ALL.map(|view| fills && view == config.reference)
 }
 
 impl<'b> Views<'b> {
-    /// The views of a rectified pair, of which only alpha tells what is seen: the scene goes on up to there.
-    pub async fn of_rectified(backend: &'b Backend, pair: &'b RectifiedPair, config: &Config) -> Result<Self> {
-        let views = with_colours(backend, pair.pictures.each_ref(), config).await?;
-        let masks = pair.masks().map(|mask| Some(mask).filter(|mask| mask.data().contains(&0)));
-        Ok(Self { rectified: Some(pair), ..Self::extended(views, masks, [false; 2]).await? })
+    /// The views of a rectified pair, of which only alpha tells what is seen: the scene goes on up to there, and its luma beyond.
+    pub async fn of_rectified(backend: &'b Backend, rectified: &'b RectifiedPair, config: &Config) -> Result<Self> {
+        let [left, right] = coloured(config);
+        let pictures = [(&rectified.pictures[0], left), (&rectified.pictures[1], right)];
+        let pictures = pictures.map(|(picture, is_coloured)| is_coloured.then_some(picture));
+        let pair = Pair::with_known_luma(backend, rectified.luma.clone(), pictures).await?;
+        let masks = rectified.masks().map(|mask| Some(mask).filter(|mask| mask.data().contains(&0)));
+        Ok(Self { pair, masks, within: None, mosaics: [false; 2], rectified: Some(rectified), map: None })
     }
 
     /// The views of two pictures, mosaics demosaicked and unseen pixels replaced by their neighbours, for matching by `config`.
     pub async fn new(backend: &'b Backend, [left, right]: [&'b Picture; 2], config: &Config) -> Result<Self> {
-        let pair = with_colours(backend, [left, right], config).await?;
+        let pair = Pair::with_colours(backend, [left, right], coloured(config)).await?;
         let views = pair.views();
         // Before demosaicking, which mixes the edge of a border with the scene.
         let masks = [mask::mask_of(left, views.0), mask::mask_of(right, views.1)];
         let lumas = [demosaicked(left, views.0), demosaicked(right, views.1)];
         let mosaics = lumas.each_ref().map(Option::is_some);
-        Self::extended(pair.with_views(lumas).await?, masks, mosaics).await
-    }
-
-    async fn extended(pair: Pair<'b>, masks: [Option<Mask>; 2], mosaics: [bool; 2]) -> Result<Self> {
+        let pair = pair.with_views(lumas).await?;
         let views = pair.views();
         let shown = [(views.0, &masks[0]), (views.1, &masks[1])];
         let extended = shown.map(|(view, mask)| mask.as_ref().map(|mask| mask::extended(view, mask)));
@@ -132,8 +132,8 @@ impl<'b> Views<'b> {
             if self.mosaics[0] { grey(views.0) } else { Cow::Borrowed(left) },
             match (&self.map, self.rectified) {
                 _ if self.mosaics[1] => grey(views.1),
-                (Some(map), Some(pair)) => Cow::Owned(cpu::rectify::warp_picture(&pair.right.picture, map)),
-                (Some(map), None) => Cow::Owned(cpu::rectify::warp_picture(right, map)),
+                (Some(map), Some(pair)) => Cow::Owned(cpu::rectify::warp_colours(&pair.right.picture, map)),
+                (Some(map), None) => Cow::Owned(cpu::rectify::warp_colours(right, map)),
                 (None, _) => Cow::Borrowed(right),
             },
         ]

@@ -31,4 +31,4 @@ pub use map::WarpMap;
 pub use residual::Residual;
 pub use rows::{RowKind, RowModel};
 pub use stereo::StereoRectification;
-pub(crate) use warp::{warp, warp_picture};
+pub(crate) use warp::{UploadedMap, warp, warp_colours};

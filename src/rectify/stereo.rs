@@ -99,7 +99,20 @@ impl StereoRectification {
     /// # Errors
     /// As [`WarpMap::new`].
     pub fn map_back(&self, view: usize) -> Result<WarpMap> {
-        let rectified_of = |position| self.rectified_of(view, position).unwrap_or(DVec2::NAN);
+        self.map_back_to(view, |place| place)
+    }
+
+    /// For each pixel of the right view the position in the rectified picture whose rows were moved by `rows`: the way back of
+    /// [`Self::right_map_along`].
+    ///
+    /// # Errors
+    /// As [`WarpMap::new`].
+    pub fn right_map_back_along(&self, rows: &RowModel) -> Result<WarpMap> {
+        self.map_back_to(1, |place| DVec2::new(place.x, rows.left_row(place.x, place.y)))
+    }
+
+    fn map_back_to(&self, view: usize, moved: impl Fn(DVec2) -> DVec2) -> Result<WarpMap> {
+        let rectified_of = |position| self.rectified_of(view, position).map_or(DVec2::NAN, &moved);
         WarpMap::within(TOLERANCE, self.source_sizes()[view], self.size(), rectified_of)
     }
 
@@ -118,7 +131,7 @@ impl StereoRectification {
 
 #[cfg(test)]
 mod tests {
-    use glam::DMat3;
+    use glam::{DMat3, IVec2};
 
     use super::*;
     use crate::calibration::{CameraModel, Lens, RadialTangential, StereoCalibration};
@@ -157,6 +170,13 @@ mod tests {
         for (x, y) in [(100, 90), (200, 150)] {
             let [below, there] = [plain.source_at(x, y + 2), moved.source_at(x, y)].map(Option::unwrap);
             assert!((below - there).abs().max_element() <= 2 * 2048 / 32, "{below} {there}");
+        }
+        // On the way back rows are found where they were moved to.
+        let [plain, moved] = [rectification.map_back(1), rectification.right_map_back_along(&rows)].map(Result::unwrap);
+        for (x, y) in [(100, 90), (200, 150)] {
+            let [there, lifted] = [plain.source_at(x, y), moved.source_at(x, y)].map(Option::unwrap);
+            let off = lifted - there + IVec2::new(0, 2 * 2048);
+            assert!(off.abs().max_element() <= 2 * 2048 / 32, "{there} {lifted}");
         }
     }
 

@@ -4,6 +4,7 @@
 mod application;
 mod compilation;
 mod errors;
+mod rectifying;
 mod results;
 mod sharing;
 mod sparse;

@@ -231,7 +231,7 @@ fn recording_creates_nothing_and_submits_nothing() {
 }
 
 /// Numbers of all kinds of objects on a device, and the memory they take, in bytes.
-fn existing(device: &wgpu::Device) -> [isize; 12] {
+pub fn existing(device: &wgpu::Device) -> [isize; 12] {
     let counters = device.get_internal_counters().hal;
     [
         &counters.buffers,

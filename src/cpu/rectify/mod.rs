@@ -1,5 +1,7 @@
-//! The CPU twin of resampling.
+//! The CPU twins of resampling.
 
 mod warp;
+mod warp_colours;
 
-pub use warp::{warp, warp_picture};
+pub use warp::warp;
+pub use warp_colours::warp_colours;

@@ -4,7 +4,6 @@ use glam::IVec2;
 
 use crate::{
     image::Luma,
-    io::Picture,
     rectify::{SUBPIXEL_BITS, WarpMap, weights},
 };
 
@@ -14,12 +13,6 @@ use crate::{
 pub fn warp(source: &Luma, map: &WarpMap) -> Luma {
     debug_assert_eq!(source.size(), map.source_size());
     Luma::from_fn(map.size(), |x, y| map.source_at(x, y).map_or(0, |position| interpolated(source, position)))
-}
-
-/// Resamples the red, green and blue of `source` as [`warp`] does; alpha is 255.
-pub fn warp_picture(source: &Picture, map: &WarpMap) -> Picture {
-    let [red, green, blue] = [0, 1, 2].map(|channel| warp(&source.map(|pixel| pixel[channel]), map));
-    Picture::from_fn(map.size(), |x, y| [red.get(x, y), green.get(x, y), blue.get(x, y), 255])
 }
 
 fn interpolated(source: &Luma, position: IVec2) -> u8 {

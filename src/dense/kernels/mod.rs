@@ -17,6 +17,7 @@ mod cost;
 mod fill;
 mod halve;
 mod line_buffers;
+mod map_back;
 mod map_buffer;
 mod map_texture;
 mod pad;
@@ -53,6 +54,7 @@ pub use cost::CostVolume;
 pub use fill::{Fill, Surroundings, rays};
 pub use halve::Halve;
 pub use line_buffers::{LineBuffers, PathVolumes};
+pub use map_back::{MapBack, SURFACE};
 pub use map_buffer::{MapBuffer, MapLayout};
 pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
@@ -133,6 +135,7 @@ pub fn stages() -> Vec<Stage> {
         Tangents::stage(),
         Fill::stage(),
         Unseen::stage(),
+        MapBack::stage(),
     ]);
     let refinement = Refinement { support: 5, majority: true, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));

@@ -1,6 +1,6 @@
 //! What an application binds to a matcher: its views, and the destinations of the map.
 
-use super::Matcher;
+use super::{Matcher, resampling::Resampling};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;
 use crate::{
@@ -9,7 +9,6 @@ use crate::{
         inputs::Inputs,
         kernels::{MapRows, MapTexel, MapTexture},
         outputs::{Destination, Disparities, Outputs},
-        word_copy::WordCopy,
     },
     error::{Error, Result},
     gpu::{Dispatch, check_buffer, check_texture, guarded, refused, try_recording},
@@ -32,7 +31,6 @@ impl Matcher {
     /// # Errors
     /// See [`Matcher::inputs`].
     pub async fn inputs_async(&self, left: Source<'_>, right: Source<'_>) -> Result<Inputs> {
-        let input = |name, source, luma| Input::named(&self.gpu, name, self.size, source, luma);
         for (name, source) in [("the left view", &left), ("the right view", &right)] {
             if let Source::Luma(buffer) = source
                 && self.pair.luma.contains(*buffer)
@@ -45,14 +43,21 @@ impl Matcher {
                 });
             }
         }
-        let [left_luma, right_luma] = self.luma();
-        let views = [input("the left view", left, left_luma).await?, input("the right view", right, right_luma).await?];
-        let colours = match (&self.colours, self.reference) {
-            (None, _) => None,
-            (Some(own), View::Left) => own.input("the left view", &left).await?,
-            (Some(own), View::Right) => own.input("the right view", &right).await?,
+        let resampling = self.resampling.as_ref();
+        let sizes = resampling.map_or([self.size; 2], Resampling::sizes);
+        let lumas = resampling.map_or(&self.pair.luma, Resampling::luma);
+        let input = |name, view: usize, source| Input::named(&self.gpu, name, sizes[view], source, &lumas[view]);
+        let views = [input("the left view", 0, left).await?, input("the right view", 1, right).await?];
+        let (name, source) =
+            if self.reference == View::Left { ("the left view", left) } else { ("the right view", right) };
+        let colours = match &self.colours {
+            None => None,
+            Some(own) => {
+                let to = resampling.and_then(Resampling::colours).unwrap_or(&own.colours);
+                own.input(name, &source, to).await?
+            }
         };
-        Ok(Inputs { views, colours, matcher: left_luma.clone() })
+        Ok(Inputs { views, colours, matcher: self.pair.luma[0].clone() })
     }
 
     /// Binds the destination of the disparities and, optionally, a buffer with `COPY_DST` for the confidences: one byte per
@@ -74,19 +79,47 @@ impl Matcher {
         disparities: Destination<'_>,
         confidences: Option<&wgpu::Buffer>,
     ) -> Result<Outputs> {
-        let Size { width, height } = self.size;
+        let width = self.size.width;
+        let row = |word: u64| (word / u64::from(width)) as u32;
+        let rows = self.plan.copies_of_disparities().map(|copy| {
+            let (rows, first_row) = (row(copy.words), row(copy.to_word));
+            (MapRows { width, rows, first_word: copy.from_word as u32, first_row }, &copy.from)
+        });
+        let disparities = self.destination(self.size, disparities, confidences, rows.collect()).await?;
+        let outputs =
+            Outputs { disparities, confidences: confidences.cloned(), matcher: self.pair.luma[0].clone(), back: None };
+        self.tried(outputs).await
+    }
+
+    /// The outputs, if the device accepts their recording.
+    pub(super) async fn tried(&self, outputs: Outputs) -> Result<Outputs> {
+        try_recording(&self.gpu, "the outputs", |encoder| self.plan.record(encoder, &outputs, None))
+            .await
+            .map_err(|error| refused("the outputs", error))?;
+        Ok(outputs)
+    }
+
+    /// The destination of disparities of `size`; for a texture they come from buffers, `rows` by rows. Also checks the destination of
+    /// the confidences.
+    pub(super) async fn destination(
+        &self,
+        size: Size,
+        disparities: Destination<'_>,
+        confidences: Option<&wgpu::Buffer>,
+        rows: Vec<(MapRows, &wgpu::Buffer)>,
+    ) -> Result<Disparities> {
         if let Some(buffer) = confidences {
-            check_buffer("the confidence map", buffer, packed_bytes((width, height)), wgpu::BufferUsages::COPY_DST)?;
+            check_buffer("the confidence map", buffer, packed_bytes(size), wgpu::BufferUsages::COPY_DST)?;
         }
         let disparities = match disparities {
             Destination::Buffer(buffer) => {
-                let bytes = 4 * u64::from(width) * u64::from(height);
-                check_buffer("the disparity map", buffer, bytes, wgpu::BufferUsages::COPY_DST)?;
+                check_buffer("the disparity map", buffer, 4 * size.pixels(), wgpu::BufferUsages::COPY_DST)?;
                 Disparities::Buffer(buffer.clone())
             }
-            Destination::Texture(view) => Disparities::Texture(self.to_texture(view).await?),
+            Destination::Texture(view) => Disparities::Texture(self.to_texture(size, view, rows).await?),
         };
         let mut buffers = self.pair.luma.to_vec();
+        buffers.extend(self.resampling.iter().flat_map(Resampling::luma).cloned());
         for (name, buffer) in [("the disparity map", disparities.buffer()), ("the confidence map", confidences)] {
             let Some(buffer) = buffer else { continue };
             if buffers.contains(buffer) {
@@ -95,15 +128,16 @@ impl Matcher {
             }
             buffers.push(buffer.clone());
         }
-        let outputs = Outputs { disparities, confidences: confidences.cloned(), matcher: self.pair.luma[0].clone() };
-        try_recording(&self.gpu, "the outputs", |encoder| self.plan.record(encoder, &outputs, None))
-            .await
-            .map_err(|error| refused("the outputs", error))?;
-        Ok(outputs)
+        Ok(disparities)
     }
 
-    /// One dispatch per copy of disparities in the plan, into a texture.
-    async fn to_texture(&self, view: &wgpu::TextureView) -> Result<Vec<Dispatch>> {
+    /// One dispatch per part of a map of `size`, into a texture.
+    async fn to_texture(
+        &self,
+        size: Size,
+        view: &wgpu::TextureView,
+        rows: Vec<(MapRows, &wgpu::Buffer)>,
+    ) -> Result<Vec<Dispatch>> {
         let (name, format) = ("the disparity map", view.texture().format());
         let Some(texel) = MapTexel::new(format) else {
             return Err(Error::Resource {
@@ -112,17 +146,10 @@ impl Matcher {
                 expected: format!("it must be one of {:?}", MapTexel::ALL.map(MapTexel::format)),
             });
         };
-        check_texture(name, view.texture(), self.size, wgpu::TextureUsages::STORAGE_BINDING)?;
+        check_texture(name, view.texture(), size, wgpu::TextureUsages::STORAGE_BINDING)?;
         guarded(&self.gpu, name, || {
             let kernel = MapTexture::new(&self.gpu, texel);
-            let width = self.size.width;
-            let dispatch = |copy: &WordCopy| {
-                let row = |word: u64| (word / u64::from(width)) as u32;
-                let (rows, first_row) = (row(copy.words), row(copy.to_word));
-                let rows = MapRows { width, rows, first_word: copy.from_word as u32, first_row };
-                kernel.prepare(rows, &copy.from, view)
-            };
-            Ok(self.plan.copies_of_disparities().map(dispatch).collect())
+            Ok(rows.into_iter().map(|(rows, from)| kernel.prepare(rows, from, view)).collect())
         })
         .await
         .map_err(|error| refused(name, error))

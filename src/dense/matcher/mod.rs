@@ -1,7 +1,13 @@
 //! The matcher of one pair size: kernels, buffers and their plan.
 
+mod back;
 mod bound;
+mod rectifying;
+mod resampling;
 mod run;
+
+pub(super) use resampling::Views;
+use resampling::{Resampling, masks_of};
 
 use super::{
     colours::ReferenceColours,
@@ -19,6 +25,7 @@ use crate::{
     gpu::{Dispatch, Gpu, buffer_limit, check_limits, guarded, storage_buffer},
     image::Size,
     luma::{check_size, packed_bytes},
+    rectify::WarpMap,
 };
 
 /// Dense matching of pairs of one size on an application's device.
@@ -43,6 +50,8 @@ pub struct Matcher {
     pair: UploadedPair,
     /// The colours of the reference view, unless the caller has them or they do not matter.
     colours: Option<ReferenceColours>,
+    /// What makes the pair of views as they were taken, if it is resampled.
+    resampling: Option<Resampling>,
     plan: Plan,
 }
 
@@ -76,16 +85,15 @@ impl Matcher {
         config: &DenseConfig,
         band_rows: u32,
     ) -> Result<Self> {
-        Self::build(gpu, size.into(), config, None, band_rows).await
+        Self::build(gpu, size.into(), config, Views::Inputs, band_rows).await
     }
 
-    /// [`Self::with_band_rows`], for a `pair` that is on the device, if there is one; it has the colours of the reference view
-    /// where holes are filled.
+    /// [`Self::with_band_rows`], for any `views`.
     pub(super) async fn build(
         gpu: &Gpu,
         size: Size,
         config: &DenseConfig,
-        pair: Option<UploadedPair>,
+        views: Views<'_>,
         band_rows: u32,
     ) -> Result<Self> {
         config.validate()?;
@@ -100,14 +108,23 @@ impl Matcher {
         check_limits(gpu)?;
         guarded(gpu, "dense matching", || {
             let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
-            let (pair, colours) = match pair {
-                Some(pair) => (pair, None),
-                None => {
-                    let luma = [buffer("left luma")?, buffer("right luma")?];
-                    let own = ReferenceColours::new(gpu, size, config, luma.each_ref())?;
-                    let colours = own.as_ref().map(|own| own.colours.clone());
-                    (UploadedPair { luma, colours, masks: None }, own)
-                }
+            let allocated = |maps: Option<[&WarpMap; 2]>| -> Result<_> {
+                let luma = [buffer("left luma")?, buffer("right luma")?];
+                let own = ReferenceColours::new(gpu, size, config, luma.each_ref())?;
+                let colours = own.as_ref().map(|own| own.colours.clone());
+                let (masks, resampling) = match maps {
+                    None => (None, None),
+                    Some(maps) => (
+                        masks_of(gpu, maps, config.reference)?,
+                        Some(Resampling::new(gpu, maps, config.reference, &luma, own.as_ref())?),
+                    ),
+                };
+                Ok((UploadedPair { luma, colours, masks }, own, resampling))
+            };
+            let (pair, colours, resampling) = match views {
+                Views::Uploaded(pair) => (pair, None, None),
+                Views::Inputs => allocated(None)?,
+                Views::Resampled(maps) => allocated(Some(maps))?,
             };
             let limits = BandLimits { bytes: buffer_limit(gpu), rows: band_rows };
             let plan = match &config.parameters.aggregation {
@@ -116,7 +133,7 @@ impl Matcher {
                 }
                 Aggregation::Costs(costs) => costs::plan(gpu, size, config, costs, &pair, limits),
             }?;
-            Ok(Self { gpu: gpu.clone(), size, reference: config.reference, pair, colours, plan })
+            Ok(Self { gpu: gpu.clone(), size, reference: config.reference, pair, colours, resampling, plan })
         })
         .await
     }
@@ -125,7 +142,8 @@ impl Matcher {
     pub fn memory(&self) -> u64 {
         let colours = self.colours.as_ref().map_or(0, |own| own.colours.bytes());
         let masks = self.pair.masks.as_ref().map_or(0, Masks::bytes);
-        self.luma().map(wgpu::Buffer::size).iter().sum::<u64>() + colours + masks + self.plan.bytes
+        let resampling = self.resampling.as_ref().map_or(0, Resampling::bytes);
+        self.luma().map(wgpu::Buffer::size).iter().sum::<u64>() + colours + masks + resampling + self.plan.bytes
     }
 
     /// Number of bands of rows in which a pair is matched.
@@ -159,7 +177,7 @@ impl Matcher {
         inputs.assert_of(&self.pair.luma[0]);
         outputs.assert_of(&self.pair.luma[0]);
         inputs.views.iter().for_each(|view| view.record(encoder));
-        self.colouring(Some(inputs)).iter().for_each(|one| one.record(encoder));
+        self.after_inputs(Some(inputs)).for_each(|one| one.record(encoder));
         self.plan.record(encoder, outputs, None);
     }
 
@@ -169,13 +187,19 @@ impl Matcher {
     /// If `outputs` were prepared for another matcher.
     pub fn record_luma(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs) {
         outputs.assert_of(&self.pair.luma[0]);
-        self.colouring(None).iter().for_each(|one| one.record(encoder));
+        self.after_inputs(None).for_each(|one| one.record(encoder));
         self.plan.record(encoder, outputs, None);
     }
 
-    /// What writes the colours of the reference view, if holes are filled: those of `inputs`, or else grey levels.
-    fn colouring<'a>(&'a self, inputs: Option<&'a Inputs>) -> &'a [Dispatch] {
-        let of_inputs = inputs.and_then(|inputs| inputs.colours.as_deref());
-        of_inputs.or(self.colours.as_ref().map(ReferenceColours::grey)).unwrap_or_default()
+    /// What follows on the conversion of inputs, if there are any, to luma: the resampling, and what writes the colours of the
+    /// reference view, if holes are filled: those of `inputs`, or else grey levels.
+    fn after_inputs<'a>(&'a self, inputs: Option<&'a Inputs>) -> impl Iterator<Item = &'a Dispatch> {
+        let resampling = inputs.and(self.resampling.as_ref());
+        let (luma, of_colours) = match inputs.and_then(|inputs| inputs.colours.as_deref()) {
+            Some(colours) => (colours, resampling.map(Resampling::of_colours)),
+            None => (self.colours.as_ref().map(ReferenceColours::grey).unwrap_or_default(), None),
+        };
+        let of_luma = resampling.map(Resampling::of_luma);
+        of_luma.into_iter().flatten().chain(luma).chain(of_colours.into_iter().flatten())
     }
 }

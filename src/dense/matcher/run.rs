@@ -32,10 +32,10 @@ impl Matcher {
             inputs.assert_of(&self.pair.luma[0]);
         }
         outputs.assert_of(&self.pair.luma[0]);
-        let colouring = self.colouring(inputs);
+        let after_inputs = self.after_inputs(inputs);
         let inputs = inputs.into_iter().flat_map(|inputs| &inputs.views).filter_map(Input::dispatch);
-        let matching = self.plan.dispatches().chain(outputs.disparities.dispatches());
-        warm_up(&self.gpu, "dense matching", inputs.chain(colouring).chain(matching).collect()).await
+        let matching = self.plan.dispatches().chain(outputs.dispatches());
+        warm_up(&self.gpu, "dense matching", inputs.chain(after_inputs).chain(matching).collect()).await
     }
 
     /// Submits the matching of [`Self::luma`], and waits for the result.
@@ -94,7 +94,7 @@ impl Matcher {
         let (gpu, mut readback) = (&self.gpu, self.readback().await?);
         guarded(gpu, "dense matching", || {
             let mut encoder = gpu.encoder("dense");
-            self.colouring(None).iter().for_each(|one| one.record(&mut encoder));
+            self.after_inputs(None).for_each(|one| one.record(&mut encoder));
             self.plan.record(&mut encoder, readback.outputs(), stopwatch);
             if let Some(stopwatch) = stopwatch {
                 stopwatch.resolve(&mut encoder);

@@ -194,6 +194,7 @@ impl Plan {
     /// Records all steps, and the timestamps of the kernels if there is a `stopwatch`.
     pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, outputs: &Outputs, stopwatch: Option<&Stopwatch>) {
         Self::record_steps(&self.steps, encoder, outputs, stopwatch);
+        outputs.record_back(encoder);
     }
 
     /// Submits the plan part by part, each when the one before is done, and calls `progress` with the share of the parts

@@ -34,7 +34,7 @@ impl Warp {
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
                 ("SUBPIXEL_BITS", SUBPIXEL_BITS.into()),
-                ("NONE", NONE.into()),
+                ("NONE_NODE", NONE.into()),
             ],
         }
     }

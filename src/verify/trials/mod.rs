@@ -9,9 +9,9 @@ mod rectify;
 
 pub use dense::{
     AgreementTrial, BitmapTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial,
-    CellSelectTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapTextureTrial,
-    MedianTrial, PadTrial, PathTrial, ProjectTrial, ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial,
-    TangentTrial, UnseenTrial,
+    CellSelectTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostTrial, FillTrial, HalveTrial, MapBackTrial,
+    MapTextureTrial, MedianTrial, PadTrial, PathTrial, ProjectTrial, ResidualTrial, SelectTrial, SoftRankTrial,
+    SupportTrial, TangentTrial, UnseenTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,
@@ -20,7 +20,7 @@ pub use features::{
 pub use kamencay::{BeliefCostTrial, BeliefReduceTrial, BeliefSelectTrial, BeliefTrial, KamencayTrial, MeanShiftTrial};
 pub use luma::{LumaTextureTrial, LumaTrial, RgbaTextureTrial, RgbaTrial};
 pub use pipelines::{DenseTrial, PyramidTrial};
-pub use rectify::WarpTrial;
+pub use rectify::{WarpColoursTrial, WarpTrial};
 
 use super::trial::Subject;
 

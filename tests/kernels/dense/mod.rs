@@ -15,6 +15,7 @@ mod cost;
 mod fill;
 mod halve;
 mod levels;
+mod map_back;
 mod map_texture;
 mod matcher;
 mod pad;

@@ -1,3 +1,4 @@
-//! The kernel of resampling.
+//! The kernels of resampling.
 
 mod warp;
+mod warp_colours;

@@ -2,12 +2,12 @@
 
 use super::blocks::signed;
 use crate::{
-    cpu::dense::{map_texture, residual, support, weighted_median},
+    cpu::dense::{map_back, map_texture, residual, support, weighted_median},
     dense::{
         Brightness, Dense, Median, View,
         kernels::{
-            ComparedViews, MAX_RESIDUAL, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual, Support,
-            WeightedMedian,
+            ComparedViews, MAX_RESIDUAL, MapBack, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual,
+            Support, WeightedMedian,
         },
     },
     disparity::{DisparityMap, NONE, SCALE},
@@ -15,13 +15,16 @@ use crate::{
     gpu::uniform_buffer,
     image::{Luma, Plane, Size},
     luma::pack,
+    rectify::WarpMap,
     verify::trial::{Array, Bench, Dice, Subject, Trial},
+    verify::trials::rectify::{map as warp_map, source_size},
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("residual", |size, dice| Box::new(ResidualTrial::draw(size, dice))),
     Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
     Subject::kernel("map_texture", |size, dice| Box::new(MapTextureTrial::draw(size, dice))),
+    Subject::kernel("map_back", |size, dice| Box::new(MapBackTrial::draw(size, dice))),
     Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
 ];
 
@@ -267,5 +270,53 @@ impl Trial for MedianTrial {
     fn twin(&self) -> Result<Vec<Array>> {
         let filtered = weighted_median(&self.luma, &self.disparities, self.median);
         Ok(vec![Array::exact("filtered disparities", filtered.into_data())])
+    }
+}
+
+/// A map to be taken to another picture.
+#[derive(Clone, Debug)]
+pub struct MapBackTrial {
+    /// The map, of the source size of `back`.
+    pub dense: Dense,
+    /// Where each pixel of the other picture lies in that of the map.
+    pub back: WarpMap,
+}
+
+impl MapBackTrial {
+    fn draw(size: Size, dice: &mut Dice) -> Self {
+        let source_size = source_size(size, dice);
+        Self { dense: dense(source_size, dice), back: warp_map(size, source_size, dice) }
+    }
+}
+
+impl Trial for MapBackTrial {
+    fn parameters(&self) -> String {
+        let back = &self.back;
+        format!("{} from {}, a node per {}", back.size(), back.source_size(), 1 << back.spacing_bits())
+    }
+
+    fn input(&self) -> Vec<Array> {
+        vec![
+            Array::exact("matches", matches(&self.dense)),
+            Array::exact("nodes", self.back.node_coordinates().into_flattened()),
+        ]
+    }
+
+    fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
+        let Size { width, height } = self.back.size();
+        let layout = MapLayout { width, rows: height };
+        let disparities = bench.upload(self.dense.disparity.data())?;
+        let confidences = bench.upload(&pack(&self.dense.confidence))?;
+        let nodes = bench.upload(&self.back.node_coordinates())?;
+        let map = bench.output(layout.words() as u32)?;
+        let to = MapBuffer { buffer: &map, layout };
+        let dispatch = MapBack::new(bench.gpu).prepare(&self.back, &nodes, [&disparities, &confidences], to);
+        bench.run(|encoder| dispatch.record(encoder));
+        Ok(arrays(&bench.download(&map)?, layout.pixels() as usize))
+    }
+
+    fn twin(&self) -> Result<Vec<Array>> {
+        let dense = map_back(&self.dense, &self.back);
+        Ok(arrays(&matches(&dense), dense.disparity.data().len()))
     }
 }

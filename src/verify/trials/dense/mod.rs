@@ -17,7 +17,7 @@ pub use checks::{AgreementTrial, ConsistencyTrial, UnseenTrial};
 pub use costs::{BoxMeanTrial, CensusTrial, CostTrial};
 pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
-pub use maps::{MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
+pub use maps::{MapBackTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
 pub use paths::{ClaimTrial, PathTrial, SelectTrial};
 pub use planes::{PadTrial, SoftRankTrial};
 
