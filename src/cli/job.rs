@@ -140,6 +140,19 @@ impl Job {
         ))
     }
 
+    /// As [`Self::as_it_is`]; `None` if the lens distorts the rows, which no warp of the rows of one view mends, and nothing is lost
+    /// by a rectification: without a calibration.
+    fn as_it_is_unless_distorted(&self, backend: &Backend, progress: &Progress) -> Result<Option<Outcome>, Error> {
+        block_on(pipeline::run_unless(
+            backend,
+            (&self.left, &self.right),
+            &Config { force: false, ..self.config.clone() },
+            |rows| rows.is_distorted() && self.calibration.is_none(),
+            |step| progress.step(step),
+            |share| progress.share(share),
+        ))
+    }
+
     /// Matches a rectified pair.
     fn along_rows_of(&self, pair: RectifiedPair, backend: &Backend, progress: &Progress) -> Result<Matched> {
         let outcome = block_on(pipeline::run_rectified(
@@ -169,21 +182,20 @@ impl Job {
         if !self.config.align {
             return Ok(as_taken(self.as_it_is(backend, force, progress)?));
         }
-        let as_is = self.as_it_is(backend, false, progress);
+        let as_is = self.as_it_is_unless_distorted(backend, progress);
         let why = match &as_is {
             Err(error @ Error::SizesDiffer { .. }) => error.to_string(),
             Err(Error::NotRectified { diagnosis }) => format!("the pair is not rectified: {diagnosis}"),
-            Ok(outcome) if has_unknown_rows(outcome) => "nothing tells whether the rows of the views correspond".into(),
-            // Depth would be lost.
-            Ok(outcome) if has_distorted_rows(outcome) && self.calibration.is_none() => {
-                "the lens distorts the pictures".into()
+            Ok(None) => "the lens distorts the pictures".into(),
+            Ok(Some(outcome)) if has_unknown_rows(outcome) => {
+                "nothing tells whether the rows of the views correspond".into()
             }
-            _ => return Ok(as_taken(as_is?)),
+            _ => return self.taken_or(as_is?, backend, progress),
         };
         progress.begin("rectifying");
         let refused = match pipeline::rectify(backend, (&self.left, &self.right)) {
-            Ok(pair) if as_is.as_ref().is_ok_and(has_distorted_rows) && pair.rectification.distortion() == 0.0 => {
-                return Ok(as_taken(as_is?));
+            Ok(pair) if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 => {
+                return Ok(as_taken(self.as_it_is(backend, force, progress)?));
             }
             Ok(pair) => {
                 let mut matched = self.along_rows_of(pair, backend, progress)?;
@@ -203,20 +215,23 @@ impl Job {
                 let reason = format!("{refused} (the left view is {left} and the right view {right} pixels)");
                 return Err(Error::NotRectifiable { reason }.into());
             }
-            as_is => as_is?,
+            as_is => return self.taken_or(as_is?, backend, progress),
         };
         Ok(as_taken(outcome))
+    }
+
+    /// The outcome of the pair as it was taken, if it was matched; else it is matched now.
+    fn taken_or(&self, outcome: Option<Outcome>, backend: &Backend, progress: &Progress) -> Result<Matched> {
+        Ok(as_taken(match outcome {
+            Some(outcome) => outcome,
+            None => self.as_it_is(backend, self.config.force, progress)?,
+        }))
     }
 }
 
 /// The outcome of a pair that was matched as it was taken.
 fn as_taken(outcome: Outcome) -> Matched {
     Matched { outcome, rectified: None, warnings: Vec::new() }
-}
-
-/// Whether the rows of a map show the distortion of a lens, which no warp of the rows of one view removes.
-fn has_distorted_rows(outcome: &Outcome) -> bool {
-    outcome.seeding.rectification.is_distorted()
 }
 
 /// Whether a map is not to be trusted since nothing tells whether rows correspond.

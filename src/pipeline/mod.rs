@@ -38,7 +38,7 @@ use crate::{
     io::Picture,
     names::names,
     rectify::RowModel,
-    seeding::{RawMatches, Seeding, Verdict, enlarged_feature},
+    seeding::{RawMatches, Rectification, Seeding, Verdict, enlarged_feature},
 };
 
 /// Largest row difference that is matched without alignment, in pixels.
@@ -135,7 +135,25 @@ pub async fn run_with_progress(
     begin: impl FnMut(Step),
     progress: impl FnMut(f32),
 ) -> Result<Outcome> {
-    run_on(backend, Given { pictures: [left, right], rectified: None }, config, begin, progress).await
+    let given = Given { pictures: [left, right], rectified: None };
+    run_on(backend, given, config, |_| false, begin, progress).await.map(with_fit_rows)
+}
+
+/// [`run_with_progress`], unless `is_unfit` says of how rows correspond that the pair is not to be matched: nothing is matched densely
+/// then.
+///
+/// # Errors
+/// See [`run`].
+pub async fn run_unless(
+    backend: &Backend,
+    (left, right): (&Picture, &Picture),
+    config: &Config,
+    is_unfit: impl FnOnce(&Rectification) -> bool,
+    begin: impl FnMut(Step),
+    progress: impl FnMut(f32),
+) -> Result<Option<Outcome>> {
+    let given = Given { pictures: [left, right], rectified: None };
+    run_on(backend, given, config, is_unfit, begin, progress).await
 }
 
 /// [`run_with_progress`] on a rectified pair. Where its rows are still slightly off, the right view is resampled from the view as it
@@ -151,7 +169,12 @@ pub async fn run_rectified(
     progress: impl FnMut(f32),
 ) -> Result<Outcome> {
     let pictures = pair.pictures.each_ref();
-    run_on(backend, Given { pictures, rectified: Some(pair) }, config, begin, progress).await
+    let given = Given { pictures, rectified: Some(pair) };
+    run_on(backend, given, config, |_| false, begin, progress).await.map(with_fit_rows)
+}
+
+fn with_fit_rows(outcome: Option<Outcome>) -> Outcome {
+    outcome.expect("rows that nobody says to be unfit")
 }
 
 /// What is matched: two pictures, those of a rectified pair or others.
@@ -164,9 +187,10 @@ async fn run_on(
     backend: &Backend,
     given: Given<'_>,
     config: &Config,
+    is_unfit: impl FnOnce(&Rectification) -> bool,
     mut begin: impl FnMut(Step),
     progress: impl FnMut(f32),
-) -> Result<Outcome> {
+) -> Result<Option<Outcome>> {
     let mut times = Vec::new();
     let mut begun = None;
     let mut enter = |step: Option<Step>| {
@@ -201,6 +225,9 @@ async fn run_on(
     if !config.force && (rows.rows_differ() || !config.align && rows.largest > LARGEST_AS_IS) {
         return Err(Error::NotRectified { diagnosis: rows.to_string() });
     }
+    if is_unfit(&rows) {
+        return Ok(None);
+    }
     let views = views.aligned(&rows.rows).await?;
     let seeding = {
         let [left, right] = views.reduced(factor);
@@ -225,7 +252,7 @@ async fn run_on(
     let trust = trust(&dense, config, &seeding);
     let dense = in_proportion(dense, trust);
     enter(None);
-    Ok(Outcome {
+    Ok(Some(Outcome {
         features,
         points_found,
         no_parallax: shows_no_parallax(&dense),
@@ -239,7 +266,7 @@ async fn run_on(
         mosaics: views.mosaics,
         dense,
         times,
-    })
+    }))
 }
 
 /// Matches the features of the views in any row, or features with orientations where upright ones do not tell how rows

@@ -2,7 +2,7 @@
 
 use super::{
     back::WayBack,
-    reduction::reduction,
+    reduction::geometry_reduction,
     taken::{Seen, TakenView},
 };
 #[cfg(not(target_arch = "wasm32"))]
@@ -24,8 +24,6 @@ use crate::{
     wide_baseline::{WideBaselineConfig, match_points, match_upright},
 };
 
-/// Number of pixels above which strong interest points alone are matched.
-const LARGE: u64 = 1 << 19;
 /// Largest number of interest points of a view that are matched, the strongest, spread over the view: the time to match points grows
 /// with the square of their number. A view of half the scale has few points in common with those of the other.
 const MOST_POINTS: u32 = 8000;
@@ -101,10 +99,10 @@ pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<Rectifi
 /// See [`rectify`].
 pub async fn rectify_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<RectifiedPair> {
     let views = [TakenView::new(left)?, TakenView::new(right)?];
-    let factor = reduction(larger([left.size(), right.size()]));
+    let factor = geometry_reduction(larger([left.size(), right.size()]));
     let small = views.each_ref().map(|view| view.seen.reduced(factor));
     let sizes = small.each_ref().map(|view| view.luma.size());
-    let config = config(sizes);
+    let config = config();
     let mut points = match_points(backend, &small[0].luma, &small[1].luma, &config).await?;
     points.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
     let mut found = Uncalibrated::new(&points, sizes, 1);
@@ -156,12 +154,12 @@ pub async fn rectify_by_async(
     let (pictures, luma) = warped(backend, &views, &rectification).await?;
 
     // Points in any row: how far their rows differ tells whether the calibration is that of the pictures.
-    let factor = reduction(rectification.size());
+    let factor = geometry_reduction(rectification.size());
     let small = [0, 1].map(|view: usize| Seen {
         luma: image::reduced(&luma[view], factor),
         mask: Some(mask::reduced(&pictures[view].map(|&[.., alpha]| alpha), factor)),
     });
-    let config = config(small.each_ref().map(|view| view.luma.size()));
+    let config = config();
     let mut matches = match_upright(backend, [&small[0].luma, &small[1].luma], &config, None).await?;
     matches.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
     let level: Vec<Correspondence> = matches.iter().map(|point| enlarged(point, factor)).collect();
@@ -205,12 +203,10 @@ fn enlarged(point: &Correspondence, factor: u32) -> Correspondence {
     Correspondence { left, right }
 }
 
-/// Parameters of matching for views of `sizes`: large views have enough strong points.
-fn config(sizes: [Size; 2]) -> WideBaselineConfig {
+/// Parameters of matching.
+fn config() -> WideBaselineConfig {
     let config = WideBaselineConfig::default();
-    let is_large = sizes.iter().any(|size| size.pixels() > LARGE);
-    let features = if is_large { FeatureConfig::default() } else { config.features };
-    WideBaselineConfig { features: FeatureConfig { max_features: MOST_POINTS, ..features }, ..config }
+    WideBaselineConfig { features: FeatureConfig { max_features: MOST_POINTS, ..config.features }, ..config }
 }
 
 /// Points found along the rows of a first rectification: where views are alike, many more points match.

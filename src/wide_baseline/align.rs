@@ -24,6 +24,9 @@ const EXACT: f32 = 0.25;
 const SAME_TURN: f64 = PI / 18.0;
 /// Largest deviation of the natural logarithm of a match's scale ratio from the common one.
 const SAME_SCALE: f64 = 0.3;
+/// Largest turn, in radians, and largest logarithm of a scale between views whose descriptors match as those of aligned views.
+const SMALL_TURN: f64 = PI / 90.0;
+const SMALL_SCALE: f64 = 0.05;
 /// Smallest number of matches with a common rotation and scale.
 const NEEDED: usize = 10;
 
@@ -38,9 +41,22 @@ pub(super) struct Aligned {
     pub(super) map: DAffine2,
     /// Whether rows correspond after the alignment; false for a plane seen obliquely or a scene seen from elsewhere.
     pub(super) rectified: bool,
+    /// Matches of the first view with `view`, in any rows.
+    pub(super) matches: Vec<Match>,
+}
+
+/// What the views are aligned for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// Rows that correspond, as far as a similarity can do that.
+    Rows,
+    /// Descriptors that match: views of about one turn and scale.
+    Descriptors,
 }
 
 /// Rotates and scales the second view by the similarity that matches show, repeatedly, until rows correspond.
+///
+/// For [`Goal::Descriptors`] a small remaining turn and scale stay.
 ///
 /// Upright features measure small rotations and all scales by their rows, which do not depend on depth
 /// ([`Rectification`]); if they match too rarely, features with orientations are matched once. If rows do not
@@ -51,17 +67,19 @@ pub(super) async fn align(
     second: &Luma,
     features: &FeatureConfig,
     matching: &MatchConfig,
+    goal: Goal,
 ) -> Result<Aligned> {
     let mut aligned = Aligned {
         view: View::new(detectors, second.clone(), features).await?,
         map: DAffine2::IDENTITY,
         rectified: false,
+        matches: Vec::new(),
     };
     let mut tried_orientations = false;
     for round in 0..=ROUNDS {
-        let matches = match_features(&first.features, &aligned.view.features, matching)?;
-        let seeds: Vec<Seed> =
-            matches.iter().map(|found| Seed::from_match(&first.features, &aligned.view.features, found)).collect();
+        aligned.matches = match_features(&first.features, &aligned.view.features, matching)?;
+        let seed = |found: &Match| Seed::from_match(&first.features, &aligned.view.features, found);
+        let seeds: Vec<Seed> = aligned.matches.iter().map(seed).collect();
         let rows = Rectification::new(&seeds, first.luma.size());
         log::debug!("turned {round} times: {rows}");
         aligned.rectified = is_level(&rows);
@@ -78,6 +96,9 @@ pub(super) async fn align(
                 scale: rows.scale.into(),
                 dy: rows.offset.into(),
             };
+            if goal == Goal::Descriptors && similarity.is_small() {
+                break;
+            }
             similarity.undone(centre(&first.luma), centre(&first.luma)) * aligned.map
         } else if tried_orientations {
             break;
@@ -132,7 +153,7 @@ async fn turned(
     let size = Size::new((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
-    Ok(Aligned { view: View::new(detectors, luma, features).await?, map, rectified: false })
+    Ok(Aligned { view: View::new(detectors, luma, features).await?, map, rectified: false, matches: Vec::new() })
 }
 
 fn mean(luma: &Luma) -> u8 {
@@ -155,6 +176,11 @@ struct Similarity {
 }
 
 impl Similarity {
+    /// Whether descriptors hardly change.
+    fn is_small(self) -> bool {
+        self.turn.abs() <= SMALL_TURN && libm::log(self.scale).abs() <= SMALL_SCALE
+    }
+
     /// The inverse similarity, from pixels of the second view to pixels of the first; both centres in pixels.
     fn undone(self, first: DVec2, second: DVec2) -> DAffine2 {
         let linear = DMat2::from_angle(-self.turn) * (1.0 / self.scale);

@@ -160,8 +160,8 @@ pub async fn match_views(
     let mut firsts = SmoothedViews(vec![first]);
     // The first view is smoothed now, while the cached detector has its size: the aligned second view has another.
     firsts.by(1, &mut detectors, features).await?;
-    let align::Aligned { view: second, map, rectified } =
-        align::align(&mut detectors, &firsts.0[0], second, features, matching).await?;
+    let align::Aligned { view: second, map, rectified, .. } =
+        align::align(&mut detectors, &firsts.0[0], second, features, matching, align::Goal::Rows).await?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
     let mut seconds = SmoothedViews(vec![second]);

@@ -8,7 +8,7 @@ use crate::{
     error::Result,
     features::Feature,
     image::Luma,
-    matching::{MatchConfig, Seed, match_features},
+    matching::{Match, MatchConfig, Seed, match_features},
     rectify::Correspondence,
 };
 
@@ -32,10 +32,10 @@ pub(crate) async fn match_points(
     let mut detectors = DetectorCache::new(backend);
     let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
     let first = View::new(&mut detectors, first.clone(), features).await?;
-    let align::Aligned { view: second, map, .. } =
-        align::align(&mut detectors, &first, second, features, matching).await?;
+    let align::Aligned { view: second, map, matches, .. } =
+        align::align(&mut detectors, &first, second, features, matching, align::Goal::Descriptors).await?;
     let back = map.inverse();
-    let found = supported([&first.features, &second.features], matching, reach)?;
+    let found = supported([&first.features, &second.features], &matches, reach);
     let place = |Correspondence { left, right }| Correspondence { left, right: back.transform_point2(right) };
     Ok(found.map(place).collect())
 }
@@ -55,23 +55,18 @@ pub(crate) async fn match_upright(
     let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
     let first = detectors.features(first, features).await?;
     let second = detectors.features(second, features).await?;
-    let matching = MatchConfig { max_dy, ..matching.clone() };
-    Ok(supported([&first, &second], &matching, reach)?.collect())
+    let matches = match_features(&first, &second, &MatchConfig { max_dy, ..matching.clone() })?;
+    Ok(supported([&first, &second], &matches, reach).collect())
 }
 
 /// The matches that enough neighbours within `reach` pixels agree with.
-fn supported(
-    [first, second]: [&[Feature]; 2],
-    matching: &MatchConfig,
-    reach: f32,
-) -> Result<impl Iterator<Item = Correspondence>> {
-    let matches = match_features(first, second, matching)?;
+fn supported([first, second]: [&[Feature]; 2], matches: &[Match], reach: f32) -> impl Iterator<Item = Correspondence> {
     let seeds: Vec<Seed> = matches.iter().map(|found| Seed::from_match(first, second, found)).collect();
     let shares = agreement(&seeds, reach);
     let kept = seeds.into_iter().zip(shares).filter(|&(_, share)| share >= LEAST_AGREEMENT);
     let place = |x: f32, y: f32| DVec2::new(x.into(), y.into());
-    Ok(kept.map(move |(seed, _)| Correspondence {
+    kept.map(move |(seed, _)| Correspondence {
         left: place(seed.x, seed.y),
         right: place(seed.right_x(), seed.right_y()),
-    }))
+    })
 }
