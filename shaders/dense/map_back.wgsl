@@ -1,6 +1,6 @@
-// A map of a warped picture as one of another picture: each pixel has a position in the warped picture. Disparities are
-// interpolated bilinearly between the four pixels around the position where all have one and none differs by more than
-// SURFACE, and are else those of the nearest pixel; confidences are those of the nearest pixel.
+// A map of a warped picture as one of another picture: each pixel has a position in the warped picture. Of the four pixels
+// around the position, weighted as bilinear interpolation does, those within SURFACE of the one for which they weigh most
+// make the disparity; the heaviest of these has the confidence.
 
 #import warp_map
 
@@ -41,21 +41,60 @@ fn disparity_at(pixel: vec2<i32>) -> i32 {
     return disparities[inside.y * params.source_width + inside.x];
 }
 
-// Disparity at a position whose nearest pixel is `nearest`.
-fn interpolated(position: vec2<i32>, nearest: vec2<i32>) -> i32 {
+fn confidence_at(pixel: vec2<i32>) -> u32 {
+    let inside = clamp(pixel, vec2<i32>(0), vec2<i32>(params.source_width - 1, params.source_height - 1));
+    let word = confidences[inside.y * ((params.source_width + 3) / 4) + inside.x / 4];
+    return (word >> (8u * u32(inside.x & 3))) & 255u;
+}
+
+// Disparity and confidence.
+struct Found {
+    disparity: i32,
+    confidence: u32,
+}
+
+fn surface_at(position: vec2<i32>) -> Found {
     let first = position >> vec2<u32>(SUBPIXEL_BITS);
     let part = position & vec2<i32>(ONE - 1);
-    let a = disparity_at(first);
-    let b = disparity_at(first + vec2<i32>(1, 0));
-    let c = disparity_at(first + vec2<i32>(0, 1));
-    let d = disparity_at(first + vec2<i32>(1, 1));
-    let least = min(min(a, b), min(c, d));
-    if least == NONE || max(max(a, b), max(c, d)) - least > SURFACE {
-        return disparity_at(nearest);
+    let rest = vec2<i32>(ONE) - part;
+    var disparities_around: array<i32, 4>;
+    var weights: array<i32, 4>;
+    for (var k = 0; k < 4; k++) {
+        let step = vec2<i32>(k & 1, k >> 1u);
+        let shares = select(rest, part, step == vec2<i32>(1));
+        disparities_around[k] = disparity_at(first + step);
+        weights[k] = select(shares.x * shares.y, 0, disparities_around[k] == NONE);
     }
-    // The sum fits in 32 bits, as the interpolated difference from `a` is at most SURFACE; its terms wrap.
-    let sum = ((b - a) * part.x + (c - a) * part.y) * ONE + (a - b - c + d) * part.x * part.y;
-    return a + ((sum + ONE * ONE / 2) >> u32(2 * SUBPIXEL_BITS));
+    var best = Found(NONE, 0u);
+    var most = 0;
+    for (var k = 0; k < 4; k++) {
+        if weights[k] == 0 {
+            continue;
+        }
+        // The sum lies between -SURFACE and SURFACE times the weight, which is at most ONE * ONE.
+        var weight = 0;
+        var sum = 0;
+        var heaviest = 0;
+        var confidence = 0u;
+        for (var other = 0; other < 4; other++) {
+            if weights[other] == 0 || abs(disparities_around[other] - disparities_around[k]) > SURFACE {
+                continue;
+            }
+            weight += weights[other];
+            sum += weights[other] * (disparities_around[other] - disparities_around[k]);
+            if weights[other] > heaviest {
+                heaviest = weights[other];
+                confidence = confidence_at(first + vec2<i32>(other & 1, other >> 1u));
+            }
+        }
+        if weight > most {
+            most = weight;
+            // Rounded to the nearest, halves up.
+            let above = (u32(sum + SURFACE * weight) + u32(weight) / 2u) / u32(weight);
+            best = Found(disparities_around[k] + i32(above) - SURFACE, confidence);
+        }
+    }
+    return best;
 }
 
 // One thread makes four pixels, whose confidences are one u32.
@@ -65,19 +104,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if x >= params.width || id.y >= params.height {
         return;
     }
-    let stride = (params.source_width + 3) / 4;
     var word = 0u;
     for (var t = 0u; t < min(4u, params.width - x); t++) {
         let position = position_at(x + t, id.y);
         let nearest = (position + vec2<i32>(ONE / 2)) >> vec2<u32>(SUBPIXEL_BITS);
         let size = vec2<i32>(params.source_width, params.source_height);
-        var disparity = NONE;
+        var found = Found(NONE, 0u);
         if position.x != NONE_NODE && all(nearest >= vec2<i32>(0)) && all(nearest < size) {
-            disparity = interpolated(position, nearest);
-            let confidence = confidences[nearest.y * stride + nearest.x / 4] >> (8u * u32(nearest.x & 3));
-            word |= (confidence & 255u) << (8u * t);
+            found = surface_at(position);
         }
-        map[id.y * params.width + x + t] = disparity;
+        word |= found.confidence << (8u * t);
+        map[id.y * params.width + x + t] = found.disparity;
     }
     map[params.confidence_offset + id.y * ((params.width + 3u) / 4u) + id.x] = i32(word);
 }

@@ -6,6 +6,7 @@ use anyhow::Result;
 use hsad::{
     Backend, Error,
     config::Config,
+    dense::View,
     gpu::block_on,
     io::{Calibration, Picture, load::Stretch},
     pipeline::{self, Outcome, RectifiedPair, WayBack},
@@ -190,7 +191,14 @@ impl Job {
             Ok(Some(outcome)) if has_unknown_rows(outcome) => {
                 "nothing tells whether the rows of the views correspond".into()
             }
-            _ => return self.taken_or(as_is?, backend, progress),
+            _ => {
+                return match as_is? {
+                    Some(outcome) if self.can_lean() && has_leaning_columns(&outcome) => {
+                        self.with_upright_columns(outcome, backend, progress)
+                    }
+                    outcome => self.taken_or(outcome, backend, progress),
+                };
+            }
         };
         progress.begin("rectifying");
         let refused = match pipeline::rectify(backend, (&self.left, &self.right)) {
@@ -227,6 +235,31 @@ impl Job {
             None => self.as_it_is(backend, self.config.force, progress)?,
         }))
     }
+
+    /// Whether the pair may be matched with the columns of the right view upright: a range that was asked for is one of the columns as
+    /// they are, and the map of the right view is too.
+    fn can_lean(&self) -> bool {
+        self.config.range.is_none() && self.config.least.is_none() && self.config.reference == View::Left
+    }
+
+    /// The map found with the columns of the right view upright, if it deserves as much trust as that of the columns as they are;
+    /// disparities are those of the pair as it was taken.
+    fn with_upright_columns(&self, as_is: Outcome, backend: &Backend, progress: &Progress) -> Result<Matched> {
+        progress.begin("rectifying");
+        let pair = match pipeline::rectify(backend, (&self.left, &self.right)) {
+            Ok(pair) => pair,
+            Err(Error::NotRectifiable { .. }) => return Ok(as_taken(as_is)),
+            Err(error) => return Err(error.into()),
+        };
+        let upright = self.along_rows_of(pair, backend, progress)?;
+        let restored = upright.rectified.and_then(|pair| pair.restored(&as_is, &upright.outcome));
+        Ok(as_taken(restored.filter(|restored| restored.trust >= as_is.trust).unwrap_or(as_is)))
+    }
+}
+
+/// Whether most surfaces of a map share a slant, as where the columns of the right view lean.
+fn has_leaning_columns(outcome: &Outcome) -> bool {
+    outcome.seeding.rectification.lean != 0.0
 }
 
 /// The outcome of a pair that was matched as it was taken.

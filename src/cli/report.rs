@@ -260,6 +260,7 @@ fn rectification(found: &Rectification) -> Value {
             ("remaining_px", found.remaining),
             ("unexplained_px", found.unexplained),
             ("largest_px", found.largest),
+            ("lean", found.lean),
         ] {
             value[name] = number(figure);
         }

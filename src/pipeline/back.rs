@@ -36,8 +36,11 @@ impl WayBack {
         Some(self.map.source_at(x, y)?.as_dvec2() / f64::from(1 << SUBPIXEL_BITS))
     }
 
-    /// A map of the rectified picture as one of the view: disparities in pixels of the rectified pair, interpolated between
-    /// neighbours within 1 px of each other and else those of the nearest pixel, and confidences of the nearest pixel.
+    /// A map of the rectified picture as one of the view: disparities in pixels of the rectified pair, and confidences.
+    ///
+    /// Of the four pixels around the place at which a pixel appears, those of one surface, within 1 px of each other, that are closest
+    /// together make its disparity, in proportion to how close each is; the closest of them has its confidence. So a pixel beside an
+    /// edge of the rectified picture, and of a hole, belongs to the surface that ends there.
     pub fn dense(&self, dense: &Dense) -> Dense {
         cpu::dense::map_back(dense, &self.map)
     }

@@ -8,6 +8,7 @@ mod reduction;
 mod search;
 mod taken;
 mod trust;
+mod upright;
 mod views;
 
 pub use back::WayBack;

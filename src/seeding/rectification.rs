@@ -11,7 +11,7 @@ use super::{
 use crate::{
     image::Size,
     matching::Seed,
-    rectify::{Correspondence, RowKind, RowModel, fit::RowFit},
+    rectify::{AGREEMENT, Correspondence, RowKind, RowModel, Slant, fit::RowFit},
 };
 
 /// Smallest share of the inliers of a fit that agree with the rows as they are, for these to be preferred where most seeds
@@ -43,6 +43,9 @@ pub struct Rectification {
     pub unexplained: f32,
     /// Largest row difference of the fit anywhere in the picture, in pixels.
     pub largest: f32,
+    /// Change of the disparity per row that most surfaces share, where rows correspond: as where the columns of the right view lean. 0 unless
+    /// it is clear.
+    pub lean: f32,
     /// Number of inliers, seeds that agree with the fit; for [`Verdict::Vertical`], with a fit of columns.
     pub agreeing: usize,
     /// Number of all seeds.
@@ -62,7 +65,7 @@ impl Rectification {
             return Self { verdict: Verdict::Vertical, agreeing: columns, ..nothing };
         }
         match fit {
-            Some(fit) if is_enough(agreeing, points.len()) => Self::of(preferred(fit, &points), size),
+            Some(fit) if is_enough(agreeing, points.len()) => Self::of(preferred(fit, &points), &points, size),
             _ => nothing,
         }
     }
@@ -77,12 +80,13 @@ impl Rectification {
         remaining: 0.0,
         unexplained: 0.0,
         largest: 0.0,
+        lean: 0.0,
         agreeing: 0,
         seeds: 0,
     };
 
     /// Figures and verdict of a fit that enough seeds agree with.
-    fn of(fit: RowFit, size: Size) -> Self {
+    fn of(fit: RowFit, points: &[Correspondence], size: Size) -> Self {
         let mut errors: Vec<f32> = fit.inliers().map(|error| error as f32).collect();
         errors.sort_by(f32::total_cmp);
         let agreeing = errors.len();
@@ -110,6 +114,7 @@ impl Rectification {
             remaining: errors.get(agreeing * 95 / 100).copied().unwrap_or(0.0),
             unexplained: if aligned { fit.unexplained as f32 } else { 0.0 },
             largest: fit.model.largest(size) as f32,
+            lean: if aligned { lean(&fit, points) } else { 0.0 },
             residual: median(errors).map_or(0.0, |spread| super::DEVIATIONS * spread),
             agreeing,
             seeds,
@@ -142,6 +147,16 @@ impl Rectification {
     pub fn most_agree(&self) -> bool {
         is_majority(self.agreeing, self.seeds)
     }
+}
+
+/// [`Rectification::lean`] of the points that agree with a fit.
+fn lean(fit: &RowFit, points: &[Correspondence]) -> f32 {
+    let inliers: Vec<Correspondence> = points
+        .iter()
+        .filter(|Correspondence { left, right }| (fit.model.left_row(right.x, right.y) - left.y).abs() <= AGREEMENT)
+        .copied()
+        .collect();
+    Slant::of(&inliers, 1.0).filter(Slant::is_clear).map_or(0.0, |slant| slant.along[1] as f32)
 }
 
 fn correspondence(seed: &Seed) -> Correspondence {

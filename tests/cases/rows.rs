@@ -40,6 +40,25 @@ fn a_3d_photograph_is_matched() {
     run.errs_below(level + 0.02, &pair.truth);
 }
 
+/// A right view sheared by 0.15 makes all surfaces slant: a fit of the disparities has to be made without the shear, and to be
+/// written with it.
+#[test]
+fn a_right_view_with_leaning_columns_is_matched() {
+    let pair = Pair::shipped("planes");
+    let level = pair.matched(&[]).wrong(&pair.truth);
+    let mut leaning = pair.with_right(|right| resampled(right, |x, y| (x - 0.15 * (y - 127.0), y)));
+    for (i, disparity) in leaning.truth.data_mut().iter_mut().enumerate() {
+        *disparity -= 0.15 * ((i / 340) as f32 - 127.0);
+    }
+    let run = leaning.matched(&[]).ends(0, &[]);
+    let lean = run.report()["rectification"]["lean"].as_f64().unwrap();
+    assert!((-0.17..-0.1).contains(&lean), "{lean}");
+    run.holds(&leaning.truth, 90).judges(&leaning.truth).errs_below(level + 0.02, &leaning.truth);
+    // A range that is asked for is searched as asked.
+    let asked = leaning.matched(&["--min-disparity", "-40", "--disparities", "110"]).ends(0, &[]);
+    assert_eq!(asked.range().min, -40);
+}
+
 /// The distortion r (1 + k r^2) of a lens with k = -0.2 moves corners by a tenth of their distance from the centre.
 #[test]
 fn a_distorted_lens_is_told() {

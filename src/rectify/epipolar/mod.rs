@@ -26,7 +26,7 @@ mod similarity;
 #[cfg(test)]
 mod tests;
 
-use glam::{DMat3, DVec2};
+use glam::{DMat3, DVec2, DVec3};
 
 pub use evidence::Evidence;
 pub use refusal::Refusal;
@@ -39,7 +39,7 @@ use layout::Layout;
 use lens::Lens;
 use rotations::Cameras;
 
-use super::{Correspondence, Residual, RowKind, WarpMap, map::TOLERANCE};
+use super::{Correspondence, Residual, RowKind, Slant, WarpMap, map::TOLERANCE};
 use crate::{error::Result, image::Size};
 
 /// Largest ratio of areas around the matches that were one.
@@ -133,6 +133,7 @@ impl Uncalibrated {
         let (found, inliers) = if lens == Lens::NONE { (found, inliers) } else { found.behind(lens, &used, &frame) };
 
         let (model, maps) = chosen(&found, &inliers, &frame);
+        let maps = [maps[0], columns(&maps, &inliers, &frame) * maps[1]];
         let in_pixels = DMat3::from_translation(frame.pixel(0, DVec2::ZERO))
             * DMat3::from_scale(frame.pixel(0, DVec2::ONE) - frame.pixel(0, DVec2::ZERO));
         let maps = maps.map(|map| in_pixels * map);
@@ -219,6 +220,22 @@ fn row_errors(maps: &[DMat3; 2], points: &[Correspondence], frame: &Frame) -> Re
     let row = |view: usize, place: DVec2| frame::mapped(&maps[view], place).map(|place| place.y);
     let errors = points.iter().filter_map(|point| Some(row(0, point.left)? - row(1, point.right)?));
     Residual::new(points.len(), errors, frame.pixels_per_detected())
+}
+
+/// The change of the right columns, from units to units, that takes from surfaces the slant that most of them share: rows tell nothing
+/// of a shear and a stretch of the columns.
+fn columns(maps: &[DMat3; 2], inliers: &[Correspondence], frame: &Frame) -> DMat3 {
+    let mapped = |view: usize, place: DVec2| frame::mapped(&maps[view], place);
+    let level: Vec<Correspondence> = inliers
+        .iter()
+        .filter_map(|point| Some(Correspondence { left: mapped(0, point.left)?, right: mapped(1, point.right)? }))
+        .collect();
+    match Slant::of(&level, frame.unit) {
+        Some(slant @ Slant { along: [across, down], .. }) if slant.is_clear() => {
+            DMat3::from_cols(DVec3::X * (1.0 + across), DVec3::new(down, 1.0, 0.0), DVec3::Z)
+        }
+        _ => DMat3::IDENTITY,
+    }
 }
 
 /// The model of least cost, and homographies of both views from units to units.

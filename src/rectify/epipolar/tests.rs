@@ -145,6 +145,33 @@ fn a_scale_is_undone_from_one_view() {
 }
 
 #[test]
+fn columns_that_lean_or_are_stretched_are_set_upright() {
+    // Surfaces of 100 x 100 px that face the cameras.
+    let mut random = random();
+    let points: Vec<(DVec2, f64)> = (0..500)
+        .map(|_| {
+            let left = DVec2::new(150.0 + 600.0 * random(), 20.0 + 560.0 * random());
+            let surface = (left / 100.0).floor();
+            (left, 20.0 + 13.0 * ((3.0 * surface.x + 5.0 * surface.y) % 7.0))
+        })
+        .collect();
+    for (across, down) in [(0.0, 0.0), (0.0, 0.15), (0.1, -0.2)] {
+        let sheared = |(left, disparity): &(DVec2, f64)| {
+            let right = *left - DVec2::new(*disparity, 0.0);
+            let off = right - DVec2::new(399.5, 299.5);
+            Correspondence { left: *left, right: right + DVec2::new(across * off.x + down * off.y, 0.0) }
+        };
+        let found = Uncalibrated::new(&points.iter().map(sheared).collect::<Vec<_>>(), [SIZE; 2], 1).unwrap();
+        assert_eq!(found.model, Model::Right(RowKind::AsIs));
+        let largest = points.iter().map(|point| {
+            let right = found.rectified(1, sheared(point).right).unwrap();
+            (point.0.x - right.x - point.1).abs()
+        });
+        assert!(largest.fold(0.0, f64::max) < 5.0, "{across} {down}");
+    }
+}
+
+#[test]
 fn both_views_are_turned_where_neither_has_level_epipolar_lines() {
     let above = Rig { place: DVec3::new(0.0, 0.2, 0.0), ..SIDE_BY_SIDE };
     let askew = Rig { place: DVec3::new(0.15, 0.1, 0.0), ..SIDE_BY_SIDE };

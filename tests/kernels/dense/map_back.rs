@@ -20,7 +20,7 @@ fn by_hand() {
     };
     let back = WarpMap::new((5, 1), (4, 1), |p| p - DVec2::new(0.75, 0.0)).unwrap();
     // At -0.75 nothing is shown; 0.25 lies between 100 and 200, 1.25 at an edge, 2.25 beside a hole, 3.25 in it.
-    let confidences = pack(&Plane::new((5, 1), vec![0, 10, 20, 30, 40]).unwrap());
+    let confidences = pack(&Plane::new((5, 1), vec![0, 10, 20, 30, 0]).unwrap());
     assert_eq!(leaves(&MapBackTrial { dense, back }), [vec![NONE, 125, 200, 1000, NONE].into(), confidences.into()]);
 }
 
@@ -37,9 +37,14 @@ fn between_four_pixels() {
     // 3/16 * 0 + 1/16 * 256 + 9/16 * -16 + 3/16 * 96
     assert_eq!(found([0, 240, -16, 96], 0.25, 0.75), expected(24));
     assert_eq!(found([-3, -2, -3, -2], 0.5, 0.0), expected(-2));
-    // One unit more than a pixel apart: the nearest.
     assert_eq!(found([0, 256, 256, 256], 0.5, 0.5), expected(192));
-    assert_eq!(found([0, 256, 256, 257], 0.25, 0.25), expected(0));
+    // One unit more than a pixel apart from the first, but not from the others: all count for the others.
+    assert_eq!(found([0, 256, 256, 257], 0.25, 0.25), expected(112));
+    // The surface that weighs most, and not the nearest pixel; unknown pixels weigh nothing.
+    assert_eq!(found([0, 1000, 1000, 1000], 0.375, 0.375), expected(1000));
+    assert_eq!(found([NONE, 7, NONE, NONE], 0.125, 0.125), expected(7));
+    // Of two surfaces of one weight the first.
+    assert_eq!(found([9, 500, 9, 500], 0.5, 0.5), expected(9));
     // The extremes of one surface.
     assert_eq!(found([0, 256, 256, 0], 1.0 - 1.0 / 2048.0, 1.0 - 1.0 / 2048.0), expected(0));
 }
