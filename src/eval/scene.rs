@@ -10,7 +10,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Score, score_pixels};
+use glam::DVec2;
+
+use super::{Score, conditions::Changed, score_pixels};
 use crate::{
     dense::View,
     error::{Error, Result},
@@ -73,6 +75,19 @@ pub struct Scene {
     pub truth: Plane<f32>,
     /// Non-occlusion mask of the reference view, 255 where both views see the same point; `None` if there is no mask.
     pub non_occluded: Option<Plane<u8>>,
+}
+
+impl Scene {
+    /// The scene with its right view changed, of which the left view is the reference: pixels whose partner the changed view does not
+    /// show have no ground truth.
+    #[must_use]
+    pub fn changed(self, changed: &Changed) -> Self {
+        let partner = |x: u32, y: u32| DVec2::new(f64::from(x) - f64::from(self.truth.get(x, y)), y.into());
+        let truth = Plane::from_fn(self.truth.size(), |x, y| {
+            if changed.shows(partner(x, y)) { self.truth.get(x, y) } else { f32::INFINITY }
+        });
+        Self { right: changed.picture.clone(), truth, ..self }
+    }
 }
 
 /// Scores of a map over all pixels and over the non-occluded ones.

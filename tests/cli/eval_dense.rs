@@ -123,6 +123,29 @@ fn scores_a_folder_of_scenes_in_every_form() {
 }
 
 #[test]
+fn a_turned_or_scaled_right_view_is_scored_where_it_shows_the_pixel() {
+    let temporary = folder();
+    let scored = |condition: &[&str]| {
+        let csv = temporary.path().join("errors.csv");
+        let mut command = hsad();
+        command.args(["eval", "dense", "--device", "cpu", "-q"]).arg(shipped("planes", ""));
+        command.args(condition).arg("--csv").arg(&csv).assert().success();
+        let of = |name: &str| column(&csv, name)[0].parse::<f64>().unwrap();
+        (of("pixels"), of("bad_1"))
+    };
+    let (all, level) = scored(&[]);
+    assert_eq!(scored(&["--condition", "none"]), (all, level));
+    for (condition, shown) in [("rotation=90", 0.4..0.95), ("rotation=180", 0.99..1.01), ("scale=0.8", 0.99..1.01)] {
+        let (pixels, wrong) = scored(&["--condition", condition]);
+        assert!(shown.contains(&(pixels / all)), "{condition}: {pixels} of {all}");
+        assert!(wrong < level + 0.03, "{condition}: {wrong} and {level}");
+    }
+    let mut right = hsad();
+    right.args(["eval", "dense", "--condition", "blur", "--reference", "right"]).arg(shipped("planes", ""));
+    fails(right, 2, "since --condition changes the right view");
+}
+
+#[test]
 fn knows_the_layouts_of_middlebury_and_kitti() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);

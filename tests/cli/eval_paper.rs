@@ -54,7 +54,7 @@ fn curves_agree_with_the_table() {
     let scene = part(temporary.path(), "part");
     let output = temporary.path().join("out");
     let mut command = evaluate(&[&scene], &["none", "gain=0.8", "rotation=90"]);
-    let told = contains("mean of 2").and(contains("mean of 3")).and(contains("kamencay  not applicable"));
+    let told = contains("mean of 3").and(contains("mean of 2").not());
     command.arg("-o").arg(&output).assert().success().stdout(told).stderr("");
 
     let folder = output.join("part");
@@ -89,8 +89,8 @@ fn curves_agree_with_the_table() {
                 assert_eq!(all["answers"].as_f64().unwrap().to_string(), last[2]);
             }
         }
-        assert!(text.contains("\nmean of 2,kamencay,1,") && text.contains("\nmean of 3,sparse,1,"));
-        assert!(!text.contains("rotation=90,kamencay") && !text.contains("mean of 3,kamencay"));
+        assert!(text.contains("\nmean of 3,kamencay,1,") && text.contains("\nmean of 3,sparse,1,"));
+        assert!(text.contains("\nrotation=90,kamencay,1,") && text.contains("\nrotation=90,balanced,1,"));
         let plot = fs::read_to_string(folder.join(format!("{name}.svg"))).unwrap();
         assert!(plot.starts_with("<svg") && plot.contains("gain=0.8") && plot.contains("#D55E00"));
     }
@@ -109,8 +109,9 @@ fn curves_agree_with_the_table() {
             );
         }
     }
+    // A turned view is rectified by its matches: as good as before, at the points that it still shows.
     let turned = result(&report, "rotation=90", "balanced");
-    assert!(turned["not_applicable"].as_str().unwrap().contains("rows") && turned.get("recall").is_none());
+    assert!(turned["precision_of_100"].as_f64().unwrap() > 0.9 && turned["recall"].as_f64().unwrap() > 0.5, "{turned}");
 }
 
 #[test]
@@ -128,7 +129,7 @@ fn what_is_finished_is_kept_until_something_changes() {
     };
     let (kept, first) = run(&[]);
     assert_eq!(kept, None);
-    assert_eq!(run(&[]), (Some("4".into()), first.clone()));
+    assert_eq!(run(&[]), (Some("6".into()), first.clone()));
 
     // A missing result, as after an interruption.
     fs::remove_dir_all(output.join("part/none/balanced")).unwrap();
@@ -136,7 +137,7 @@ fn what_is_finished_is_kept_until_something_changes() {
     let broken = fs::read_to_string(&file).unwrap().replace("\"right\"", "\"left\"");
     fs::write(&file, broken).unwrap();
     let (kept, again) = run(&[]);
-    assert_eq!(kept, Some("2".into()));
+    assert_eq!(kept, Some("4".into()));
     let without_times = |results: &Value| -> Vec<Value> {
         let mut results = results.as_array().unwrap().clone();
         results.iter_mut().for_each(|result| result["seconds"] = Value::Null);

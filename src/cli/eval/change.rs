@@ -9,12 +9,18 @@ use hsad::{
 const NONE: &str = "none";
 
 /// A chain of conditions, applied in order, and its name.
+#[derive(Clone)]
 pub struct Change {
     pub name: String,
     pub conditions: Vec<Condition>,
 }
 
 impl Change {
+    /// Whether the change moves points, so that rows of a rectified pair do not correspond any more.
+    pub fn moves(&self) -> bool {
+        self.conditions.iter().copied().any(Condition::moves)
+    }
+
     /// Parses `NAME`, `NAME=STRENGTH`, several of these joined by `+`, or `none`.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 mod change;
 mod dense;
 mod features;
+mod moved;
 mod paper;
 mod saved_results;
 mod scenes;

@@ -207,6 +207,11 @@ pub struct Changed {
 }
 
 impl Changed {
+    /// Whether the changed picture shows a position of the original, in pixels.
+    pub fn shows(&self, original: DVec2) -> bool {
+        value_at(&self.visible, self.map.transform_point2(original)) == Some(VISIBLE)
+    }
+
     /// Applies several conditions in order; without conditions the picture is unchanged.
     pub fn by(conditions: &[Condition], picture: &Picture, seed: u64) -> Self {
         let Size { width, height } = picture.size();

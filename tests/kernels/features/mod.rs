@@ -7,4 +7,5 @@ mod integral_columns;
 mod integral_rows;
 mod nonmax;
 mod orientation;
+mod turned;
 mod workgroups;

@@ -12,12 +12,12 @@ use std::{
 };
 
 use clap::Args;
-use hsad::{Error, io::atomic::write_whole};
+use hsad::{Error, dense::View, io::atomic::write_whole};
 use serde_json::{Value, json};
 
 use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
-    eval::{report_failures, saved_results, scenes},
+    eval::{change::Change, report_failures, saved_results, scenes},
     options::{FeatureOptions, MatchOptions, RunOptions},
     output::{Output, check_writable, write_json},
     report, terminal,
@@ -47,6 +47,7 @@ Examples:
   hsad eval dense data
   hsad eval dense Art Teddy --preset quality -o out --csv out/errors.csv
   hsad eval dense Art --disparity sgbm=sgbm.pfm
+  hsad eval dense Art Teddy --condition rotation=90
   hsad eval dense kitti/training --disparity theirs=maps/{scene}.png --given-only --json errors.json
 
 Exit codes: 0 success, 1 a scene failed (the others are scored all the same), 2 usage"
@@ -62,6 +63,14 @@ pub struct Dense {
     /// Score only the maps of --disparity, without matching
     #[arg(long, requires = "supplied")]
     given_only: bool,
+    /// Change the right view before matching, for example rotation=30 or scale=0.7+noise=5 (see hsad eval paper --help). A pair whose
+    /// right view is turned or scaled is rectified from its own matches first; its map is scored where the changed view shows the
+    /// pixel, in disparities of the pair before the change
+    #[arg(long, value_name = "NAME[=STRENGTH]", value_parser = Change::parse)]
+    condition: Option<Change>,
+    /// Seed of the random numbers in the condition
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "condition")]
+    seed: u64,
     /// Output folder for maps, pictures and results, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -111,6 +120,14 @@ impl Dense {
     /// Scores all scenes by all methods; a failure does not stop the others and is returned at the end.
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
+        if self.condition.is_some() && config.reference == View::Right {
+            return Err(Error::Parameter {
+                name: "--reference",
+                value: "right".into(),
+                expected: "it must be left, since --condition changes the right view".into(),
+            }
+            .into());
+        }
         let (scenes, unread) = scenes::find(&self.scenes)?;
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
         supplied_maps::check(&self.supplied, scenes.len())?;
@@ -131,6 +148,7 @@ impl Dense {
         }
         if let Some(file) = &self.json {
             let mut report = results.report(&methods);
+            report["condition"] = self.condition.as_ref().map(|change| &*change.name).into();
             report["device"] = backend.as_ref().map(report::device).into();
             report["parameters"] = backend.as_ref().map(|_| report::parameters(&config, strongest)).into();
             write_whole(file, |out| write_json(out, &report))?;

@@ -2,11 +2,15 @@
 
 use std::time::Instant;
 
+use glam::DAffine2;
 use hsad::{
     Backend, Result,
     config::Config,
     disparity::{fixed_point, in_pixels},
-    eval::scene::{Scene, SceneFiles},
+    eval::{
+        conditions::Changed,
+        scene::{Scene, SceneFiles},
+    },
     image::Plane,
     io::{color, disparities, figure, pfm, png},
     pipeline,
@@ -14,15 +18,30 @@ use hsad::{
 use serde_json::Value;
 
 use super::{Dense, Failure, OURS, Results, record::Record, supplied_maps::SuppliedMaps};
-use crate::cli::{doubts, eval::saved_results::SavedResults, output::Output, products, report, terminal::Progress};
+use crate::cli::{
+    doubts,
+    eval::{change::Change, moved::Moved, saved_results::SavedResults},
+    output::Output,
+    products, report,
+    terminal::Progress,
+};
 
 /// The methods, and where their results are saved.
 pub struct Run<'a> {
     config: &'a Config,
+    /// The change of the right views, and the seed of its random numbers.
+    change: Option<(&'a Change, u64)>,
     methods: Vec<Method<'a>>,
     /// Where the results of all scenes are saved.
     saved: SavedResults,
     progress: Progress,
+}
+
+/// A scene, changed if a condition says so.
+struct Prepared {
+    scene: Scene,
+    /// The map from pixels of the right view to those of the changed one, if it moves points.
+    moved: Option<DAffine2>,
 }
 
 /// Source of a disparity map.
@@ -38,6 +57,7 @@ impl<'a> Run<'a> {
         let supplied = options.supplied.iter().map(Method::Supplied);
         Self {
             config,
+            change: options.condition.as_ref().map(|change| (change, options.seed)),
             methods: backend.map(Method::Ours).into_iter().chain(supplied).collect(),
             saved: SavedResults::new(options.output.as_deref(), options.fresh),
             progress: Progress::new(options.run.quiet),
@@ -62,6 +82,10 @@ impl<'a> Run<'a> {
         let paths = files.files(self.config.reference)?;
         let of_scene =
             paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
+        let of_scene = match self.change {
+            Some((change, seed)) => of_scene.depending_on(&format!("{} {seed}", change.name)),
+            None => of_scene,
+        };
         // The scene is read when a method first needs it, which with saved results may be never.
         let mut scene = None;
         for &method in &self.methods {
@@ -101,45 +125,62 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn read(&self, files: &SceneFiles) -> Result<Scene> {
+    fn read(&self, files: &SceneFiles) -> Result<Prepared> {
         self.progress.begin("reading");
-        files.read(self.config.reference)
+        let scene = files.read(self.config.reference)?;
+        let Some((change, seed)) = self.change else { return Ok(Prepared { scene, moved: None }) };
+        let changed = Changed::by(&change.conditions, &scene.right, seed);
+        let scene = scene.changed(&changed);
+        Ok(Prepared { scene, moved: change.moves().then_some(changed.map) })
     }
 
     /// Scores one method on one scene and saves the result. A failure to save is noted beside the result.
     fn make(
         &self,
         name: &str,
-        scene: &Scene,
+        prepared: &Prepared,
         method: Method,
         saved: &SavedResults,
         failures: &mut Vec<Failure>,
     ) -> Result<Record> {
         let (map, record) = match method {
-            Method::Ours(backend) => self.ours(backend, name, scene)?,
-            Method::Supplied(maps) => self.supplied(maps, name, scene)?,
+            Method::Ours(backend) => self.ours(backend, name, prepared)?,
+            Method::Supplied(maps) => self.supplied(maps, name, &prepared.scene)?,
         };
         let written = saved.save(&record, |output| {
             self.progress.begin("writing");
-            add_files(output, scene, &map)
+            add_files(output, &prepared.scene, &map)
         });
         failures.extend(written.err().map(|error| Failure { what: Some(name_of(name, method)), error }));
         Ok(record)
     }
 
-    fn ours(&self, backend: &Backend, name: &str, scene: &Scene) -> Result<(Plane<f32>, Record)> {
+    fn ours(&self, backend: &Backend, name: &str, prepared: &Prepared) -> Result<(Plane<f32>, Record)> {
+        let Prepared { scene, moved } = prepared;
         let views = (&scene.left, &scene.right);
+        let begin = |step| self.progress.step(step);
         let start = Instant::now();
-        let outcome = pipeline::run(backend, views, self.config, |step| self.progress.step(step))?;
+        let (map, outcome, warnings) = match *moved {
+            None => {
+                let outcome = pipeline::run(backend, views, self.config, begin)?;
+                let warnings = doubts::warnings(views, self.config, &outcome);
+                (in_pixels(&outcome.dense.disparity), outcome, warnings)
+            }
+            Some(change) => {
+                let moved = Moved::new(backend, views, self.config, begin)?;
+                let [left, right] = &moved.pair.pictures;
+                let warnings = doubts::warnings((left, right), self.config, &moved.outcome);
+                (moved.before(change), moved.outcome, warnings)
+            }
+        };
         let seconds = start.elapsed().as_secs_f64();
-        let map = in_pixels(&outcome.dense.disparity);
         let record = Record {
             scene: name.into(),
             method: OURS.into(),
             scores: scene.score(&map)?,
             range: report::searched(&outcome),
             seconds: Some(seconds),
-            warnings: doubts::warnings(views, self.config, &outcome),
+            warnings,
         };
         Ok((map, record))
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use hsad::{
-    Backend, Result,
+    Backend, Error, Result,
     config::{self, Config, Preset},
     dense::{Dense, FILLED},
     disparity::pixels,
@@ -14,6 +14,8 @@ use hsad::{
     pipeline,
     wide_baseline::{WideBaselineConfig, match_views},
 };
+
+use crate::cli::eval::moved::Moved;
 
 /// A matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +56,8 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Whether the method searches along rows only and so needs rows that correspond.
-    pub fn needs_rows(self) -> bool {
+    /// Whether the method searches along rows, and finds no points of its own.
+    pub fn is_dense(self) -> bool {
         self != Self::Sparse
     }
 
@@ -81,15 +83,17 @@ impl Method {
     }
 
     /// Matches two views. A dense method matches the given `points` and every pixel; matching of interest points
-    /// ignores `points` and finds its own.
+    /// ignores `points` and finds its own. Where the second view was `moved`, a dense method rectifies the pair from its own matches
+    /// first, and has no answers if they do not tell how.
     ///
     /// # Errors
-    /// As [`match_views`] and [`pipeline::run`].
+    /// As [`match_views`], [`pipeline::run`] and [`pipeline::rectify`].
     pub fn run(
         self,
         backend: &Backend,
         (first, second): (&Picture, &Picture),
         points: &[DVec2],
+        moved: bool,
     ) -> Result<MethodMatches> {
         let Some(config) = self.dense() else {
             let found = block_on(match_views(backend, &first.luma(), &second.luma(), &WideBaselineConfig::default()))?;
@@ -97,27 +101,34 @@ impl Method {
             let matches: Vec<_> = found.matches.iter().map(PointMatch::from).collect();
             return Ok(MethodMatches { points, at_points: matches.clone(), everywhere: matches });
         };
-        let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
         let Size { width, height } = first.size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| DVec2::new(x.into(), y.into())));
-        Ok(MethodMatches {
+        let answers = |found: &dyn Fn(DVec2) -> Option<PointMatch>| MethodMatches {
             points: points.to_vec(),
-            at_points: points.iter().filter_map(|&at| match_at(&dense, at)).collect(),
-            everywhere: pixels.filter_map(|at| match_at(&dense, at)).collect(),
-        })
+            at_points: points.iter().filter_map(|&at| found(at)).collect(),
+            everywhere: pixels.filter_map(found).collect(),
+        };
+        if !moved {
+            let dense = pipeline::run(backend, (first, second), &config, |_| ())?.dense;
+            return Ok(answers(&|at| match_at(&dense, at, |disparity| Some(at - DVec2::new(disparity, 0.0)))));
+        }
+        match Moved::new(backend, (first, second), &config, |_| ()) {
+            Ok(moved) => Ok(answers(&|at| match_at(&moved.dense, at, |disparity| moved.partner(at, disparity)))),
+            Err(Error::NotRectifiable { .. }) => Ok(answers(&|_| None)),
+            Err(error) => Err(error),
+        }
     }
 }
 
-/// The match of a position of the left view, by the disparity of the pixel that it lies in; `None` if that disparity
-/// was not measured or only filled in.
-fn match_at(dense: &Dense, at: DVec2) -> Option<PointMatch> {
+/// The match of a position of the left view, by the disparity of the pixel that it lies in, and its `partner` for that disparity;
+/// `None` if that disparity was not measured or only filled in.
+fn match_at(dense: &Dense, at: DVec2, partner: impl Fn(f64) -> Option<DVec2>) -> Option<PointMatch> {
     // Interest points can lie up to half a pixel beyond the centres of the border pixels.
     let pixel = |at: f64, side: u32| at.round().clamp(0.0, f64::from(side - 1)) as u32;
     let (x, y) = (pixel(at.x, dense.disparity.width()), pixel(at.y, dense.disparity.height()));
     let confidence = dense.confidence.get(x, y);
     let disparity = pixels(dense.disparity.get(x, y)).filter(|_| confidence > FILLED)?;
-    let second = at - DVec2::new(disparity.into(), 0.0);
-    Some(PointMatch { first: at, second, confidence: confidence.into(), points: None })
+    Some(PointMatch { first: at, second: partner(disparity.into())?, confidence: confidence.into(), points: None })
 }
 
 #[cfg(test)]
@@ -131,7 +142,10 @@ mod tests {
         let disparity = Plane::from_fn((4, 1), |x, _| [256, 384, NONE, 512][x as usize]);
         let confidence = Plane::from_fn((4, 1), |x, _| [FILLED, 70, 0, 90][x as usize]);
         let dense = Dense { disparity, confidence };
-        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| match_at(&dense, DVec2::new(x, 0.3)));
+        let answers = [0.0, 0.75, 1.25, 2.0, 3.4].map(|x| {
+            let at = DVec2::new(x, 0.3);
+            match_at(&dense, at, |disparity| Some(at - DVec2::new(disparity, 0.0)))
+        });
         let found = answers.map(|answer| answer.map(|found| (found.second.x, found.second.y, found.confidence)));
         let second = Some((3.4 - 2.0, 0.3, 90.0));
         assert_eq!(found, [None, Some((-0.75, 0.3, 70.0)), Some((-0.25, 0.3, 70.0)), None, second]);

@@ -23,7 +23,7 @@ use serde_json::json;
 
 use self::{
     curve::Figure,
-    results::{Cell, Group, groups},
+    results::{Group, groups},
     run::{Run, SceneResults},
 };
 use crate::cli::{
@@ -54,9 +54,10 @@ interleaved evenly, as in random order. Precision over coverage is also given fo
 an interest point counts as one pixel.
 
 Dense methods search along rows. Under rotation and scale rows do not correspond, and no method is told how the view was \
-changed: dense methods are not applicable there. Means are over the conditions under which all methods have a result; a \
-method with more results also has a mean over all of its conditions. Curves of means are over the number of answers; a \
-condition with fewer answers keeps its last value.
+changed: the pair is rectified from its own matches first, as hsad match does, and the map is taken back to the first view. \
+Without enough matches for that, a dense method has no answers. Means are over the conditions under which all methods have a \
+result; a method with more results also has a mean over all of its conditions. Curves of means are over the number of \
+answers; a condition with fewer answers keeps its last value.
 
 Conditions change the second view and its ground truth: NAME or NAME=STRENGTH, several applied in order joined by '+', \
 or none. Without --condition: none, and each condition at its default strength:";
@@ -125,7 +126,7 @@ impl Paper {
         for files in &scenes {
             match run.scene(files) {
                 Ok(found) => {
-                    let groups = groups(&found.cells);
+                    let groups = groups(&found.records);
                     if let Err(error) = self.write(&files.name, &groups, &found, &backend) {
                         failures.push(in_options(&error));
                     }
@@ -189,8 +190,7 @@ impl Paper {
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
             text += &format!("\ncurves and plots are in {}", folder.join(scene).display());
-            let done = found.cells.iter().filter(|cell| matches!(cell, Cell::Measured(_))).count();
-            text += &saved_results::reuse_note(found.reused, done);
+            text += &saved_results::reuse_note(found.reused, found.records.len());
             text.push('\n');
         }
         terminal::print(&(text + "\n"))

@@ -82,11 +82,10 @@ fn color(method: Method) -> RGBColor {
 /// # Errors
 /// The errors of plotters; there is no file that could fail.
 pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<dyn Error + Send + Sync>> {
-    let drawn: Vec<&Group> = groups.iter().filter(|group| !group.records.is_empty()).collect();
-    let curves: Vec<Vec<Sample>> = drawn.iter().map(|group| group.curve(figure)).collect();
+    let curves: Vec<Vec<Sample>> = groups.iter().map(|group| group.curve(figure)).collect();
     let axis = Axis::new(figure, &curves);
     let mut names: Vec<&str> = Vec::new();
-    for group in &drawn {
+    for group in groups {
         if !names.contains(&&*group.name) {
             names.push(&group.name);
         }
@@ -131,7 +130,7 @@ pub fn svg(figure: Figure, scene: &str, groups: &[Group]) -> Result<String, Box<
                 .y_label_formatter(&|at| format!("{at:.0}"))
                 .draw()?;
             // The first method has the shortest curve and is drawn on top.
-            for (group, curve) in drawn.iter().zip(&curves).filter(|(group, _)| group.name == *name).rev() {
+            for (group, curve) in groups.iter().zip(&curves).filter(|(group, _)| group.name == *name).rev() {
                 chart.draw_series(LineSeries::new(thinned(curve, &axis), color(group.method).stroke_width(2)))?;
             }
         }
@@ -159,14 +158,14 @@ fn thinned(curve: &[Sample], axis: &Axis) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::results::{groups, tests::cells},
+        super::results::{groups, tests::records},
         *,
     };
 
     #[test]
     fn each_condition_has_a_panel_and_each_method_a_line() {
-        let cells = cells();
-        let groups = groups(&cells);
+        let records = records();
+        let groups = groups(&records);
         for figure in Figure::ALL {
             let text = svg(figure, "Art", &groups).unwrap();
             for expected in ["mean of 2", "mean of 3", "none", "blur=2", "rotation=90", "Art: ", "kamencay"] {

@@ -55,7 +55,7 @@ impl Record {
             right: judged(&answers.at_points)?,
             pixels: disparities.data().iter().filter(|disparity| disparity.is_finite()).count(),
             everywhere: counted(&judged(&answers.everywhere)?),
-            points: if method.needs_rows() { Vec::new() } else { answers.points },
+            points: if method.is_dense() { Vec::new() } else { answers.points },
             seconds,
         })
     }

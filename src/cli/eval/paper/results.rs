@@ -6,40 +6,7 @@ use super::{
     record::Record,
 };
 
-/// The result of one method under one condition.
-pub enum Cell {
-    Measured(Record),
-    /// The method needs corresponding rows, and the condition moves points out of their rows.
-    NotApplicable {
-        condition: String,
-        method: Method,
-    },
-}
-
-impl Cell {
-    fn condition(&self) -> &str {
-        match self {
-            Self::Measured(record) => &record.condition,
-            Self::NotApplicable { condition, .. } => condition,
-        }
-    }
-
-    fn method(&self) -> Method {
-        match self {
-            Self::Measured(record) => record.method,
-            Self::NotApplicable { method, .. } => *method,
-        }
-    }
-
-    fn record(&self) -> Option<&Record> {
-        match self {
-            Self::Measured(record) => Some(record),
-            Self::NotApplicable { .. } => None,
-        }
-    }
-}
-
-/// A method's records under one condition, or under several conditions for their mean; none if it is not applicable.
+/// A method's records under one condition, or under several conditions for their mean.
 pub struct Group<'r> {
     pub name: String,
     pub method: Method,
@@ -58,16 +25,12 @@ impl Group<'_> {
 
 /// One group per condition and method, then the means: first over the conditions under which all methods have a result,
 /// so that methods can be compared; then, for methods with more results, over all of their conditions.
-pub fn groups(cells: &[Cell]) -> Vec<Group<'_>> {
-    let mut groups: Vec<Group> = cells
+pub fn groups(records: &[Record]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group> = records
         .iter()
-        .map(|cell| Group {
-            name: cell.condition().into(),
-            method: cell.method(),
-            records: cell.record().into_iter().collect(),
-        })
+        .map(|record| Group { name: record.condition.clone(), method: record.method, records: vec![record] })
         .collect();
-    let of = |method| cells.iter().filter_map(Cell::record).filter(move |record| record.method == method);
+    let of = |method| records.iter().filter(move |record| record.method == method);
     let has = |method, condition: &str| of(method).any(|record| record.condition == condition);
     let is_common = |record: &&Record| Method::ALL.into_iter().all(|method| has(method, &record.condition));
     let mut mean = |method, records: Vec<_>| {
@@ -89,10 +52,9 @@ pub fn groups(cells: &[Cell]) -> Vec<Group<'_>> {
 pub mod tests {
     use super::{super::record::tests::record, *};
 
-    /// Results of all methods under two conditions, and of the sparse method alone under a third.
-    pub fn cells() -> Vec<Cell> {
-        let done = |condition, method, right| Cell::Measured(record(condition, method, 8, right));
-        let not = |method| Cell::NotApplicable { condition: "rotation=90".into(), method };
+    /// Results of all methods under two conditions, and of the sparse method alone under a third, where the others failed.
+    pub fn records() -> Vec<Record> {
+        let done = |condition, method, right| record(condition, method, 8, right);
         vec![
             done("none", Method::Sparse, "1111"),
             done("none", Method::Kamencay, "111001"),
@@ -101,16 +63,14 @@ pub mod tests {
             done("blur=2", Method::Kamencay, ""),
             done("blur=2", Method::Balanced, "11"),
             done("rotation=90", Method::Sparse, "1"),
-            not(Method::Kamencay),
-            not(Method::Balanced),
         ]
     }
 
     #[test]
     fn means_compare_like_with_like() {
-        let cells = cells();
-        let groups = groups(&cells);
-        let names: Vec<_> = groups[9..].iter().map(|group| (&*group.name, group.method, group.records.len())).collect();
+        let records = records();
+        let groups = groups(&records);
+        let names: Vec<_> = groups[7..].iter().map(|group| (&*group.name, group.method, group.records.len())).collect();
         let expected = [
             ("mean of 2", Method::Sparse, 2),
             ("mean of 2", Method::Kamencay, 2),
@@ -118,10 +78,9 @@ pub mod tests {
             ("mean of 3", Method::Sparse, 3),
         ];
         assert_eq!(names, expected);
-        assert!(groups[7].records.is_empty() && groups[7].name == "rotation=90");
         let precision = |group: &Group| group.curve(Figure::RecallPrecision).iter().map(|s| s.y).collect::<Vec<_>>();
-        assert_eq!((precision(&groups[3]), precision(&groups[7])), (vec![1.0, 0.5], vec![]));
-        assert_eq!(precision(&groups[9]), [1.0, 0.75, 0.75, 0.75]);
-        assert_eq!(super::groups(&cells[..3]).len(), 3, "one condition has no mean");
+        assert_eq!((precision(&groups[3]), precision(&groups[4])), (vec![1.0, 0.5], vec![]));
+        assert_eq!(precision(&groups[7]), [1.0, 0.75, 0.75, 0.75]);
+        assert_eq!(super::groups(&records[..3]).len(), 3, "one condition has no mean");
     }
 }

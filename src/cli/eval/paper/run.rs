@@ -8,13 +8,13 @@ use hsad::{
     dense::View,
     eval::{
         Truth,
-        conditions::{Changed, Condition},
+        conditions::Changed,
         scene::{Scene, SceneFiles},
     },
     io::Picture,
 };
 
-use super::{Paper, method::Method, record::Record, results::Cell};
+use super::{Paper, method::Method, record::Record};
 use crate::cli::{
     eval::{change::Change, saved_results::SavedResults},
     report,
@@ -35,7 +35,7 @@ pub struct Run<'a> {
 /// The results of a scene so far.
 #[derive(Default)]
 pub struct SceneResults {
-    pub cells: Vec<Cell>,
+    pub records: Vec<Record>,
     /// How many of them an earlier run made.
     pub reused: usize,
     pub failures: Vec<String>,
@@ -94,23 +94,19 @@ impl<'a> Run<'a> {
             views.changed = None;
             let mut points = Vec::new();
             for method in Method::ALL {
-                if method.needs_rows() && change.conditions.iter().copied().any(Condition::moves) {
-                    found.cells.push(Cell::NotApplicable { condition: change.name.clone(), method });
-                    continue;
-                }
                 self.progress.begin(method.name());
                 let saved = of_scene.clone().below(&change.name).below(method.name());
                 let saved = saved.depending_on(&change.name).depending_on(&method.described());
                 match self.record(&mut views, change, method, &points, &saved, &mut found) {
                     Ok(record) => {
-                        if !method.needs_rows() {
+                        if !method.is_dense() {
                             points.clone_from(&record.points);
                         }
-                        found.cells.push(Cell::Measured(record));
+                        found.records.push(record);
                     }
                     Err(error) => {
                         found.failures.push(format!("{name}, {}: {}", method.name(), in_options(&error)));
-                        if !method.needs_rows() {
+                        if !method.is_dense() {
                             // Without its points the other methods have nothing to match.
                             break;
                         }
@@ -136,7 +132,7 @@ impl<'a> Run<'a> {
         }
         let (scene, second, truth) = views.get(change, self.options.seed)?;
         let start = Instant::now();
-        let answers = method.run(self.backend, (&scene.left, second), points)?;
+        let answers = method.run(self.backend, (&scene.left, second), points, change.moves())?;
         let seconds = start.elapsed().as_secs_f64();
         let judged = (truth, &scene.truth);
         let record = Record::new((&change.name, method), answers, judged, self.options.tolerance, seconds)?;

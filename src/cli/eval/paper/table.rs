@@ -14,9 +14,6 @@ harmonic mean of precision and recall; picture: share of the first view's pixels
 seconds: time from the pictures to the answers.
 ";
 
-/// Text in place of the figures of a method that is not applicable.
-const NOT_APPLICABLE: &str = "not applicable: it needs rows that correspond";
-
 /// Unit of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Unit {
@@ -99,11 +96,7 @@ pub fn text(scene: &str, groups: &[Group]) -> String {
         }
         before = &group.name;
         let method = group.method.name();
-        text += &if group.records.is_empty() {
-            format!("{name:width$}  {method:8}  {NOT_APPLICABLE}\n")
-        } else {
-            line(name, method, &COLUMNS.map(|column| column.cell(column.mean(group))))
-        };
+        text += &line(name, method, &COLUMNS.map(|column| column.cell(column.mean(group))));
     }
     text
 }
@@ -112,12 +105,8 @@ pub fn text(scene: &str, groups: &[Group]) -> String {
 pub fn json(groups: &[Group]) -> Value {
     let object = |group: &Group| {
         let mut object = json!({ "condition": group.name, "method": group.method.name() });
-        if group.records.is_empty() {
-            object["not_applicable"] = NOT_APPLICABLE.into();
-        } else {
-            for column in &COLUMNS {
-                object[column.name] = column.mean(group).into();
-            }
+        for column in &COLUMNS {
+            object[column.name] = column.mean(group).into();
         }
         object
     };
@@ -127,14 +116,14 @@ pub fn json(groups: &[Group]) -> Value {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::results::{groups, tests::cells},
+        super::results::{groups, tests::records},
         *,
     };
 
     #[test]
     fn a_table_by_hand() {
-        let cells = cells();
-        let text = text("Art", &groups(&cells));
+        let records = records();
+        let text = text("Art", &groups(&records));
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
         let row = |start: &str| lines.iter().find(|line| line.join(" ").starts_with(start)).unwrap().join(" ");
         assert_eq!(row("Art"), "Art points answers of 10 of 100 of 500 right cover recall F picture right seconds");
@@ -144,9 +133,7 @@ mod tests {
         assert_eq!(row("mean of 2"), "mean of 2 sparse 8 3 75.0 75.0 75.0 75.0 18.8 31.2 43.3 0.3 75.0 0.5");
         // Mean of the hybrid method's 4 of 6, and of no answers.
         assert_eq!(row("kamencay 8 3"), "kamencay 8 3 33.3 33.3 33.3 33.3 18.8 25.0 28.6 0.3 33.3 0.5");
-        assert_eq!(row("kamencay not"), format!("kamencay {NOT_APPLICABLE}"));
-        let json = json(&groups(&cells));
+        let json = json(&groups(&records));
         assert_eq!((&json[0]["recall"], &json[4]["precision"]), (&0.5.into(), &Value::Null));
-        assert_eq!((&json[7]["not_applicable"], json[7].get("recall")), (&NOT_APPLICABLE.into(), None));
     }
 }
