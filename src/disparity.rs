@@ -15,6 +15,9 @@ pub const NONE: i32 = i32::MIN;
 /// because WGSL does not guarantee infinities and NaN.
 pub const NONE_IN_PIXELS: f32 = NONE as f32 / SCALE as f32;
 
+/// Largest distance of a disparity from an end of a range that counts as the end, in 1/256 px.
+pub(crate) const AT_END: i32 = 3 * SCALE / 2;
+
 /// One disparity per pixel, in 1/256 px, or [`NONE`].
 ///
 /// In the left view's map, pixel `(x, y)` with disparity `d` corresponds to `(x - d, y)` of the
@@ -97,6 +100,13 @@ impl DisparityRange {
     /// The largest disparity, in pixels.
     pub fn last(&self) -> i32 {
         self.min + (self.count - 1) as i32
+    }
+
+    /// Whether a disparity, in 1/256 px, lies within 1.5 px of the smallest and of the largest disparity of the range, beyond which
+    /// the surface may go on.
+    pub(crate) fn is_at_end(&self, disparity: i32) -> [bool; 2] {
+        let known = disparity != NONE;
+        [known && disparity <= SCALE * self.min + AT_END, known && disparity >= SCALE * self.last() - AT_END]
     }
 
     /// Whether `disparity`, in whole pixels, lies in the range.

@@ -1,10 +1,11 @@
 // Filling of holes along rays. From each pixel without a disparity a ray goes in each of eight directions to the first
-// pixel with one, whose tangent plane (tangent.wgsl) is continued to the hole: a candidate.
+// pixel with one, whose tangent plane (tangent.wgsl) is continued to the hole: a candidate. Doubtful pixels are passed,
+// PASSED at most, if another pixel follows behind a hole.
 //
 // The price of a candidate is its distance, plus its difference in colour, plus a penalty if the other view speaks
 // against it: where no disparity points at the partner (project.wgsl), the pixel would have been measured, and where a
-// smaller one does, the candidate would hide what the other view shows; and plus a penalty for a small surface, which
-// rays would draw out into streaks. The pixel gets the weighted median of the
+// smaller one does, the candidate would hide what the other view shows; and plus a penalty for a small surface or a
+// doubtful pixel, which rays would draw out into streaks. The pixel gets the weighted median of the
 // candidates; the weight halves with every 2^HALVING_BITS that a price exceeds the least price.
 
 #import bitmap_rows
@@ -25,6 +26,9 @@
 //   HIDING             price of a partner at which a smaller disparity points
 //   OF_SMALL           price of a small surface
 //   SMALL              mark of a small surface, above its colour
+//   OF_DOUBTFUL        price of a doubtful pixel
+//   DOUBTFUL           mark of a doubtful pixel, above its colour
+//   PASSED             largest number of doubtful pixels that a ray passes
 //   HALVING_BITS       log2 of the price that halves the weight
 //   FILLED             largest confidence of a filled pixel
 //   PRICE_BITS         log2 of the price that lowers the confidence of a filled pixel by 1
@@ -98,26 +102,52 @@ fn line_of(at: vec2<i32>, step: vec2<i32>) -> Line {
     return Line(bitmap + MARGIN + at.x - shear * at.y, columns + 32 * shear, at.y, step.y);
 }
 
-// Number of steps to the first pixel with a disparity; 0 without any.
-fn reach(at: vec2<i32>, step: vec2<i32>) -> i32 {
+// Number of steps to the source of a ray's candidate; 0 without any.
+fn source_of(at: vec2<i32>, step: vec2<i32>) -> i32 {
     let size = vec2<i32>(i32(params.width), i32(params.height));
     // Steps to the edge of the picture.
     let room = select(at, size - vec2<i32>(1) - at, step > vec2<i32>(0));
     let last = min(select(room.x, RAY, step.x == 0), select(min(room.y, RAY), room.x, step.y == 0));
     let line = line_of(at, step);
-    let bit = u32(line.place) % 32u;
-    // The pixels behind the hole in its own word.
-    let behind = select((1u << bit) - 1u, 0xfffffffeu << bit, line.sign > 0);
     let last_word = (line.place + line.sign * last) >> 5u;
     var word = line.place >> 5u;
-    var found = bitmaps[line.origin + word * line.stride] & behind;
-    while found == 0u && word != last_word {
-        word += line.sign;
-        found = bitmaps[line.origin + word * line.stride];
+    var rest = bitmaps[line.origin + word * line.stride] & beyond(u32(line.place) % 32u, line.sign);
+    // No bit while a pixel with a disparity is sought, and all bits while a hole is.
+    var holes = 0u;
+    var passed = 0;
+    var source = 0;
+    loop {
+        if rest == 0u {
+            if word == last_word {
+                break;
+            }
+            word += line.sign;
+            rest = bitmaps[line.origin + word * line.stride] ^ holes;
+            continue;
+        }
+        let bit = select(firstLeadingBit(rest), firstTrailingBit(rest), line.sign > 0);
+        let distance = line.sign * (32 * word + i32(bit) - line.place);
+        if distance > last {
+            break;
+        }
+        if holes == 0u {
+            source = distance;
+            let place = at + distance * step;
+            let mark = tangents[3u * (u32(place.y) * params.width + u32(place.x)) + 2u];
+            if (mark & DOUBTFUL) == 0u || passed == PASSED {
+                break;
+            }
+            passed += 1;
+        }
+        holes = ~holes;
+        rest = (bitmaps[line.origin + word * line.stride] ^ holes) & beyond(bit, line.sign);
     }
-    let first = select(firstLeadingBit(found), firstTrailingBit(found), line.sign > 0);
-    let distance = line.sign * (32 * word + i32(first) - line.place);
-    return select(0, distance, found != 0u && distance <= last);
+    return source;
+}
+
+// The bits that follow a bit of a word along a ray.
+fn beyond(bit: u32, sign: i32) -> u32 {
+    return select((1u << bit) - 1u, 0xfffffffeu << bit, sign > 0);
 }
 
 // Red, green and blue.
@@ -140,11 +170,11 @@ fn candidate(source: u32, way: vec2<i32>, hole: Hole) -> vec2<i32> {
     let height = bitcast<i32>(tangents[3u * source]) + clamp(change, -FARTHEST, FARTHEST);
     let disparity = clamp(height, params.least, params.most);
 
-    let difference = abs(hole.colour - channels(tangents[3u * source + 2u]));
+    let colour = tangents[3u * source + 2u];
+    let difference = abs(hole.colour - channels(colour));
     let contrast = max(max(difference.r, difference.g), difference.b);
-    let is_small = (tangents[3u * source + 2u] & SMALL) != 0u;
     var price = abs(way.x) + abs(way.y) + COLOUR * min(contrast, COLOUR_LIMIT)
-        + select(0, OF_SMALL, is_small);
+        + select(0, OF_SMALL, (colour & SMALL) != 0u) + select(0, OF_DOUBTFUL, (colour & DOUBTFUL) != 0u);
 
     let partner = partner_of(hole.at.x, disparity, params.direction);
     let inside = clamp(partner, 0, i32(params.width) - 1);
@@ -191,7 +221,7 @@ fn filling(at: vec2<i32>) -> vec2<i32> {
     var least = 0x7fffffff;
     for (var r = 0; r < 8; r++) {
         let step = direction_of(r);
-        let distance = reach(at, step);
+        let distance = source_of(at, step);
         let place = at + distance * step;
         let found = candidate(u32(place.y) * params.width + u32(place.x), -distance * step, hole);
         let exists = distance > 0;

@@ -6,6 +6,10 @@
 // the pixel and its neighbours left and right whose disparities differ by at most SCALE.
 //
 // Where fewer than one in SMALL_SHARE of the samples belong to the surface, it is small: a speck or a wire.
+//
+// A pixel is doubtful if it belongs to a speck amid holes: fewer than one in SPECK_SHARE of the samples belong to the
+// surface, and fewer than one in KNOWN_SHARE have a disparity; or if its disparity is at an end of the searched range,
+// beyond which the surface may go on, and fewer than one in KNOWN_SHARE of the samples belong to the surface.
 
 #import words
 #import bitmap_rows
@@ -22,6 +26,10 @@
 //   LEAST_SAMPLES      samples of a plane with slopes, at least
 //   SMALL_SHARE        samples per sample of a surface that is just not small
 //   SMALL              mark of a small surface, above its colour
+//   SPECK_SHARE        samples per sample of a surface that is just no speck
+//   KNOWN_SHARE        samples per sample with a disparity around a surface that is just no speck, and per sample of a
+//                      surface at an end of the range that is just not doubtful
+//   DOUBTFUL           mark of a doubtful pixel, above its colour
 //   TOLERANCE          largest difference of a sample from the pixel's disparity, in 1/256 px
 //   STEEPEST_X         largest slope along a row, in 1/16 of 1/256 px per STEP pixels
 //   STEEPEST_Y         largest slope along a column, in 1/16 of 1/256 px per STEP pixels
@@ -32,6 +40,9 @@
 struct Params {
     width: u32,
     height: u32,
+    // Up to the low end and from the high end on, disparities are at an end of the range, in 1/256 px.
+    low_end: i32,
+    high_end: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -41,7 +52,7 @@ struct Params {
 @group(0) @binding(2) var<storage, read> bitmaps: array<u32>;
 // Three u32 per pixel: the height of the plane at the pixel, an i32 in 1/256 px; the slopes, along x in the lower half
 // and along y in the upper half, in the units of STEEPEST; the mean colour, red in the lowest byte, then green and blue,
-// with SMALL where the surface is small.
+// with SMALL where the surface is small and DOUBTFUL where the pixel is doubtful.
 // Behind them the picture, which is read: one u32 per pixel, as the mean colour.
 //
 // Only pixels that have a disparity and, of eight neighbours, one without, are written: the others end no ray. Those of
@@ -98,14 +109,15 @@ fn samples_inside(place: i32, length: u32) -> i32 {
 struct Tangent {
     height: i32,
     slopes: vec2<i32>,
-    // SMALL or 0.
+    // SMALL, DOUBTFUL, both or 0.
     mark: u32,
 }
 
 fn tangent(x: i32, y: i32, own: i32) -> Tangent {
-    // Sums over the samples: number, u, v, u u, u v, v v, e, u e, v e, where u and v count columns and rows in steps,
+    // Sums over the samples: number, u, v, u u, u v, v v, e, u e, v e, and the number with a disparity, where u and v count columns and rows in steps,
     // and e is the disparity less the pixel's. Each row is summed first, with constant u.
     var n = 0;
+    var known = 0;
     var first = vec3<i32>(0);
     var squares = vec3<i32>(0);
     var moments = vec2<i32>(0);
@@ -119,6 +131,7 @@ fn tangent(x: i32, y: i32, own: i32) -> Tangent {
             let disparity = disparity_at(x + STEP * (i - STEPS), y + STEP * v);
             let e = disparity - own;
             let counts = (disparity != NONE) & (abs(e) <= TOLERANCE);
+            known += select(0, 1, disparity != NONE);
             row_n += select(0, 1, counts);
             row_u += select(0, i - STEPS, counts);
             row_uu += select(0, (i - STEPS) * (i - STEPS), counts);
@@ -131,7 +144,10 @@ fn tangent(x: i32, y: i32, own: i32) -> Tangent {
         moments += vec2<i32>(row_ue, v * row_e);
     }
     let inside = samples_inside(x, params.width) * samples_inside(y, params.height);
-    let mark = select(0u, SMALL, SMALL_SHARE * n < inside);
+    let is_speck = (SPECK_SHARE * n < inside) & (KNOWN_SHARE * known < inside);
+    let is_at_end = (own <= params.low_end) | (own >= params.high_end);
+    let is_doubtful = is_speck | (is_at_end & (KNOWN_SHARE * n < inside));
+    let mark = select(0u, SMALL, SMALL_SHARE * n < inside) | select(0u, DOUBTFUL, is_doubtful);
     if n < LEAST_SAMPLES {
         return Tangent(own, vec2<i32>(0), mark);
     }

@@ -12,7 +12,10 @@ use crate::{
         Dense, FILLED, View,
         kernels::{
             fit::SLOPE_UNITS,
-            rays::{COLOUR, COLOUR_LIMIT, FARTHEST, HALVING_BITS, HIDING, LONGEST, OF_SMALL, PRICE_BITS, UNCLAIMED},
+            rays::{
+                COLOUR, COLOUR_LIMIT, FARTHEST, HALVING_BITS, HIDING, LONGEST, OF_DOUBTFUL, OF_SMALL, PASSED,
+                PRICE_BITS, UNCLAIMED,
+            },
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
@@ -34,14 +37,15 @@ pub struct Surroundings<'p> {
 }
 
 impl<'p> Surroundings<'p> {
-    /// The surroundings of the holes of a map of `view`; `picture` shows the colours of that view.
-    pub fn new(disparities: &DisparityMap, view: View, picture: &'p Plane<[u8; 4]>) -> Self {
-        Self { picture, tangents: tangents(disparities, picture), projected: project(disparities, view) }
+    /// The surroundings of the holes of a map of `view`, for which `range` was searched; `picture` shows the colours of that
+    /// view.
+    pub fn new(disparities: &DisparityMap, view: View, range: DisparityRange, picture: &'p Plane<[u8; 4]>) -> Self {
+        Self { picture, tangents: tangents(disparities, picture, range), projected: project(disparities, view) }
     }
 }
 
 /// Fills the holes of a map of `view` with disparities within `range`: the weighted median of the planes that a ray in
-/// each of eight directions reaches first. The weight of a plane halves with every 2^[`HALVING_BITS`] that its price
+/// each of eight directions reaches first, past up to [`PASSED`] doubtful pixels if another one follows behind a hole. The weight of a plane halves with every 2^[`HALVING_BITS`] that its price
 /// exceeds the least. Filled pixels get a confidence of 1 to [`FILLED`], less for a larger least price.
 pub fn fill(dense: &Dense, surroundings: &Surroundings<'_>, view: View, range: DisparityRange) -> Dense {
     let Size { width, height } = dense.disparity.size();
@@ -52,7 +56,7 @@ pub fn fill(dense: &Dense, surroundings: &Surroundings<'_>, view: View, range: D
         }
         let candidates: Vec<(i32, u32)> = DIRECTIONS
             .iter()
-            .filter_map(|&direction| reached(&dense.disparity, [x, y], direction))
+            .filter_map(|&direction| reached(&dense.disparity, &surroundings.tangents, [x, y], direction))
             .map(|source| candidate(surroundings, [x, y], source, view, range))
             .collect();
         let Some(least) = candidates.iter().map(|&(_, price)| price).min() else { return (NONE, 0) };
@@ -66,13 +70,30 @@ pub fn fill(dense: &Dense, surroundings: &Surroundings<'_>, view: View, range: D
     Dense { disparity: both.map(|&(disparity, _)| disparity), confidence: both.map(|&(_, confidence)| confidence) }
 }
 
-/// The first pixel with a disparity on the ray from a hole. Rays along the row have no limit.
-fn reached(disparities: &DisparityMap, [x, y]: [u32; 2], [i, j]: [i64; 2]) -> Option<[u32; 2]> {
+/// The source of the ray from a hole: the first pixel with a disparity that is not doubtful. Rays along the row have no limit.
+fn reached(
+    disparities: &DisparityMap,
+    tangents: &Plane<Option<Tangent>>,
+    [x, y]: [u32; 2],
+    [i, j]: [i64; 2],
+) -> Option<[u32; 2]> {
     let Size { width, height } = disparities.size();
     let longest = if j == 0 { width } else { LONGEST };
     let ray = (1..=i64::from(longest)).map(|steps| [i64::from(x) + steps * i, i64::from(y) + steps * j]);
     let inside = |&[x, y]: &[i64; 2]| (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
-    ray.take_while(inside).map(|[x, y]| [x as u32, y as u32]).find(|&[x, y]| disparities.get(x, y) != NONE)
+    let mut ray = ray.take_while(inside).map(|[x, y]| [x as u32, y as u32]);
+    let mut next = |is_hole: bool| ray.find(|&[x, y]| (disparities.get(x, y) == NONE) == is_hole);
+    let mut source = next(false)?;
+    for _ in 0..PASSED {
+        if !tangents.get(source[0], source[1]).is_some_and(|tangent| tangent.is_doubtful) {
+            break;
+        }
+        match next(true).and_then(|_| next(false)) {
+            Some(other) => source = other,
+            None => break,
+        }
+    }
+    Some(source)
 }
 
 /// Disparity and price of the plane of the pixel `source` at the pixel `hole`.
@@ -85,7 +106,7 @@ fn candidate(
 ) -> (i32, u32) {
     let way = [0, 1].map(|axis| hole[axis].wrapping_sub(source[axis]).cast_signed());
     let tangent = tangents.get(source[0], source[1]);
-    let Tangent { height, slopes, colour, is_small } = tangent.expect("a ray ends beside a hole");
+    let Tangent { height, slopes, colour, is_small, is_doubtful } = tangent.expect("a ray ends beside a hole");
     let change = (slopes[0] * way[0] + slopes[1] * way[1] + SLOPE_UNITS / 2).div_euclid(SLOPE_UNITS);
     let continued = height + change.clamp(-FARTHEST, FARTHEST);
     let disparity = continued.clamp(range.min * SCALE, range.last() * SCALE);
@@ -104,5 +125,6 @@ fn candidate(
         }
     };
     let of_small = if is_small { OF_SMALL } else { 0 };
-    (disparity, (price + penalty + of_small).cast_unsigned())
+    let of_doubtful = if is_doubtful { OF_DOUBTFUL } else { 0 };
+    (disparity, (price + penalty + of_small + of_doubtful).cast_unsigned())
 }

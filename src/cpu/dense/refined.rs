@@ -106,7 +106,7 @@ fn filtered(
     }
     if filters.fill {
         let picture = picture.unwrap_or_else(|| rgba(&luma));
-        let surroundings = Surroundings::new(&refined.disparity, config.reference, &picture);
+        let surroundings = Surroundings::new(&refined.disparity, config.reference, config.range, &picture);
         refined = fill(&refined, &surroundings, config.reference, config.range);
     }
     for &median in &filters.after {

@@ -1,8 +1,8 @@
 //! Tangent planes of the surfaces beside holes, from the definition.
 
 use crate::{
-    dense::kernels::fit::{LEAST_SAMPLES, ROUNDS, SMALL_SHARE, STEEPEST, STEP, STEPS, TOLERANCE},
-    disparity::{DisparityMap, NONE, SCALE},
+    dense::kernels::fit::{LEAST_SAMPLES, ROUNDS, SMALL_SHARE, SPECK_SHARES, STEEPEST, STEP, STEPS, TOLERANCE},
+    disparity::{DisparityMap, DisparityRange, NONE, SCALE},
     image::{Plane, Size},
 };
 
@@ -17,11 +17,16 @@ pub struct Tangent {
     pub colour: [u8; 3],
     /// Whether the surface is small: less than one in [`SMALL_SHARE`] of the samples around the pixel belong to it.
     pub is_small: bool,
+    /// Whether the pixel belongs to a speck amid holes, where less than one in [`SPECK_SHARES`] of the samples belong to the surface
+    /// and have a disparity; or is at an end of the searched range, unless that is 0, and less than the second share belongs to the
+    /// surface.
+    pub is_doubtful: bool,
 }
 
 /// The tangent planes of the pixels that have a disparity and, of their eight neighbours, one without: a plane is fitted where
 /// that is one of the neighbours left, right, above and below; a corner has its own disparity and colour, and slopes of 0.
-pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>) -> Plane<Option<Tangent>> {
+/// `range` was searched.
+pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>, range: DisparityRange) -> Plane<Option<Tangent>> {
     let around = |x: u32, y: u32| neighbours(disparities, x, y, 1, 1);
     let holes = |x, y| around(x, y).filter(|&(_, _, other)| other == NONE);
     Plane::from_fn(disparities.size(), |x, y| {
@@ -29,9 +34,11 @@ pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>) -> Plane<O
         if own == NONE || holes(x, y).next().is_none() {
             return None;
         }
+        let [is_small, is_speck, is_patch] = smallness(disparities, x, y);
+        let [low, high] = range.is_at_end(own);
+        let is_doubtful = is_speck || is_patch && (low && range.min != 0 || high);
         if holes(x, y).all(|(i, j, _)| i * j != 0) {
-            let is_small = is_small(disparities, x, y);
-            return Some(Tangent { height: own, slopes: [0, 0], colour: rgb(picture, x, y), is_small });
+            return Some(Tangent { height: own, slopes: [0, 0], colour: rgb(picture, x, y), is_small, is_doubtful });
         }
         let is_surface = |other: i32| other != NONE && (other - own).abs() <= SCALE;
         let surface = around(x, y).filter(|&(_, j, other)| j == 0 && is_surface(other));
@@ -42,17 +49,20 @@ pub fn tangents(disparities: &DisparityMap, picture: &Plane<[u8; 4]>) -> Plane<O
             ((sum + count / 2) / count) as u8
         };
         let (height, slopes) = plane(disparities, x, y);
-        Some(Tangent { height, slopes, colour: [0, 1, 2].map(mean), is_small: is_small(disparities, x, y) })
+        Some(Tangent { height, slopes, colour: [0, 1, 2].map(mean), is_small, is_doubtful })
     })
 }
 
-/// Whether the surface at a pixel is small.
-fn is_small(disparities: &DisparityMap, x: u32, y: u32) -> bool {
+/// Whether the surface at a pixel is small, whether it is a speck amid holes, and whether it is a patch, which at an end of the range
+/// is doubtful.
+fn smallness(disparities: &DisparityMap, x: u32, y: u32) -> [bool; 3] {
     let own = disparities.get(x, y);
-    let samples = neighbours(disparities, x, y, STEPS, STEP);
-    let (surface, all) =
-        samples.fold((0, 0), |(surface, all), (.., other)| (surface + i32::from(is_sample(other, own)), all + 1));
-    SMALL_SHARE * surface < all
+    let samples: Vec<i32> = neighbours(disparities, x, y, STEPS, STEP).map(|(.., other)| other).collect();
+    let count = |counts: &dyn Fn(i32) -> bool| samples.iter().filter(|&&other| counts(other)).count() as i32;
+    let (surface, known) = (count(&|other| is_sample(other, own)), count(&|other| other != NONE));
+    let under = |count: i32, share: i32| share * count < samples.len() as i32;
+    let is_speck = under(surface, SPECK_SHARES[0]) && under(known, SPECK_SHARES[1]);
+    [under(surface, SMALL_SHARE), is_speck, under(surface, SPECK_SHARES[1])]
 }
 
 /// Whether the disparity `other` belongs to the surface of a pixel of the disparity `own`.

@@ -31,6 +31,10 @@ pub mod rays {
     pub const HIDING: i32 = 256;
     /// Price of a small surface.
     pub const OF_SMALL: i32 = 128;
+    /// Price of a doubtful pixel.
+    pub const OF_DOUBTFUL: i32 = 1024;
+    /// Largest number of doubtful pixels that a ray passes.
+    pub const PASSED: i32 = 8;
     /// Base-2 logarithm of the price that halves the weight.
     pub const HALVING_BITS: u32 = 3;
     /// Base-2 logarithm of the price that lowers the confidence by 1.
@@ -84,6 +88,9 @@ impl Fill {
                 ("HIDING", rays::HIDING.into()),
                 ("OF_SMALL", rays::OF_SMALL.into()),
                 ("SMALL", fit::SMALL.into()),
+                ("OF_DOUBTFUL", rays::OF_DOUBTFUL.into()),
+                ("DOUBTFUL", fit::DOUBTFUL.into()),
+                ("PASSED", rays::PASSED.into()),
                 ("HALVING_BITS", rays::HALVING_BITS.into()),
                 ("FILLED", FILLED.into()),
                 ("PRICE_BITS", rays::PRICE_BITS.into()),

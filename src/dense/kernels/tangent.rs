@@ -1,7 +1,7 @@
 //! Tangent planes of the surfaces beside holes. `shaders/dense/tangent.wgsl`.
 
 use crate::{
-    disparity::{NONE, SCALE},
+    disparity::{AT_END, DisparityRange, NONE, SCALE},
     gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
     image::Size,
 };
@@ -24,6 +24,11 @@ pub mod fit {
     pub const SMALL_SHARE: i32 = 12;
     /// Mark of a small surface, above its colour.
     pub const SMALL: u32 = 1 << 24;
+    /// Samples inside the picture per sample of a surface that is just no speck, and per sample with a disparity; the latter also per
+    /// sample of a surface at an end of the range that is just not doubtful.
+    pub const SPECK_SHARES: [i32; 2] = [8, 4];
+    /// Mark of a doubtful pixel, above its colour.
+    pub const DOUBTFUL: u32 = 1 << 25;
     /// Largest difference of a sample from the pixel's disparity, in 1/256 px.
     pub const TOLERANCE: i32 = 2 * SCALE;
     /// Units of a slope per 1/256 px per pixel.
@@ -38,6 +43,8 @@ shader_struct! {
     struct Params {
         width: u32,
         height: u32,
+        low_end: i32,
+        high_end: i32,
     }
 }
 
@@ -65,6 +72,9 @@ impl Tangents {
                 ("LEAST_SAMPLES", fit::LEAST_SAMPLES.into()),
                 ("SMALL_SHARE", fit::SMALL_SHARE.into()),
                 ("SMALL", fit::SMALL.into()),
+                ("SPECK_SHARE", fit::SPECK_SHARES[0].into()),
+                ("KNOWN_SHARE", fit::SPECK_SHARES[1].into()),
+                ("DOUBTFUL", fit::DOUBTFUL.into()),
                 ("TOLERANCE", fit::TOLERANCE.into()),
                 ("STEEPEST_X", fit::STEEPEST[0].into()),
                 ("STEEPEST_Y", fit::STEEPEST[1].into()),
@@ -92,15 +102,19 @@ impl Tangents {
     }
 
     /// Fits planes to the `disparities` beside holes, which `bitmaps` mark; the picture behind the `tangents` has the
-    /// colours of the same pixels.
+    /// colours of the same pixels. Disparities at an end of the searched `range` are doubtful.
     pub fn prepare(
         &self,
         Size { width, height }: Size,
+        range: DisparityRange,
         disparities: &WordTexture,
         bitmaps: &wgpu::Buffer,
         tangents: &wgpu::Buffer,
     ) -> Dispatch {
         let groups = [width.div_ceil(32 * TILE[0]), height.div_ceil(TILE[1]), 1];
-        self.0.dispatch(&Params { width, height }, &[&disparities.view, bitmaps, tangents], groups)
+        // No view sees farther than 0: there nothing goes on.
+        let low_end = if range.min == 0 { NONE } else { SCALE * range.min + AT_END };
+        let params = Params { width, height, low_end, high_end: SCALE * range.last() - AT_END };
+        self.0.dispatch(&params, &[&disparities.view, bitmaps, tangents], groups)
     }
 }

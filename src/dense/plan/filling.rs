@@ -64,7 +64,7 @@ impl<'a> Filling<'a> {
         plan.run(project.prepare(size, view, disparities, projected));
         plan.fill_texture(disparities, with_holes);
         plan.run(bitmap.prepare(size, with_holes, bitmaps));
-        plan.run(tangent.prepare(size, with_holes, bitmaps, tangents));
+        plan.run(tangent.prepare(size, range, with_holes, bitmaps, tangents));
         plan.run(fill.prepare(range, view, Surroundings { tangents, projected, bitmaps }, map));
     }
 }

@@ -128,3 +128,34 @@ fn a_speck_is_not_drawn_out() {
         assert_eq!(disparities[y * 120 + x], 9 * 256, "column {x}, row {y}");
     }
 }
+
+#[test]
+fn rays_pass_what_is_doubtful() {
+    // Two specks between a hole and a surface, and one beside the picture's edge, farther from the surface than the hole.
+    let speck =
+        |x: u32, y: u32| [20, 50, 80].iter().any(|&first| (first..first + 4).contains(&x)) && (28..32).contains(&y);
+    let specks = Plane::from_fn((120, 60), |x, y| match x {
+        100.. => 9 * 256,
+        _ if speck(x, y) => 5 * 256,
+        _ => NONE,
+    });
+    let (disparities, _) = filled(&plain(specks.clone()));
+    for x in [0, 30, 49, 60, 79, 90] {
+        assert_eq!(disparities[30 * 120 + x], 9 * 256, "column {x}");
+    }
+    // Where nothing else is known, a speck is what is known.
+    let alone = specks.map(|&disparity| if disparity == 9 * 256 { NONE } else { disparity });
+    let (disparities, confidences) = filled(&plain(alone));
+    assert_eq!((disparities[30 * 120 + 30], confidences[30 * 120 + 30]), (5 * 256, 1));
+    // Bars at the end of the range that was searched, before a surface that is not.
+    let end = Plane::from_fn((120, 60), |x, _| match x {
+        30..38 => 58 * 256,
+        60..68 => 59 * 256,
+        100.. => 9 * 256,
+        _ => NONE,
+    });
+    let (disparities, _) = filled(&FillTrial { range: DisparityRange::new(0, 60).unwrap(), ..plain(end.clone()) });
+    assert_eq!([45, 95].map(|x| disparities[30 * 120 + x]), [9 * 256; 2]);
+    let (disparities, _) = filled(&FillTrial { range: DisparityRange::new(0, 99).unwrap(), ..plain(end) });
+    assert_eq!([45, 95].map(|x| disparities[30 * 120 + x]), [58 * 256, 9 * 256]);
+}

@@ -43,6 +43,11 @@ fn picture(size: Size, dice: &mut Dice) -> Plane<[u8; 4]> {
     Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
 }
 
+/// Draws a range of disparities.
+fn range(dice: &mut Dice) -> DisparityRange {
+    DisparityRange { min: dice.between(-20, 0), count: 1 + dice.below(60) }
+}
+
 /// The words of projected disparities.
 fn projected_words(projected: &DisparityMap) -> Vec<u32> {
     projected.data().iter().map(|disparity| disparity.cast_unsigned() ^ 1 << 31).collect()
@@ -53,7 +58,10 @@ fn tangent_words(tangents: &Plane<Option<Tangent>>) -> Vec<u32> {
     let slopes = |[x, y]: [i32; 2]| x.cast_unsigned() & 0xffff | y.cast_unsigned() << 16;
     let colour = |[red, green, blue]: [u8; 3]| u32::from_le_bytes([red, green, blue, 0]);
     let words = |plane: &Option<Tangent>| {
-        let mark = |plane: &Tangent| if plane.is_small { fit::SMALL } else { 0 };
+        let mark = |plane: &Tangent| {
+            let of = |is_marked: bool, mark: u32| if is_marked { mark } else { 0 };
+            of(plane.is_small, fit::SMALL) | of(plane.is_doubtful, fit::DOUBTFUL)
+        };
         plane.map_or([0; 3], |plane| {
             [plane.height.cast_unsigned(), slopes(plane.slopes), colour(plane.colour) | mark(&plane)]
         })
@@ -148,17 +156,19 @@ pub struct TangentTrial {
     pub disparities: DisparityMap,
     /// Colours of its view.
     pub picture: Plane<[u8; 4]>,
+    /// The range that was searched.
+    pub range: DisparityRange,
 }
 
 impl TangentTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self { disparities: surfaces(size, dice), picture: picture(size, dice) }
+        Self { disparities: surfaces(size, dice), picture: picture(size, dice), range: range(dice) }
     }
 }
 
 impl Trial for TangentTrial {
     fn parameters(&self) -> String {
-        String::new()
+        format!("{:?}", self.range)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -174,14 +184,14 @@ impl Trial for TangentTrial {
         // Pixels beside no hole stay as they are, and so does the picture.
         let before = vec![0; 3 * size.pixels() as usize];
         let to = bench.upload(&[before, picture_words(&self.picture)].concat())?;
-        let dispatch = Tangents::new(bench.gpu).prepare(size, &from, &marks, &to);
+        let dispatch = Tangents::new(bench.gpu).prepare(size, self.range, &from, &marks, &to);
         bench.run(|encoder| dispatch.record(encoder));
         let words = bench.download::<u32>(&to)?;
         Ok(tangent_arrays(&words[..3 * size.pixels() as usize]))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(tangent_arrays(&tangent_words(&tangents(&self.disparities, &self.picture))))
+        Ok(tangent_arrays(&tangent_words(&tangents(&self.disparities, &self.picture, self.range))))
     }
 }
 
@@ -208,12 +218,12 @@ impl FillTrial {
         let disparity = surfaces(size, dice);
         let measured = u32::from(u8::MAX - FILLED);
         let confidence = disparity.map(|&d| if d == NONE { 0 } else { FILLED + 1 + dice.below(measured) as u8 });
-        let range = DisparityRange { min: dice.between(-20, 0), count: 1 + dice.below(60) };
+        let range = range(dice);
         Self { dense: Dense { disparity, confidence }, picture: picture(size, dice), view: dice.view(), range }
     }
 
     fn surroundings(&self) -> Surroundings<'_> {
-        Surroundings::new(&self.dense.disparity, self.view, &self.picture)
+        Surroundings::new(&self.dense.disparity, self.view, self.range, &self.picture)
     }
 }
 
