@@ -146,7 +146,7 @@ fn at_end(config: &Config, outcome: &Outcome) -> Option<String> {
     let seen_there = end == 0 && outcome.seeding.range.is_ok();
     let named = config.range.is_some() || config.least == Some(range.min);
     (share > USUAL && !seen_there && (named || outcome.trust >= TRUSTED)).then(|| {
-        format!("{share:.0} % of the measured disparities lie at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
+        format!("{share:.0} % of the disparities lie at {end} px, an end of the range: name a wider one with --min-disparity and --disparities")
     })
 }
 

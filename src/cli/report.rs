@@ -59,6 +59,7 @@ impl CompletedJob {
             "not_trusted": not_trusted.as_ref().map(|doubt| &doubt.reason),
             "coverage": coverage(&outcome.dense.disparity),
             "measured": outcome.dense.measured(),
+            "filled": outcome.dense.filled(),
             "seconds": seconds,
             "warnings": warnings,
         })

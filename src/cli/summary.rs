@@ -1,6 +1,7 @@
 //! The summary of a run that is printed on the terminal.
 
 use hsad::{
+    dense::Dense,
     disparity::coverage,
     image::Size,
     pipeline::{RangeSource, RectifiedPair},
@@ -8,6 +9,9 @@ use hsad::{
 };
 
 use super::{doubts::span, job::CompletedJob, output::Output, rectification};
+
+/// Smallest share of pixels that is told, 0 to 1: less is 0.0 %.
+const LEAST_SHARE: f64 = 0.0005;
 
 impl CompletedJob {
     /// Device, stretch of the samples, range, matches, rectification, trust, coverage and time, one line each.
@@ -46,14 +50,33 @@ impl CompletedJob {
         text += &self.rectified.as_ref().map(rectified).unwrap_or_default();
         line(&mut text, if self.rectified.is_some() { "rows" } else { "rectified" }, rows);
         line(&mut text, "trust", format!("{:.2} of 1", outcome.trust));
-        let share = 100.0 * coverage(&outcome.dense.disparity);
-        let measured = 100.0 * outcome.dense.measured();
-        let filled =
-            if measured < share { format!(", {measured:.1} % measured and the rest filled") } else { "".into() };
-        line(&mut text, "coverage", format!("{share:.1} % of {width}x{height} pixels{filled}"));
+        let share = coverage(&outcome.dense.disparity);
+        line(
+            &mut text,
+            "coverage",
+            format!("{} of {width}x{height} pixels{}", percent(share), parts(share, &outcome.dense)),
+        );
         line(&mut text, "time", format!("{:.2} s ({})", total.as_secs_f64(), steps.join(", ")));
         text
     }
+}
+
+/// How the pixels with a disparity got it, whose share is `coverage`: of doubtful ones the disparity lies at an end of the range,
+/// or the view is constant around the pixel.
+fn parts(coverage: f64, dense: &Dense) -> String {
+    let (measured, filled) = (dense.measured(), dense.filled());
+    let doubtful = coverage - measured - filled;
+    match [filled, doubtful].map(|share| share >= LEAST_SHARE) {
+        [false, false] => "".into(),
+        [true, false] => format!(", {} measured and the rest filled", percent(measured)),
+        [false, true] => format!(", {} measured and the rest doubtful", percent(measured)),
+        [true, true] => format!(", {} measured, {} filled and the rest doubtful", percent(measured), percent(filled)),
+    }
+}
+
+/// A share of 0 to 1 in per cent.
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
 }
 
 /// What was done to bring rows to correspond, and the size of the pictures.

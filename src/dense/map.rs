@@ -21,4 +21,11 @@ impl Dense {
         let confidences = self.confidence.data();
         confidences.iter().filter(|&&confidence| confidence > FILLED).count() as f64 / confidences.len() as f64
     }
+
+    /// Share of pixels with a filled disparity, 0 to 1.
+    pub fn filled(&self) -> f64 {
+        let confidences = self.confidence.data();
+        confidences.iter().filter(|confidence| (1..=FILLED).contains(confidence)).count() as f64
+            / confidences.len() as f64
+    }
 }

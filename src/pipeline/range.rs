@@ -2,14 +2,11 @@
 
 use crate::{
     config::Config,
-    dense::{Dense, FILLED},
-    disparity::{DisparityRange, NONE, SCALE},
+    disparity::{DisparityMap, DisparityRange, NONE},
     error::{Error, Result},
     seeding::{FoundRange, RangeEnd, Seeding, ThinSupport},
 };
 
-/// Largest distance of a disparity from an end of the range that counts as the end, in 1/256 px.
-const AT_END: i32 = 3 * SCALE / 2;
 /// Largest share of the map's disparities at an end of a range that holds the scene, 0 to 1. Ten sound scenes have at most
 /// 0.003; a range that cuts 5 % of the truth has at least 0.13.
 const MOST_AT_END: f32 = 0.02;
@@ -52,22 +49,13 @@ pub(super) fn range_to_search(config: &Config, seeding: &Seeding, width: u32) ->
     })
 }
 
-/// Whether a disparity lies within 1.5 px of the smallest and of the largest disparity of `range`.
-pub(super) fn is_at_end(disparity: i32, range: DisparityRange) -> [bool; 2] {
-    let known = disparity != NONE;
-    let (low, high) = (SCALE * range.min + AT_END, SCALE * range.last() - AT_END);
-    [known && disparity <= low, known && disparity >= high]
-}
-
-/// The shares of the measured disparities within 1.5 px of the smallest and of the largest disparity
-/// of `range`, 0 to 1.
-pub(super) fn at_ends(dense: &Dense, range: DisparityRange) -> [f32; 2] {
-    let confidences = dense.confidence.data().iter();
-    let measured = dense.disparity.data().iter().zip(confidences).filter(|&(_, &confidence)| confidence > FILLED);
+/// The shares of the map's disparities within 1.5 px of the smallest and of the largest disparity of `range`, 0 to 1.
+pub(super) fn at_ends(map: &DisparityMap, range: DisparityRange) -> [f32; 2] {
+    let known = map.data().iter().filter(|&&disparity| disparity != NONE);
     let (mut count, mut ends) = (0, [0; 2]);
-    for (&disparity, _) in measured {
+    for &disparity in known {
         count += 1;
-        let [low, high] = is_at_end(disparity, range);
+        let [low, high] = range.is_at_end(disparity);
         ends[0] += u32::from(low);
         ends[1] += u32::from(high);
     }
@@ -126,19 +114,15 @@ fn not_below(found: &FoundRange, least: i32, share: f32) -> Result<DisparityRang
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Plane;
+    use crate::{disparity::SCALE, image::Plane};
 
     #[test]
     fn ends_by_hand() {
         let range = DisparityRange::inclusive(2, 9).unwrap();
-        // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not; the last one is filled.
-        let dense = Dense {
-            disparity: Plane::new((7, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920, 2 * SCALE]).unwrap(),
-            confidence: Plane::new((7, 1), vec![0, 16, 16, 16, 16, 255, FILLED]).unwrap(),
-        };
-        assert_eq!(at_ends(&dense, range), [0.4, 0.2]);
-        let nothing = Dense { confidence: dense.confidence.map(|_| FILLED), ..dense };
-        assert_eq!(at_ends(&nothing, range), [0.0, 0.0]);
+        // 3.5 and 7.5 px are at an end, 3.6 and 7.4 are not.
+        let map = Plane::new((6, 1), vec![NONE, 2 * SCALE, 896, 921, 1894, 1920]).unwrap();
+        assert_eq!(at_ends(&map, range), [0.4, 0.2]);
+        assert_eq!(at_ends(&map.map(|_| NONE), range), [0.0, 0.0]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub(super) struct Found {
     /// The range, without what the width of the views rules out.
     pub range: DisparityRange,
     pub dense: Dense,
-    /// Shares of the measured disparities at the ends of the range.
+    /// Shares of the map's disparities at the ends of the range.
     pub at_ends: [f32; 2],
 }
 
@@ -72,6 +72,6 @@ impl Search<'_, '_> {
             }
         };
         let dense = views.confirmed(dense, config.reference);
-        Ok(Found { range, at_ends: at_ends(&dense, range), dense })
+        Ok(Found { range, at_ends: at_ends(&dense.disparity, range), dense })
     }
 }

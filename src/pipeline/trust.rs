@@ -4,7 +4,6 @@
 //! wrong ranges, and other right views. Maps with under 10 % of the pixels wrong by over 2 px have a trust of at least 0.5, maps
 //! with over 30 % wrong less: docs/trust.md.
 
-use super::range::is_at_end;
 use crate::{
     config::{Config, Method},
     dense::{Aggregation, Compared, Dense, FILLED, View},
@@ -105,7 +104,7 @@ pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
 pub(super) fn without_ends(mut dense: Dense, range: DisparityRange, ends_at_zero: bool) -> Dense {
     let Size { width, height } = dense.disparity.size();
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let [low, high] = is_at_end(dense.disparity.get(x, y), range);
+        let [low, high] = range.is_at_end(dense.disparity.get(x, y));
         if low && !ends_at_zero || high {
             dense.confidence.set(x, y, 0);
         }
@@ -134,8 +133,12 @@ pub(super) fn in_proportion(mut dense: Dense, trust: f32) -> Dense {
         let factor = (256.0 * trust / TRUSTED) as u32;
         for value in dense.confidence.data_mut() {
             let lowered = (u32::from(*value) * factor / 256) as u8;
-            // A measured pixel stays above the filled ones.
-            *value = if *value > FILLED { lowered.max(FILLED + 1) } else { lowered };
+            // Measured pixels stay above filled ones, and filled ones above those of which nothing is known.
+            *value = match *value {
+                0 => 0,
+                1..=FILLED => lowered.max(1),
+                _ => lowered.max(FILLED + 1),
+            };
         }
     }
     dense
@@ -194,6 +197,7 @@ mod tests {
         assert_eq!(in_proportion(map(200), 0.25).confidence.get(0, 0), 100);
         assert_eq!(in_proportion(map(200), 0.0).confidence.get(0, 0), FILLED + 1);
         assert_eq!(in_proportion(map(FILLED), 0.25).confidence.get(0, 0), FILLED / 2);
+        assert_eq!([0, 1, FILLED].map(|value| in_proportion(map(value), 0.0).confidence.get(0, 0)), [0, 1, 1]);
     }
 
     #[test]

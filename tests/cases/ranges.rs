@@ -96,11 +96,11 @@ fn a_range_that_cuts_the_scene_is_told() {
     for (args, end) in [
         (
             ["--min-disparity", "0", "--disparities", "40"],
-            " % of the measured disparities lie at 39 px, an end of the range",
+            " % of the disparities lie at 39 px, an end of the range",
         ),
         (
             ["--min-disparity", "24", "--disparities", "48"],
-            " % of the measured disparities lie at 24 px, an end of the range",
+            " % of the disparities lie at 24 px, an end of the range",
         ),
     ] {
         pair.matched(&args).ends(4, &["warning: ", end, "name a wider one"]).judges(&pair.truth);
