@@ -33,6 +33,8 @@ impl NotTrusted {
             "nothing tells whether the rows of the views correspond"
         } else if outcome.seeding.seeds.len() < 20 {
             "hardly any interest point was found in both views"
+        } else if outcome.repetition > 4 {
+            "disparities come in steps of many pixels"
         } else {
             "the views correspond in too little of the picture"
         };
@@ -40,7 +42,7 @@ impl NotTrusted {
     }
 }
 
-/// Warnings about a result: identical views, raw mosaics, weak interest points left out, a guessed or cut disparity range, a distorted lens, matches outside the range,
+/// Warnings about a result: identical views, raw mosaics, pictures enlarged without interpolation, weak interest points left out, a guessed or cut disparity range, a distorted lens, matches outside the range,
 /// surfaces at an end of the range, and a difference in brightness.
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -48,6 +50,7 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         warnings.push("both views are the same picture, which shows no depth".into());
     }
     warnings.extend(mosaics(outcome.mosaics));
+    warnings.extend(repetition(outcome.repetition));
     warnings.extend(left_out(outcome));
     if let RangeSource::Fallback(thin) = outcome.range_source {
         let reason = in_options(&Error::from(thin));
@@ -75,6 +78,16 @@ fn mosaics(found: [bool; 2]) -> Option<String> {
     Some(format!(
         "{views}: the luma of the colours was matched; demosaic {them} to colour pictures for a sharper result"
     ))
+}
+
+/// A warning if views were enlarged by repeating pixels.
+fn repetition(factor: u32) -> Option<String> {
+    (factor > 1).then(|| {
+        format!(
+            "both views were enlarged by {factor} without interpolation, so that disparities come in steps of {factor} px: match the \
+             pictures in their own size"
+        )
+    })
 }
 
 /// A warning if a view has more interest points than are kept.

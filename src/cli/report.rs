@@ -32,6 +32,7 @@ impl CompletedJob {
             "width": job.left.width(),
             "height": job.left.height(),
             "stretch": job.stretch.map(|Stretch { low, high }| json!({ "low": number(low), "high": number(high) })),
+            "repetition": outcome.repetition,
             "mosaics": { "left": outcome.mosaics[0], "right": outcome.mosaics[1] },
             "device": device(backend),
             "parameters": parameters(&job.config, job.strongest),

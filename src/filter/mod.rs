@@ -2,6 +2,7 @@
 //! bytes on every machine: only `f64` arithmetic and functions of `libm` are used, which are arithmetic themselves.
 
 mod gaussian;
+mod repetition;
 mod resample;
 
 use rayon::prelude::*;
@@ -9,6 +10,7 @@ use rayon::prelude::*;
 use crate::image::{Plane, Size};
 
 pub use gaussian::gaussian;
+pub(crate) use repetition::repetition;
 pub use resample::{about_centre, resample};
 
 /// Rounds to the nearest grey value, halves up, and clamps to 0 to 255.

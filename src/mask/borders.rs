@@ -10,6 +10,8 @@ const TOLERANCE: u8 = 8;
 const EQUAL: usize = 50;
 /// Largest grey value that is black, and smallest share of a black border's pixels that are, in per cent.
 const BLACK: (u8, usize) = (4, 80);
+/// Smallest share of the pixels of a dark surround that are at most [`TOLERANCE`], in per cent.
+const DARK: usize = 90;
 /// Smallest area of a border, in pixels, and the share of the picture's pixels that it is at least, as a divisor.
 const AREA: (usize, usize) = (64, 500);
 /// Smallest share of a side of the picture along which a border without a corner lies, as a divisor: a black object in
@@ -23,21 +25,30 @@ const SEAM: i64 = 2;
 /// A border is a connected black area that lies along a third of a side of the picture, or holds a corner where another
 /// corner is held as well, as by the round mask of an endoscope: one black corner is an object. An area of another grey
 /// value must fill rows or columns or have straight edges, since an overexposed sky is white in any shape. A mask that
-/// would leave nothing is returned as it was.
+/// would leave nothing is returned as it was. Dark areas with the noise of a sensor are a border where all four corners lie in
+/// such areas or in borders, as around the round picture of an endoscope.
 pub(crate) fn without_borders(luma: &Luma, mask: Mask) -> Mask {
     let size = luma.size();
     let mut reached = luma.map(|_| false);
-    let mut constant = Vec::new();
+    let (mut constant, mut dark) = (Vec::new(), Vec::new());
     for (x, y) in edge(size) {
         if !reached.get(x, y) {
             let area = constant_area(luma, (x, y), &mut reached);
             if looks_like_a_border(luma, &area) {
                 constant.push(area);
+            } else if is_dark(luma, &area) {
+                dark.push(area);
             }
         }
     }
-    let held: usize = constant.iter().map(|area| corners(area, size)).sum();
+    let held_by = |areas: &[Vec<(u32, u32)>]| areas.iter().map(|area| corners(area, size)).sum::<usize>();
+    let held = held_by(&constant);
+    if held + held_by(&dark) < 4 {
+        dark.clear();
+    }
     let mut bordered = mask.clone();
+    dark.retain(|area| corners(area, size) > 0);
+    dark.into_iter().flatten().for_each(|place| remove(&mut bordered, place));
     for area in constant {
         if lies_along_a_side(&area, size) || held >= 2 && corners(&area, size) > 0 {
             area.into_iter().for_each(|place| remove(&mut bordered, place));
@@ -71,9 +82,20 @@ fn constant_area(luma: &Luma, start: (u32, u32), reached: &mut crate::image::Pla
     area
 }
 
+/// Whether an area is large.
+fn is_large(luma: &Luma, area: &[(u32, u32)]) -> bool {
+    area.len() >= AREA.0.max(luma.data().len() / AREA.1)
+}
+
+/// Whether an area is large and as dark as no light leaves it.
+fn is_dark(luma: &Luma, area: &[(u32, u32)]) -> bool {
+    let dark = area.iter().filter(|&&(x, y)| luma.get(x, y) <= TOLERANCE).count();
+    is_large(luma, area) && 100 * dark >= DARK * area.len()
+}
+
 /// Whether an area is large, constant, and black or of straight edges.
 fn looks_like_a_border(luma: &Luma, area: &[(u32, u32)]) -> bool {
-    if area.len() < AREA.0.max(luma.data().len() / AREA.1) {
+    if !is_large(luma, area) {
         return false;
     }
     let black = area.iter().filter(|&&(x, y)| luma.get(x, y) <= BLACK.0).count();
@@ -223,5 +245,18 @@ mod tests {
         let noisy = picture(0, |x, _| x < 20).map(|&grey| if grey == 0 { 0 } else { grey });
         let noise = Luma::from_fn((120, 90), |x, y| noisy.get(x, y).saturating_add(((x * 31 + y * 17) % 4) as u8));
         assert_eq!(unseen(&noise), 0, "a dark wall with the noise of a sensor");
+    }
+
+    #[test]
+    fn a_dark_surround_with_noise_is_removed() {
+        let noise = |x: u32, y: u32| (x.wrapping_mul(0x9E37_79B9) ^ y.wrapping_mul(0x85EB_CA6B)).rotate_left(9) >> 24;
+        let noisy = |is_dark: fn(i64, i64) -> bool| {
+            let bright = picture(0, is_dark);
+            Luma::from_fn((120, 90), |x, y| bright.get(x, y).max((noise(x, y) % 7) as u8))
+        };
+        let ring = noisy(|x, y| (x - 60).pow(2) + (y - 45).pow(2) > 40 * 40);
+        assert_eq!(unseen(&ring), unseen(&picture(0, |x, y| (x - 60).pow(2) + (y - 45).pow(2) > 40 * 40)));
+        // A night sky holds two corners.
+        assert_eq!(unseen(&noisy(|x, y| y < 30 + x % 9)), 0);
     }
 }

@@ -23,7 +23,7 @@ use web_time::{Duration, Instant};
 
 use range::range_to_search;
 use search::{Found, Search};
-use trust::{in_proportion, shows_no_parallax, trust, without_constant, without_ends};
+use trust::{in_proportion, of_steps, shows_no_parallax, trust, without_constant, without_ends};
 use views::Views;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -35,6 +35,7 @@ use crate::{
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Detected, Feature, FeatureConfig},
+    filter::repetition,
     image::{Plane, Size},
     io::Picture,
     names::names,
@@ -84,6 +85,9 @@ pub struct Outcome {
     /// Whether the left and the right view are raw mosaics of a Bayer colour filter array; the luma of their colours was
     /// matched then.
     pub mosaics: [bool; 2],
+    /// Factor by which both views were enlarged without interpolation, by repeating pixels, so that disparities come in such steps; 1
+    /// for other views.
+    pub repetition: u32,
     /// Disparities and confidences of the reference view; confidence 0 also where a disparity lies at an end of the range or the view is
     /// constant around the pixel.
     pub dense: Dense,
@@ -210,6 +214,8 @@ async fn run_on(
         None => Views::new(backend, [left, right], config).await?,
     };
     let size = views.size();
+    let (left, right) = views.pair.views();
+    let repetition = repetition(left).min(repetition(right));
 
     enter(Some(Step::Features));
     let factor = reduction(size);
@@ -250,7 +256,7 @@ async fn run_on(
     let dense = without_ends(dense, range, range_source.ends_at_zero());
     let (left, right) = views.pair.views();
     let dense = without_constant(dense, if config.reference == View::Left { left } else { right });
-    let trust = trust(&dense, config, &seeding);
+    let trust = trust(&dense, config, &seeding) * of_steps(repetition);
     let dense = in_proportion(dense, trust);
     enter(None);
     Ok(Some(Outcome {
@@ -265,6 +271,7 @@ async fn run_on(
         brightness,
         masks: views.masks,
         mosaics: views.mosaics,
+        repetition,
         dense,
         times,
     }))

@@ -41,6 +41,8 @@ const NOISE: (f32, f32) = (1.0, 0.9);
 /// An object before a background at infinity: smallest magnitude of its disparities in pixels, their smallest confidence, and
 /// largest share of such pixels without an object, 0 to 1.
 const FAR: (f32, u8, f32) = (2.0, 128, 0.002);
+/// Smallest share of measured pixels that show that there is no parallax, 0 to 1.
+const SEEN: f64 = 0.05;
 /// Largest difference of the shares of disparities above and below [`NOISE`], 0 to 1: noise has up to 0.026, an object on a
 /// twentieth of the picture 0.04.
 const IMBALANCE: f32 = 0.03;
@@ -78,6 +80,11 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     (evidence / full).min(1.0)
 }
 
+/// Part of a map's disparities that can be right to 2 px where they come in steps of so many pixels, 0 to 1.
+pub(super) fn of_steps(step: u32) -> f32 {
+    (4.0 / step as f32).min(1.0)
+}
+
 /// Whether a map shows no parallax: its measured disparities are 0 but for noise, which spreads to both sides alike.
 pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
     let [mut measured, mut at_zero, mut near_zero, mut above, mut below, mut sure] = [0_u64; 6];
@@ -94,7 +101,8 @@ pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
         sure += u64::from(disparity.abs() > FAR.0 && confidence >= FAR.1);
     }
     let share = |count: u64| count as f32 / measured.max(1) as f32;
-    sure as f32 <= FAR.2 * measured as f32
+    measured as f64 >= SEEN * dense.disparity.data().len() as f64
+        && sure as f32 <= FAR.2 * measured as f32
         && share(at_zero) >= 0.5
         && share(near_zero) >= NOISE.1
         && (share(above) - share(below)).abs() <= IMBALANCE
@@ -201,6 +209,11 @@ mod tests {
     }
 
     #[test]
+    fn steps_of_up_to_four_pixels_are_right_to_two() {
+        assert_eq!([1, 4, 5, 8].map(of_steps), [1.0, 1.0, 0.8, 0.5]);
+    }
+
+    #[test]
     fn parallax_is_what_noise_does_not_explain() {
         // Of 400 pixels with a disparity of a quarter of a pixel.
         let with = |others: &[(usize, i32)]| {
@@ -215,6 +228,13 @@ mod tests {
         // Noise within a pixel, and a few wrong pixels on both sides.
         assert!(with(&[(200, -SCALE)]) && !with(&[(201, -SCALE)]));
         assert!(with(&[(20, -SCALE - 1), (20, SCALE + 1)]) && !with(&[(21, -SCALE - 1), (20, SCALE + 1)]));
+        // Hardly anything measured shows nothing.
+        let part = |pixels: usize| {
+            let confidence =
+                Plane::from_fn((40, 10), |x, y| if y as usize * 40 + (x as usize) < pixels { 90 } else { FILLED });
+            shows_no_parallax(&Dense { disparity: Plane::filled((40, 10), 0), confidence })
+        };
+        assert!(part(20) && !part(19));
         // An object before a background at infinity, and the same with exchanged views.
         for side in [-9 * SCALE, 9 * SCALE] {
             assert!(with(&[(12, side)]) && !with(&[(13, side)]));

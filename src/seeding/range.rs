@@ -111,12 +111,14 @@ pub(super) fn disparity_range(
 ) -> std::result::Result<FoundRange, ThinSupport> {
     let seeds_extent = extent(supported);
     let thin = ThinSupport { seeds, supported: supported.len(), coverage: coarse.coverage() };
+    // A few seeds that lie farther apart than the usual disparities contradict each other, as those of unrelated views do.
+    let longest = (SPAN[1] - SPAN[0]) * width as f32;
     match (coarse.extent(), seeds_extent) {
         (Some(surfaces), extent) if coarse.coverage() >= COVERAGE => {
             let seeds_extent = extent.filter(|_| supported.len() >= NEEDED).unwrap_or(surfaces);
             joined(surfaces, seeds_extent, coarse.error(), coarse.negative(), coarse.coverage()).map_err(|_| thin)
         }
-        (_, Some([far, near])) if supported.len() >= FEW => {
+        (_, Some([far, near])) if supported.len() >= NEEDED || supported.len() >= FEW && near - far <= longest => {
             let least = if supported.len() < NEEDED { ALONE * width as f32 } else { LEAST_MARGIN };
             let [before, beyond] = SEED_MARGINS.map(|share| (share * (near - far)).max(least));
             // A background without surfaces can lie as far as 0.

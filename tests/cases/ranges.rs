@@ -94,14 +94,8 @@ fn disparities_near_the_width_give_no_wrong_advice() {
 fn a_range_that_cuts_the_scene_is_told() {
     let pair = Pair::shipped("planes");
     for (args, end) in [
-        (
-            ["--min-disparity", "0", "--disparities", "40"],
-            " % of the disparities lie at 39 px, an end of the range",
-        ),
-        (
-            ["--min-disparity", "24", "--disparities", "48"],
-            " % of the disparities lie at 24 px, an end of the range",
-        ),
+        (["--min-disparity", "0", "--disparities", "40"], " % of the disparities lie at 39 px, an end of the range"),
+        (["--min-disparity", "24", "--disparities", "48"], " % of the disparities lie at 24 px, an end of the range"),
     ] {
         pair.matched(&args).ends(4, &["warning: ", end, "name a wider one"]).judges(&pair.truth);
     }

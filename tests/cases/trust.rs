@@ -1,6 +1,6 @@
 //! Trust in a map, and what follows from too little of it.
 
-use hsad::eval::conditions::Kind;
+use hsad::{eval::conditions::Kind, image::Plane};
 
 use crate::{
     pair::{Pair, changed},
@@ -52,4 +52,20 @@ fn unrelated_pictures_are_not_trusted() {
     assert!(quiet.told.starts_with("error: ") && quiet.told.lines().count() == 1, "{}", quiet.told);
     let forced = pair.matched(&["--force"]).ends(0, &["warning: ", words]);
     assert!(forced.has("disparity.pfm"));
+}
+
+/// Each pixel six times along its row and its column: disparities come in steps of 6 px.
+#[test]
+fn pictures_enlarged_without_interpolation_are_told() {
+    let enlarged = |factor: u32| {
+        Pair::shipped("planes").with(|view, _| {
+            let size = view.size();
+            Plane::from_fn(size, |x, y| view.get(x / factor * factor, y / factor * factor))
+        })
+    };
+    let words = "both views were enlarged by 6 without interpolation, so that disparities come in steps of 6 px";
+    enlarged(6).matched(&[]).ends(4, &[words, "the map is not to be trusted"]);
+    let run = enlarged(2).matched(&[]).ends(0, &["both views were enlarged by 2 without interpolation"]);
+    assert_eq!(run.report()["repetition"], 2);
+    assert_eq!(Pair::shipped("planes").matched(&[]).report()["repetition"], 1);
 }
