@@ -31,10 +31,10 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// One u32 per pixel: luma in the lowest byte.
-@group(0) @binding(1) var<storage, read> reference: array<u32>;
-// Matching costs and volumes of path costs, four disparities packed per u32, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<u32>;
+// From census.wgsl: the luma of a pixel is the lowest byte of its first u32.
+@group(0) @binding(1) var<storage, read> reference: array<vec2<u32>>;
+// Matching costs, 16 disparities per vector, and volumes of path costs, four disparities packed per u32, 8 bits each.
+@group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read_write> paths: array<u32>;
 @group(0) @binding(4) var words: texture_storage_2d<r32uint, read>;
 
@@ -71,7 +71,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if !along_rows && params.goes_on != 0u && came_from >= 0 && came_from < i32(params.width) {
         last = in_row(u32(came_from), u32(i32(params.top) + y - params.dy));
         last.start += params.halo_start;
-        last_luma = reference[u32((i32(params.first_row) + y - params.dy) * i32(params.width) + came_from)] & 255u;
+        last_luma = reference[u32((i32(params.first_row) + y - params.dy) * i32(params.width) + came_from)].x & 255u;
         var lowest = vec4<u32>(UNREACHABLE);
         for (var k = 0u; k < last.count; k++) {
             lowest = min(lowest, unpack(paths[last.start + k]));
@@ -80,7 +80,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         starts = false;
     }
     for (var i = 0u; i < select(params.rows, params.width, along_rows); i++) {
-        let luma = reference[(params.first_row + u32(y)) * params.width + u32(x)] & 255u;
+        let luma = reference[(params.first_row + u32(y)) * params.width + u32(x)].x & 255u;
         let jump = select(least + penalty(luma, last_luma), 0u, starts);
         let span = span_at(u32(x), params.top + u32(y));
         let out = params.path_start + span.start;
@@ -90,9 +90,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var quad = quad_at(last, shift);
         var lowest = vec4<u32>(UNREACHABLE);
         for (var k = 0u; k < span.count; k += GRAIN) {
+            let packed = costs[(span.start + k) / GRAIN];
             for (var j = 0; j < GRAIN; j++) { // unroll
                 let after = quad_at(last, shift + k + j + 1u);
-                let path = advance(before, quad, after, jump, unpack(costs[span.start + k + j])) - least;
+                let path = advance(before, quad, after, jump, unpack(packed[j])) - least;
                 paths[out + k + j] = pack(path);
                 lowest = min(lowest, path);
                 before = quad;

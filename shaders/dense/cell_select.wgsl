@@ -19,9 +19,9 @@ struct Params {
     // Rows of the band, and the row of the picture where the band begins.
     rows: u32,
     top: u32,
-    // Index in `paths` where the band begins in the first path's volume, and u32 from one volume to the next.
+    // Index in `paths` where the band begins in the first path's volume, and vectors from one volume to the next.
     volumes_start: u32,
-    volume_words: u32,
+    volume_grains: u32,
     // The whole range.
     min_disparity: i32,
     disparities: u32,
@@ -36,23 +36,32 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Volumes of path costs, four disparities packed per u32, 8 bits each.
-@group(0) @binding(1) var<storage, read> paths: array<u32>;
+// Volumes of path costs, four disparities packed per u32, 8 bits each, GRAIN u32 per vector.
+@group(0) @binding(1) var<storage, read> paths: array<vec4<u32>>;
 // One u32 per pixel: the bits of the disparity, fixed-point. If FULL, the confidences, 0 to 255, four packed per u32.
 // If KEYS, one u32 per pixel: the winner's key.
 @group(0) @binding(2) var<storage, read_write> matches: array<u32>;
 @group(0) @binding(3) var words: texture_storage_2d<r32uint, read>;
 
-// Keys of the four disparities of a word: the word at `place` in the volumes, `word` in the whole range.
-fn keys_at(place: u32, word: u32) -> vec4<u32> {
-    // Sums of the even and of the odd disparities, two packed per u32, 16 bits each.
-    var even = 0u;
-    var odd = 0u;
+// Sums of the costs of all paths, of GRAIN words: of the even and of the odd disparities, two packed per u32, 16 bits each.
+struct Sums {
+    even: vec4<u32>,
+    odd: vec4<u32>,
+}
+
+// The sums of the words from `place` in the volumes on, a multiple of GRAIN.
+fn sums_at(place: u32) -> Sums {
+    var sums = Sums(vec4<u32>(0u), vec4<u32>(0u));
     for (var p = 0; p < PATHS; p++) { // unroll
-        let costs = paths[params.volumes_start + p * params.volume_words + place];
-        even += costs & 0x00ff00ffu;
-        odd += (costs >> 8u) & 0x00ff00ffu;
+        let costs = paths[params.volumes_start + p * params.volume_grains + place / GRAIN];
+        sums.even += costs & vec4<u32>(0x00ff00ffu);
+        sums.odd += (costs >> vec4<u32>(8u)) & vec4<u32>(0x00ff00ffu);
     }
+    return sums;
+}
+
+// Keys of the four disparities of word number `word` of the whole range, from the sums of its even and odd disparities.
+fn keys_of(even: u32, odd: u32, word: u32) -> vec4<u32> {
     let index = vec4<u32>(4u * word) + vec4<u32>(0u, 1u, 2u, 3u);
     let sums = vec4<u32>(even & 0xffffu, odd & 0xffffu, even >> 16u, odd >> 16u);
     return select((sums << vec4<u32>(SHIFT)) | index, vec4<u32>(NO_KEY), index >= vec4<u32>(params.disparities));
@@ -64,7 +73,8 @@ fn key_of(span: Span, index: u32) -> u32 {
     if word >= span.count {
         return NO_KEY;
     }
-    return keys_at(span.start + word, index / 4u)[index % 4u];
+    let sums = sums_at(span.start + word);
+    return keys_of(sums.even[word % GRAIN], sums.odd[word % GRAIN], index / 4u)[index % 4u];
 }
 
 // Whether disparity number `index` is at an end of the range of its cell that is no end of the whole range.
@@ -88,8 +98,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var smallest = vec4<u32>(NO_KEY);
         var second = vec4<u32>(NO_KEY);
         for (var k = 0u; k < span.count; k += GRAIN) {
+            let sums = sums_at(span.start + k);
             for (var j = 0; j < GRAIN; j++) { // unroll
-                let keys = keys_at(span.start + k + j, span.first + k + j);
+                let keys = keys_of(sums.even[j], sums.odd[j], span.first + k + j);
                 second = min(second, max(smallest, keys));
                 smallest = min(smallest, keys);
             }

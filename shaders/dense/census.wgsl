@@ -1,10 +1,10 @@
 // Census transform: one bit per neighbour of a pixel in its 5x5 window, 1 if the neighbour is darker.
 //
-// Zabih and Woodfill: 'Non-parametric local transforms for computing visual correspondence', ECCV 1994. One u32 per
-// pixel holds all inputs of the matching cost: 24 bits, the upper left neighbour the highest, above 8 bits of the
+// Zabih and Woodfill: 'Non-parametric local transforms for computing visual correspondence', ECCV 1994. Two u32 per
+// pixel hold all inputs of the matching cost. The first: 24 bits, the upper left neighbour the highest, above 8 bits of the
 // pixel's luma.
 //
-// WIDE: behind them, the wide census transforms, for weak texture. Of their 24 bits every second one, as on a
+// The second, if WIDE, otherwise 0: the wide census transform, for weak texture. Of its 24 bits every second one, as on a
 // chessboard, belongs to a neighbour twice as far away: 1 if the 3x3 lumas around the neighbour have a smaller sum than
 // those around the pixel. Sums have a third of the noise of lumas: they tell neighbours apart where texture is weak. The
 // other bits are those of the census transform. Below are 8 bits that are 1 where texture is weak and 0 elsewhere:
@@ -22,16 +22,13 @@ struct Params {
     rows: u32,
     // u32 per row of the padded plane, which begins eight columns left of and five rows above the picture.
     stride: u32,
-    // Index in `census` where the wide census transforms begin.
-    wide_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 // Padded plane, four pixels packed per u32.
 @group(0) @binding(1) var<storage, read> plane: array<u32>;
-// One u32 per pixel: census bits above the luma. From `wide_offset` on, if WIDE: wide census bits above the mark of weak
-// texture.
-@group(0) @binding(2) var<storage, read_write> census: array<u32>;
+// Per pixel census bits above the luma, and wide census bits above the mark of weak texture.
+@group(0) @binding(2) var<storage, read_write> census: array<vec2<u32>>;
 
 // Sums of lumas in one row, two per u32: of the thread's four pixels and of four pixels on either side; of four pixels the
 // first and the third, then the second and the fourth.
@@ -157,11 +154,12 @@ fn transforms(window: Window) -> Transforms {
             }
         }
     }
-    let weak = select(vec4<u32>(0u), vec4<u32>(1u), largest - least <= vec4<i32>(SPREAD));
-    return Transforms(
-        (vec4<u32>(bits) << vec4<u32>(8u)) | vec4<u32>(centre),
-        (vec4<u32>(wide_bits) << vec4<u32>(8u)) | weak,
-    );
+    var transforms = Transforms((vec4<u32>(bits) << vec4<u32>(8u)) | vec4<u32>(centre), vec4<u32>(0u));
+    if WIDE != 0 {
+        let weak = select(vec4<u32>(0u), vec4<u32>(1u), largest - least <= vec4<i32>(SPREAD));
+        transforms.wide = (vec4<u32>(wide_bits) << vec4<u32>(8u)) | weak;
+    }
+    return transforms;
 }
 
 // One thread transforms 4 x ROWS pixels.
@@ -181,11 +179,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let transformed = transforms(window);
         for (var t = 0; t < 4; t++) { // unroll
             if x + t < params.width {
-                let pixel = y * params.width + x + t;
-                census[pixel] = transformed.census[t];
-                if WIDE != 0 {
-                    census[params.wide_offset + pixel] = transformed.wide[t];
-                }
+                census[y * params.width + x + t] = vec2<u32>(transformed.census[t], transformed.wide[t]);
             }
         }
     }

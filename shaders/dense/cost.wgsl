@@ -42,15 +42,13 @@ struct Params {
     top: u32,
     columns: u32,
     cells: u32,
-    // Index in `reference` and `other` where the wide census transforms begin.
-    wide_offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// One u32 per pixel of the reference view, one u32 per pixel of the other view: census bits above 8 bits of luma. If
-// WEAK_TEXTURE, as many u32 from `wide_offset` on: wide census bits above 8 bits that are 1 where texture is weak.
-@group(0) @binding(1) var<storage, read> reference: array<u32>;
-@group(0) @binding(2) var<storage, read> other: array<u32>;
+// Per pixel of the reference view, and of the other view: census bits above 8 bits of luma; wide census bits above 8 bits
+// that are 1 where texture is weak.
+@group(0) @binding(1) var<storage, read> reference: array<vec2<u32>>;
+@group(0) @binding(2) var<storage, read> other: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read_write> volume: array<u32>;
 
 // The column nearest to x inside the picture.
@@ -95,77 +93,62 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let row = (params.first_row + id.y) * params.width;
-    var a_row: array<u32, PIXELS + 2>;
+    var a_row: array<vec2<u32>, PIXELS + 2>;
     for (var i = 0; i < PIXELS + 2; i++) { // unroll
         a_row[i] = reference[row + inside(x - 1 + i)];
     }
     var a: array<Pixels, QUADS>;
     for (var q = 0; q < QUADS; q++) { // unroll
-        a[q].census = vec4<u32>(a_row[4 * q + 1], a_row[4 * q + 2], a_row[4 * q + 3], a_row[4 * q + 4]);
+        a[q].census = vec4<u32>(a_row[4 * q + 1].x, a_row[4 * q + 2].x, a_row[4 * q + 3].x, a_row[4 * q + 4].x);
+        a[q].wide = vec4<u32>(a_row[4 * q + 1].y, a_row[4 * q + 2].y, a_row[4 * q + 3].y, a_row[4 * q + 4].y);
         a[q].gradient = vec4<i32>(
-            luma(a_row[4 * q + 2]) - luma(a_row[4 * q]),
-            luma(a_row[4 * q + 3]) - luma(a_row[4 * q + 1]),
-            luma(a_row[4 * q + 4]) - luma(a_row[4 * q + 2]),
-            luma(a_row[4 * q + 5]) - luma(a_row[4 * q + 3]),
+            luma(a_row[4 * q + 2].x) - luma(a_row[4 * q].x),
+            luma(a_row[4 * q + 3].x) - luma(a_row[4 * q + 1].x),
+            luma(a_row[4 * q + 4].x) - luma(a_row[4 * q + 2].x),
+            luma(a_row[4 * q + 5].x) - luma(a_row[4 * q + 3].x),
         );
-        if WEAK_TEXTURE != 0 {
-            for (var t = 0; t < 4; t++) { // unroll
-                a[q].wide[t] = reference[params.wide_offset + row + inside(x + 4 * q + t)];
-            }
-        }
     }
     // Consecutive pixels of the other view: the PIXELS + 3 partners of a step and one neighbour on either side.
     // Before the loop the pixels are loaded that the first step shares with a step before it.
     let span = span_at(u32(x), params.top + id.y);
     let begin = x + DIRECTION * (params.min_disparity + 4 * i32(span.first)) - FRONT;
-    var b: array<u32, PIXELS + 5>;
-    var wide_b: array<u32, PIXELS + 5>;
+    var b: array<vec2<u32>, PIXELS + 5>;
     for (var i = 0; i < PIXELS + 1; i++) { // unroll
-        let pixel = row + inside(begin + i + KEPT - DIRECTION * 4);
-        b[i + KEPT] = other[pixel];
-        if WEAK_TEXTURE != 0 {
-            wide_b[i + KEPT] = other[params.wide_offset + pixel];
-        }
+        b[i + KEPT] = other[row + inside(begin + i + KEPT - DIRECTION * 4)];
     }
     for (var step = 0u; step < span.count; step++) {
         let first = begin + DIRECTION * 4 * i32(step);
         if DIRECTION < 0 {
             for (var i = 0; i < PIXELS + 1; i++) { // unroll
                 b[PIXELS + 4 - i] = b[PIXELS - i];
-                wide_b[PIXELS + 4 - i] = wide_b[PIXELS - i];
             }
         } else {
             for (var i = 0; i < PIXELS + 1; i++) { // unroll
                 b[i] = b[i + 4];
-                wide_b[i] = wide_b[i + 4];
             }
         }
         for (var i = 0; i < 4; i++) { // unroll
-            let pixel = row + inside(first + NEW + i);
-            b[NEW + i] = other[pixel];
-            if WEAK_TEXTURE != 0 {
-                wide_b[NEW + i] = other[params.wide_offset + pixel];
-            }
+            b[NEW + i] = other[row + inside(first + NEW + i)];
         }
         var gradient_b: array<i32, PIXELS + 3>;
         for (var i = 0; i < PIXELS + 3; i++) { // unroll
-            gradient_b[i] = luma(b[i + 2]) - luma(b[i]);
+            gradient_b[i] = luma(b[i + 2].x) - luma(b[i].x);
         }
         for (var q = 0; q < QUADS; q++) { // unroll
             var costs_of = vec4<u32>(0u);
             for (var k = 0; k < 4; k++) { // unroll
                 let partners = Pixels(
                     vec4<u32>(
-                        b[FRONT + 4 * q + DIRECTION * k],
-                        b[FRONT + 4 * q + DIRECTION * k + 1],
-                        b[FRONT + 4 * q + DIRECTION * k + 2],
-                        b[FRONT + 4 * q + DIRECTION * k + 3],
+                        b[FRONT + 4 * q + DIRECTION * k].x,
+                        b[FRONT + 4 * q + DIRECTION * k + 1].x,
+                        b[FRONT + 4 * q + DIRECTION * k + 2].x,
+                        b[FRONT + 4 * q + DIRECTION * k + 3].x,
                     ),
                     vec4<u32>(
-                        wide_b[FRONT + 4 * q + DIRECTION * k],
-                        wide_b[FRONT + 4 * q + DIRECTION * k + 1],
-                        wide_b[FRONT + 4 * q + DIRECTION * k + 2],
-                        wide_b[FRONT + 4 * q + DIRECTION * k + 3],
+                        b[FRONT + 4 * q + DIRECTION * k].y,
+                        b[FRONT + 4 * q + DIRECTION * k + 1].y,
+                        b[FRONT + 4 * q + DIRECTION * k + 2].y,
+                        b[FRONT + 4 * q + DIRECTION * k + 3].y,
                     ),
                     vec4<i32>(
                         gradient_b[FRONT - 1 + 4 * q + DIRECTION * k],

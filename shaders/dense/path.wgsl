@@ -5,7 +5,6 @@
 
 // Constants:
 //   WORKGROUP   threads per workgroup
-//   WORDS       u32 per pixel of a volume, four disparities packed per u32
 //   QUADS       vectors per pixel of a volume: WORDS / 4
 
 struct Params {
@@ -31,8 +30,8 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// One u32 per pixel: luma in the lowest byte.
-@group(0) @binding(1) var<storage, read> reference: array<u32>;
+// From census.wgsl: the luma of a pixel is the lowest byte of its first u32.
+@group(0) @binding(1) var<storage, read> reference: array<vec2<u32>>;
 // Matching costs: QUADS vectors per pixel, four disparities packed per u32, 8 bits each.
 @group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
 // Volumes of path costs, packed as the matching costs.

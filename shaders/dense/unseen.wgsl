@@ -6,8 +6,6 @@
 // Constants:
 //   WORKGROUP_WIDTH    threads per workgroup along x
 //   WORKGROUP_HEIGHT   threads per workgroup along y
-//   SCALE              disparity units per pixel
-//   SCALE_BITS         log2(SCALE)
 //   NONE               sentinel: the pixel has no disparity
 
 struct Params {

@@ -2,6 +2,9 @@
 
 #import warp_map
 
+// Constants:
+//   SUBPIXEL_BITS   bits after the point of positions and weights
+
 fn outer_weight(near: i32, far: i32) -> i32 {
     return -((near * far * far + ONE * ONE) >> u32(2 * SUBPIXEL_BITS + 1));
 }

@@ -72,7 +72,7 @@ fn first_pixel(index: u32) -> Line {
     let came_from = line.x - params.dx;
     if params.dy != 0 && params.goes_on != 0u && came_from >= 0 && came_from < width {
         let pixel = (line.y - params.dy) * width + came_from;
-        line.luma = reference[u32(i32(params.first_row) * width + pixel)] & 255u;
+        line.luma = reference[u32(i32(params.first_row) * width + pixel)].x & 255u;
         for (var q = 0; q < QUADS; q++) { // unroll
             let packed = paths[params.path_start + u32(pixel) * QUADS + q];
             for (var t = 0; t < 4; t++) { // unroll
@@ -86,7 +86,7 @@ fn first_pixel(index: u32) -> Line {
 
 // Luma of the line's pixel.
 fn luma_at(line: Line) -> u32 {
-    return reference[(params.first_row + u32(line.y)) * params.width + u32(line.x)] & 255u;
+    return reference[(params.first_row + u32(line.y)) * params.width + u32(line.x)].x & 255u;
 }
 
 // Path costs of the line's pixel, of luma `luma`, packed: equation 13.

@@ -40,12 +40,11 @@ impl CellCost {
         band: &LevelBand<'_>,
         min_disparity: i32,
         [reference, other]: [&wgpu::Buffer; 2],
-        wide_offset: u32,
         volume: &wgpu::Buffer,
     ) -> Dispatch {
         let &LevelBand { layout, width, top, first_row, rows } = band;
         let (columns, cells) = (layout.columns, layout.cells);
-        let params = Params { width, rows, first_row, min_disparity, pixel_words: 0, top, columns, cells, wide_offset };
+        let params = Params { width, rows, first_row, min_disparity, pixel_words: 0, top, columns, cells };
         self.0.dispatch(&params, &[reference, other, volume, &layout.words.view], groups(width, rows))
     }
 }

@@ -16,7 +16,6 @@ shader_struct! {
         width: u32,
         rows: u32,
         stride: u32,
-        wide_offset: u32,
     }
 }
 
@@ -70,16 +69,15 @@ impl Census {
         width.div_ceil(4) + 2 * HALO_WORDS
     }
 
-    /// Transforms the rows in `padded`, laid out as [`Self::padding`] says, to one `u32` per pixel: the 24 census bits
-    /// of its window above its luma. The wide census transforms follow from word `wide_offset` on.
+    /// Transforms the rows in `padded`, laid out as [`Self::padding`] says, to two `u32` per pixel: the 24 census bits
+    /// of its window above its luma, and those of the wide census above the mark of weak texture.
     pub fn prepare(
         &self,
         Size { width, height: rows }: Size,
         padded: &wgpu::Buffer,
         census: &wgpu::Buffer,
-        wide_offset: u32,
     ) -> Dispatch {
-        let params = Params { width, rows, stride: Self::stride(width), wide_offset };
+        let params = Params { width, rows, stride: Self::stride(width) };
         let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
         self.kernel.dispatch(&params, &[padded, census], groups)
     }

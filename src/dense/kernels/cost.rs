@@ -21,7 +21,6 @@ shader_struct! {
         pub(super) top: u32,
         pub(super) columns: u32,
         pub(super) cells: u32,
-        pub(super) wide_offset: u32,
     }
 }
 
@@ -78,12 +77,11 @@ impl CostVolume {
     }
 
     /// Writes the cost volume of `band`: the pixels of `reference` against those of `other`, both from
-    /// [`super::Census`], whose wide census transforms begin at word `wide_offset`.
+    /// [`super::Census`].
     pub fn prepare(
         &self,
         band: &VolumeBand,
         [reference, other]: [&wgpu::Buffer; 2],
-        wide_offset: u32,
         volume: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params {
@@ -92,7 +90,6 @@ impl CostVolume {
             first_row: band.first_row,
             min_disparity: band.range.min,
             pixel_words: band.words(),
-            wide_offset,
             ..bytemuck::Zeroable::zeroed()
         };
         self.0.dispatch(&params, &[reference, other, volume], groups(band.width, band.rows))

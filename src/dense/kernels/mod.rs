@@ -110,7 +110,7 @@ pub fn stages() -> Vec<Stage> {
     }
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
-    stages.extend([Path::stage(&penalties, 2), CellPath::stage(&penalties)]);
+    stages.extend([Path::stage(&penalties, 4), CellPath::stage(&penalties)]);
     stages.extend([true, false].map(|keys| {
         let interpolation = Interpolation::Equiangular;
         CellSelect::stage(Selection { stored: 4, interpolation, kind: ResultKind::Matches, keys, uniqueness: 0 })
@@ -122,7 +122,7 @@ pub fn stages() -> Vec<Stage> {
                 [(ResultKind::Matches, true), (ResultKind::Matches, false), (ResultKind::Winners, false)].map(
                     |(kind, keys)| {
                         let selection = Selection { stored, interpolation, kind, keys, uniqueness: 0 };
-                        Select::stage(&penalties, 2, selection)
+                        Select::stage(&penalties, 4, selection)
                     },
                 ),
             );

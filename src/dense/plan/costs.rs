@@ -282,8 +282,7 @@ impl Side {
         let above = bands.radius.min(first_row);
         let below = bands.radius.min(bands.size.height - first_row - band.rows);
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
-        let (views, wide_offset) = (workspace.transform.of(self.view), workspace.transform.wide_offset());
-        plan.run(self.cost.prepare(&with_halo, views, wide_offset, &workspace.costs));
+        plan.run(self.cost.prepare(&with_halo, workspace.transform.of(self.view), &workspace.costs));
         if let Some((box_mean, means)) = &workspace.box_mean {
             let band_rows = above..above + band.rows;
             for pass in box_mean.prepare(&with_halo, band_rows, &workspace.costs, means) {
@@ -387,7 +386,7 @@ fn band_rows_within(
 ) -> Result<u32> {
     let limit = limits.bytes;
     let row = u64::from(width) * u64::from(DisparityRange::padded(range.count));
-    // Census transforms, two `u32` per pixel at most, have a halo one row wider than that of the costs.
+    // Census transforms, two `u32` per pixel, have a halo one row wider than that of the costs.
     let (around, transformed_row) = (2 * (u64::from(radius) + 1), row.max(8 * u64::from(width)));
     let needed = (row * 3 * paths).max(transformed_row * (1 + around));
     // With few disparities, a row of the map with its keys can exceed a row of the volumes.

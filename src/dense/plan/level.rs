@@ -244,8 +244,8 @@ impl LevelPlan<'_> {
     fn plan_costs(&self, plan: &mut Plan, index: usize) {
         let band = self.band(index);
         self.transform.plan(plan, band.top.cast_signed() - 1, band.rows + 2);
-        let (views, wide_offset) = (self.transform.of(self.view), self.transform.wide_offset());
-        plan.run(self.kernels.cost.prepare(&band, self.table.range.min, views, wide_offset, &self.costs));
+        let views = self.transform.of(self.view);
+        plan.run(self.kernels.cost.prepare(&band, self.table.range.min, views, &self.costs));
     }
 
     /// Plans a path through band `index`, continued from row number `place` of `entered_from`, if there is one.

@@ -19,9 +19,8 @@ pub(super) struct Transform {
     pad: Pad,
     transform: Census,
     padded: wgpu::Buffer,
-    /// The census transforms of each view, and behind those of all rows the wide ones, if there are any.
+    /// The census transforms of each view, two words per pixel.
     census: [wgpu::Buffer; 2],
-    wide_offset: u32,
 }
 
 impl Transform {
@@ -34,8 +33,7 @@ impl Transform {
         [left, right]: [&wgpu::Buffer; 2],
     ) -> Result<Self> {
         let padding = Census::padding(size, 0, rows);
-        let transforms = if cost.weak_spread.is_some() { 2 } else { 1 };
-        let transformed = transforms * u64::from(size.width) * u64::from(rows);
+        let transformed = 2 * u64::from(size.width) * u64::from(rows);
         Ok(Self {
             size,
             pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
@@ -43,7 +41,6 @@ impl Transform {
             transform: Census::new(gpu, cost.weak_spread),
             padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
             census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
-            wide_offset: size.width * rows,
         })
     }
 
@@ -52,13 +49,8 @@ impl Transform {
         for ((picture, brightness), census) in self.pictures.iter().zip(&self.census) {
             let (padding, size) = (Census::padding(self.size, first_row, rows), Size::new(self.size.width, rows));
             plan.run(self.pad.prepare(padding, brightness, picture, &self.padded));
-            plan.run(self.transform.prepare(size, &self.padded, census, self.wide_offset));
+            plan.run(self.transform.prepare(size, &self.padded, census));
         }
-    }
-
-    /// The word of a view's transforms where the wide ones begin.
-    pub(super) fn wide_offset(&self) -> u32 {
-        self.wide_offset
     }
 
     /// The census transforms of `view`, then of the other view.

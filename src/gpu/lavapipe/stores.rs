@@ -10,7 +10,7 @@
 
 /// The `module` that stores whole values, and the first statement of its `main`, which sets their limit. Buffers that are
 /// written are declared on one line each, as `@group(0) @binding(1) var<storage, read_write> words: array<u32>;`, of `u32`,
-/// `i32` or `vec4<u32>`; others, atomics among them, stay as they are. A store is a statement that begins on its own line.
+/// `i32`, `vec2<u32>` or `vec4<u32>`; others, atomics among them, stay as they are. A store is a statement that begins on its own line.
 pub(super) fn with_whole_values(module: &str) -> (String, String) {
     let buffers: Vec<_> = module.lines().filter_map(written).collect();
     let mut text = String::with_capacity(module.len() + 1024);
@@ -41,6 +41,10 @@ fn whole_i32(value: i32) -> i32 {
     return bitcast<i32>(min(bitcast<u32>(value), no_limit));
 }
 
+fn whole_vec2(value: vec2<u32>) -> vec2<u32> {
+    return min(value, vec2<u32>(no_limit));
+}
+
 fn whole_vec4(value: vec4<u32>) -> vec4<u32> {
     return min(value, vec4<u32>(no_limit));
 }
@@ -53,6 +57,7 @@ fn written(line: &str) -> Option<(&str, &'static str)> {
     match elements {
         "array<u32>;" => Some((name, "whole_u32")),
         "array<i32>;" => Some((name, "whole_i32")),
+        "array<vec2<u32>>;" => Some((name, "whole_vec2")),
         "array<vec4<u32>>;" => Some((name, "whole_vec4")),
         _ => None,
     }
@@ -111,9 +116,9 @@ mod tests {
 
     #[test]
     fn other_buffers_stay() {
-        let module = "@group(0) @binding(0) var<storage, read_write> a: array<vec2<u32>>;\n\
+        let module = "@group(0) @binding(0) var<storage, read_write> a: array<vec3<u32>>;\n\
                       @group(0) @binding(1) var<storage, read_write> b: array<atomic<u32>>;\n\
-                      fn main() {\n    a[0] = vec2<u32>(1u);\n    atomicStore(&b[0], 1u);\n}\n";
+                      fn main() {\n    a[0] = vec3<u32>(1u);\n    atomicStore(&b[0], 1u);\n}\n";
         assert_eq!(with_whole_values(module), (module.to_string(), String::new()));
     }
 }

@@ -7,11 +7,12 @@ use hsad::{
 
 use crate::common::*;
 
-fn words(picture: &Luma, weak_spread: Option<u32>) -> Vec<u32> {
+/// The census and the wide census of each pixel.
+fn transforms(picture: &Luma, weak_spread: Option<u32>) -> Vec<[u32; 2]> {
     let Values::U32(words) = leaves(&CensusTrial { picture: picture.clone(), weak_spread }).remove(0) else {
         panic!("words")
     };
-    words
+    words.as_chunks().0.to_vec()
 }
 
 #[test]
@@ -29,19 +30,19 @@ fn by_hand() {
     // One dark pixel in the middle of 5x5 pixels: no pixel is darker than it, and each other pixel has it at its place
     // in the window.
     let luma = Luma::from_fn((5, 5), |x, y| if (x, y) == (2, 2) { 10 } else { 20 });
-    let census = words(&luma, None);
-    assert_eq!(census[12], 10);
+    let census = transforms(&luma, None);
+    assert_eq!(census[12], [10, 0]);
     // The dark pixel is two columns to the right of the first pixel and two rows below, so the last of its 24 bits; for
     // the last pixel it is the first bit.
-    assert_eq!(census[0], 1 << 8 | 20);
-    assert_eq!(census[24], 1 << 31 | 20);
+    assert_eq!(census[0], [1 << 8 | 20, 0]);
+    assert_eq!(census[24], [1 << 31 | 20, 0]);
 }
 
 #[test]
 fn wide_by_hand() {
     // One pixel, darker by 10: the sums of its 3x3 pixels are smaller than all others, by 10.
     let luma = Luma::from_fn((21, 21), |x, y| if (x, y) == (10, 10) { 10 } else { 20 });
-    let at = |spread, (x, y): (usize, usize)| words(&luma, Some(spread))[21 * 21 + y * 21 + x];
+    let at = |spread, (x, y): (usize, usize)| transforms(&luma, Some(spread))[y * 21 + x][1];
     // No sum is smaller than that around the dark pixel, and no pixel is darker. Four columns to the right of a pixel and
     // four rows below it, the dark pixel is the last of its 24 neighbours; four rows above it, the third.
     assert_eq!(at(9, (10, 10)), 0);

@@ -9,7 +9,7 @@ use crate::{
     },
     disparity::DisparityRange,
     error::Result,
-    image::{Luma, Size},
+    image::{Luma, Plane, Size},
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
@@ -45,19 +45,17 @@ impl Trial for CensusTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.picture.size();
-        let pixels = size.width * size.height;
         let plane = pad(&self.picture, &Census::padding(size, 0, size.height), Brightness::SAME);
-        let transformed = bench.output(if self.weak_spread.is_some() { 2 * pixels } else { pixels })?;
+        let transformed = bench.output(2 * size.width * size.height)?;
         let kernel = Census::new(bench.gpu, self.weak_spread);
-        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed, pixels);
+        let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let wide = self.weak_spread.map(|spread| wide_census(&self.picture, spread).into_data());
-        let transforms = [census(&self.picture).into_data(), wide.unwrap_or_default()].concat();
-        Ok(vec![Array::exact("census", transforms)])
+        let wide = self.weak_spread.map(|spread| wide_census(&self.picture, spread));
+        Ok(vec![Array::exact("census", transforms(&Transforms { census: census(&self.picture), wide }))])
     }
 }
 
@@ -149,12 +147,12 @@ impl Trial for CostTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let Self { views: [reference, other], range, rows, .. } = self;
-        let Size { width, height } = reference.census.size();
+        let Size { width, .. } = reference.census.size();
         let band = VolumeBand { width, first_row: rows.start, rows: rows.len() as u32, range: *range };
         let volume = bench.output(band.row_words() * band.rows)?;
         let views = [&bench.upload(&transforms(reference))?, &bench.upload(&transforms(other))?];
         let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
-        let dispatch = kernel.prepare(&band, views, width * height, &volume);
+        let dispatch = kernel.prepare(&band, views, &volume);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
     }
@@ -171,8 +169,13 @@ pub(super) fn weak_spread(dice: &mut Dice) -> Option<u32> {
     dice.coin().then(|| dice.pick(&[60, 200, 700]))
 }
 
-/// The census transforms of a view, and behind them the wide ones.
-pub(super) fn transforms(view: &Transforms) -> Vec<u32> {
-    let wide = view.wide.as_ref().map_or(&[][..], |wide| wide.data());
-    [view.census.data(), wide].concat()
+/// The census transforms of a view as the kernels write them.
+pub(super) fn transforms(Transforms { census, wide }: &Transforms) -> Vec<u32> {
+    let wide = wide.iter().flat_map(|wide| wide.data()).copied().chain(std::iter::repeat(0));
+    census.data().iter().copied().zip(wide).flat_map(<[u32; 2]>::from).collect()
+}
+
+/// Words whose lowest byte is the luma of a pixel, as the census transforms of a view.
+pub(super) fn lumas(words: &Plane<u32>) -> Vec<u32> {
+    words.data().iter().flat_map(|&word| [word, u32::MAX]).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::{
     blocks::signed,
-    costs::{transforms, weak_spread},
+    costs::{lumas, transforms, weak_spread},
     paths::penalties,
     words::{bytes, words},
 };
@@ -111,7 +111,7 @@ impl Trial for CellCostTrial {
             let volume = bench.output(layout.words_of(rows.clone()) as u32)?;
             let (top, first_row, rows) = (rows.start, rows.start, rows.len() as u32);
             let band = LevelBand { layout: &layout, width, top, first_row, rows };
-            let dispatch = kernel.prepare(&band, self.table.range.min, views, width * height, &volume);
+            let dispatch = kernel.prepare(&band, self.table.range.min, views, &volume);
             bench.run(|encoder| dispatch.record(encoder));
             costs.extend(bytes(&bench.download(&volume)?));
         }
@@ -164,7 +164,7 @@ impl Trial for CellPathTrial {
         let mut bands = bands_of(height, self.band_rows);
         let layout = CellLayout::new(bench.gpu, table, &bands)?;
         let kernel = CellPath::new(bench.gpu, &self.penalties);
-        let view = bench.upload(self.reference.data())?;
+        let view = bench.upload(&lumas(&self.reference))?;
         let costs = words(values);
         let mut path = vec![0; costs.len()];
         if direction.dy < 0 {

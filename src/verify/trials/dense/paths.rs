@@ -2,6 +2,7 @@
 
 use super::{
     blocks::signed,
+    costs::lumas,
     words::{bytes, words},
 };
 use crate::{
@@ -80,7 +81,7 @@ impl Trial for PathTrial {
         let Size { width, height } = reference.size();
         let count = self.costs.len() as u32 / (width * height);
         let kernel = Path::new(bench.gpu, &self.penalties, count / 4);
-        let view = bench.upload(reference.data())?;
+        let view = bench.upload(&lumas(reference))?;
         let costs = words(&self.costs);
         let mut path = vec![0; costs.len()];
         let mut firsts: Vec<u32> = (0..height).step_by(self.band_rows as usize).collect();
@@ -197,7 +198,7 @@ impl Trial for SelectTrial {
         let kernel = Select::new(gpu, &self.penalties, band.words(), selection);
         // The kernel expects zeros.
         let matches = bench.upload(&vec![0_u32; (layout.words() as u32 + layout.pixels()) as usize])?;
-        let (reference, costs) = (bench.upload(self.reference.data())?, bench.upload(&words(&self.costs))?);
+        let (reference, costs) = (bench.upload(&lumas(&self.reference))?, bench.upload(&words(&self.costs))?);
         let stored = bench.upload(&words(&self.stored.concat()))?;
         let lines = LineBuffers { reference: &reference, costs: &costs, paths: &stored };
         let dispatch = kernel.prepare(&band, self.last, lines, volumes, MapBuffer { buffer: &matches, layout });
