@@ -2,25 +2,28 @@
 
 mod cli;
 
-use std::process::ExitCode;
+use std::io::{self, Write};
 
 use clap::Parser;
 
 #[global_allocator]
 static ALLOCATOR: cli::out_of_memory::Allocator = cli::out_of_memory::Allocator;
 
-fn main() -> ExitCode {
+fn main() {
     without_desktop();
     // Log records of the library and of wgpu are shown only if RUST_LOG asks for them, but for a dump that failed: a failure
     // is one message.
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off,hsad::gpu::dump=warn")).init();
-    match cli::Cli::parse().run() {
-        Ok(()) => ExitCode::SUCCESS,
+    let code = match cli::Cli::parse().run() {
+        Ok(()) => 0,
         Err(error) => {
             cli::terminal::error(&error);
             cli::exit_code(&error)
         }
-    }
+    };
+    // Results are written by now; what is lost here is text for a reader that is gone.
+    io::stdout().flush().ok();
+    cli::output::exit_at_once(code)
 }
 
 /// Keeps Mesa's device-select layer out where there is no desktop: it looks for a compositor, and

@@ -12,7 +12,7 @@ mod man;
 mod match_views;
 mod options;
 pub mod out_of_memory;
-mod output;
+pub mod output;
 mod pipeline_cache;
 mod products;
 mod rectification;
@@ -25,8 +25,6 @@ mod threads;
 mod verify;
 mod way;
 mod wording;
-
-use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -82,13 +80,13 @@ impl Cli {
 }
 
 /// The exit code that [`EXIT_CODES`] promises for an error.
-pub fn exit_code(error: &anyhow::Error) -> ExitCode {
+pub fn exit_code(error: &anyhow::Error) -> i32 {
     if error.is::<NotTrusted>() {
-        return ExitCode::from(4);
+        return 4;
     }
     match error.downcast_ref() {
-        Some(hsad::Error::Parameter { .. }) => ExitCode::from(2),
-        Some(hsad::Error::NotRectified { .. } | hsad::Error::NotRectifiable { .. }) => ExitCode::from(3),
-        _ => ExitCode::FAILURE,
+        Some(hsad::Error::Parameter { .. }) => 2,
+        Some(hsad::Error::NotRectified { .. } | hsad::Error::NotRectifiable { .. }) => 3,
+        _ => 1,
     }
 }

@@ -60,8 +60,9 @@ pub fn abandon_at_once(code: i32) -> ! {
     exit_at_once(code)
 }
 
-/// Exits. Destructors of drivers are skipped: other threads still use what they would destroy.
-fn exit_at_once(code: i32) -> ! {
+/// Exits without the destructors of drivers: on an interrupt other threads still use what they would destroy, and at the end
+/// of the program Mesa's now and then run code that is unloaded already, which ends in a segmentation fault.
+pub fn exit_at_once(code: i32) -> ! {
     #[cfg(unix)]
     // SAFETY: `_exit` only ends the process.
     unsafe {
