@@ -115,6 +115,15 @@ mod tests {
     }
 
     #[test]
+    fn vectors_are_wrapped() {
+        let module = "@group(0) @binding(0) var<storage, read_write> a: array<vec2<u32>>;\n\
+                      @group(0) @binding(1) var<storage, read_write> b: array<vec4<u32>>;\n\
+                      fn main() {\n    a[0] = v.xy;\n    b[1] = v;\n}\n";
+        let (text, _) = with_whole_values(module);
+        assert!(text.contains(" a[0] = whole_vec2(v.xy);\n    b[1] = whole_vec4(v);\n"), "{text}");
+    }
+
+    #[test]
     fn other_buffers_stay() {
         let module = "@group(0) @binding(0) var<storage, read_write> a: array<vec3<u32>>;\n\
                       @group(0) @binding(1) var<storage, read_write> b: array<atomic<u32>>;\n\
