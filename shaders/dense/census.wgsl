@@ -33,8 +33,8 @@ struct Params {
 // Sums of lumas in one row, two per u32: of the thread's four pixels and of four pixels on either side; of four pixels the
 // first and the third, then the second and the fourth.
 alias Sums = array<vec2<u32>, 3>;
-// Lumas or sums in one row, one each. Signed, since CPUs compare vectors of signed integers faster.
-alias Row = array<vec4<i32>, 3>;
+// Lumas or sums in one row, one each.
+alias Row = array<vec4<u32>, 3>;
 
 // The last rows that were read, up to five rows below the pixels.
 struct Window {
@@ -85,39 +85,39 @@ fn next(window: Window, first: u32) -> Window {
     return next;
 }
 
-fn lumas_of(word: u32) -> vec4<i32> {
-    return vec4<i32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u));
+fn lumas_of(word: u32) -> vec4<u32> {
+    return (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
 }
 
-fn sums_of(pairs: vec2<u32>) -> vec4<i32> {
-    return vec4<i32>(vec4<u32>(pairs & vec2<u32>(0xffffu), pairs >> vec2<u32>(16u)));
+fn sums_of(pairs: vec2<u32>) -> vec4<u32> {
+    return vec4<u32>(pairs & vec2<u32>(0xffffu), pairs >> vec2<u32>(16u));
 }
 
 // The values of four pixels' neighbours in a row, from the second to the left to the second to the right.
-fn neighbours(row: Row) -> array<vec4<i32>, 5> {
-    return array<vec4<i32>, 5>(
-        vec4<i32>(row[0].zw, row[1].xy),
-        vec4<i32>(row[0].w, row[1].xyz),
+fn neighbours(row: Row) -> array<vec4<u32>, 5> {
+    return array<vec4<u32>, 5>(
+        vec4<u32>(row[0].zw, row[1].xy),
+        vec4<u32>(row[0].w, row[1].xyz),
         row[1],
-        vec4<i32>(row[1].yzw, row[2].x),
-        vec4<i32>(row[1].zw, row[2].xy),
+        vec4<u32>(row[1].yzw, row[2].x),
+        vec4<u32>(row[1].zw, row[2].xy),
     );
 }
 
 // The same, two columns apart, from the fourth to the left to the fourth to the right.
-fn far_neighbours(row: Row) -> array<vec4<i32>, 5> {
-    return array<vec4<i32>, 5>(
+fn far_neighbours(row: Row) -> array<vec4<u32>, 5> {
+    return array<vec4<u32>, 5>(
         row[0],
-        vec4<i32>(row[0].zw, row[1].xy),
+        vec4<u32>(row[0].zw, row[1].xy),
         row[1],
-        vec4<i32>(row[1].zw, row[2].xy),
+        vec4<u32>(row[1].zw, row[2].xy),
         row[2],
     );
 }
 
 // Appends one bit to each of four: 1 where `is_one`.
-fn with_bit(bits: vec4<i32>, is_one: vec4<bool>) -> vec4<i32> {
-    return bits + bits - select(vec4<i32>(0), vec4<i32>(-1), is_one);
+fn with_bit(bits: vec4<u32>, is_one: vec4<bool>) -> vec4<u32> {
+    return (bits << vec4<u32>(1u)) | select(vec4<u32>(0u), vec4<u32>(1u), is_one);
 }
 
 // The transforms of four pixels.
@@ -129,8 +129,8 @@ struct Transforms {
 fn transforms(window: Window) -> Transforms {
     let centre = lumas_of(window.lumas[2].y);
     let sum = sums_of(window.sums[4][1]);
-    var bits = vec4<i32>(0);
-    var wide_bits = vec4<i32>(0);
+    var bits = vec4<u32>(0u);
+    var wide_bits = vec4<u32>(0u);
     var least = sum;
     var largest = sum;
     for (var j = 0; j < 5; j++) { // unroll
@@ -154,10 +154,10 @@ fn transforms(window: Window) -> Transforms {
             }
         }
     }
-    var transforms = Transforms((vec4<u32>(bits) << vec4<u32>(8u)) | vec4<u32>(centre), vec4<u32>(0u));
+    var transforms = Transforms((bits << vec4<u32>(8u)) | centre, vec4<u32>(0u));
     if WIDE != 0 {
-        let weak = select(vec4<u32>(0u), vec4<u32>(1u), largest - least <= vec4<i32>(SPREAD));
-        transforms.wide = (vec4<u32>(wide_bits) << vec4<u32>(8u)) | weak;
+        let weak = select(vec4<u32>(0u), vec4<u32>(1u), largest - least <= vec4<u32>(SPREAD));
+        transforms.wide = (wide_bits << vec4<u32>(8u)) | weak;
     }
     return transforms;
 }
