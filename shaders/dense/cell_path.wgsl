@@ -1,15 +1,15 @@
 // Semi-global matching, one path through cells with ranges of their own: the path costs along all lines of one direction.
 // One thread per line; a diagonal line that leaves the picture at one side starts anew at the other side.
 //
-// The path costs of the last pixel are read back from the volume, at an offset where its range begins elsewhere. A
-// disparity that the last pixel does not have is reached by a jump alone.
+// The path costs of the last pixel are read back from the volume, at an offset of whole words where its range begins
+// elsewhere: each vector is put together from two. A disparity that the last pixel does not have has the largest path cost
+// there.
 
 #import path_step
 #import cell_layout
 
 // Constants:
 //   WORKGROUP   threads per workgroup
-//   GRAIN       u32 of a step of a pixel's number of words
 
 struct Params {
     width: u32,
@@ -17,7 +17,7 @@ struct Params {
     rows: u32,
     top: u32,
     first_row: u32,
-    // Index in `paths` where the band begins in the volume of this path, and where the row before it is.
+    // Index in `paths`, in u32, where the band begins in the volume of this path, and where the row before it is.
     path_start: u32,
     halo_start: u32,
     // 1: lines continue from the row before the band.
@@ -33,16 +33,27 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 // From census.wgsl: the luma of a pixel is the lowest byte of its first u32.
 @group(0) @binding(1) var<storage, read> reference: array<vec2<u32>>;
-// Matching costs, 16 disparities per vector, and volumes of path costs, four disparities packed per u32, 8 bits each.
+// Matching costs, and volumes of path costs: four disparities packed per u32, 8 bits each, 16 disparities per vector. The
+// words of a pixel fill whole vectors. Software drivers load and store a vector in little more time than a u32.
 @group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read_write> paths: array<u32>;
+@group(0) @binding(3) var<storage, read_write> paths: array<vec4<u32>>;
 @group(0) @binding(4) var words: texture_storage_2d<r32uint, read>;
 
-// Path costs of word `k` of the pixel with the words `span` in `paths`.
-fn quad_at(span: Span, k: u32) -> vec4<u32> {
+// The largest path costs.
+const ALL_LARGEST = vec4<u32>(0xffffffffu);
+
+// Path costs of 16 disparities from word `k` on, a multiple of four, of the pixel with the words `span` in `paths`.
+fn vector_at(span: Span, k: u32) -> vec4<u32> {
     let exists = k < span.count;
-    let quad = unpack(paths[span.start + select(0u, k, exists)]);
-    return select(vec4<u32>(UNREACHABLE), quad, exists);
+    return select(ALL_LARGEST, paths[(span.start + select(0u, k, exists)) / 4u], exists);
+}
+
+// The four words from word `shift` on, 0 to 3, of the eight of two vectors.
+fn shifted(first: vec4<u32>, second: vec4<u32>, shift: u32) -> vec4<u32> {
+    let by_one = (shift & 1u) != 0u;
+    let low = select(first, vec4<u32>(first.yzw, second.x), by_one);
+    let high = select(second.xy, second.yz, by_one);
+    return select(low, vec4<u32>(low.zw, high), (shift & 2u) != 0u);
 }
 
 fn least_of(costs: vec4<u32>) -> u32 {
@@ -73,8 +84,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         last.start += params.halo_start;
         last_luma = reference[u32((i32(params.first_row) + y - params.dy) * i32(params.width) + came_from)].x & 255u;
         var lowest = vec4<u32>(UNREACHABLE);
-        for (var k = 0u; k < last.count; k++) {
-            lowest = min(lowest, unpack(paths[last.start + k]));
+        for (var k = 0u; k < last.count; k += 4u) {
+            let packed = vector_at(last, k);
+            for (var j = 0; j < 4; j++) { // unroll
+                lowest = min(lowest, unpack(packed[j]));
+            }
         }
         least = least_of(lowest);
         starts = false;
@@ -86,19 +100,28 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let out = params.path_start + span.start;
         // Word k of this pixel is word k + shift of the last one; below 0 the sum wraps, and no pixel has such a word.
         let shift = span.first - last.first;
-        var before = quad_at(last, shift - 1u);
-        var quad = quad_at(last, shift);
+        let aligned = shift & ~3u;
+        var loaded = vector_at(last, aligned);
+        var next_loaded = vector_at(last, aligned + 4u);
+        var quads = shifted(loaded, next_loaded, shift & 3u);
+        var before = unpack(shifted(vector_at(last, aligned - 4u), loaded, shift & 3u).w);
         var lowest = vec4<u32>(UNREACHABLE);
-        for (var k = 0u; k < span.count; k += GRAIN) {
-            let packed = costs[(span.start + k) / GRAIN];
-            for (var j = 0; j < GRAIN; j++) { // unroll
-                let after = quad_at(last, shift + k + j + 1u);
-                let path = advance(before, quad, after, jump, unpack(packed[j])) - least;
-                paths[out + k + j] = pack(path);
+        for (var k = 0u; k < span.count; k += 4u) {
+            loaded = next_loaded;
+            next_loaded = vector_at(last, aligned + k + 8u);
+            let next_quads = shifted(loaded, next_loaded, shift & 3u);
+            let ahead = vec4<u32>(quads.yzw, next_quads.x);
+            let packed = costs[(span.start + k) / 4u];
+            var result: vec4<u32>;
+            for (var j = 0; j < 4; j++) { // unroll
+                let quad = unpack(quads[j]);
+                let path = advance(before, quad, unpack(ahead[j]), jump, unpack(packed[j])) - least;
+                result[j] = pack(path);
                 lowest = min(lowest, path);
                 before = quad;
-                quad = after;
             }
+            paths[(out + k) / 4u] = result;
+            quads = next_quads;
         }
         least = least_of(lowest);
         last = Span(out, span.first, span.count);

@@ -1,13 +1,16 @@
 //! A path of semi-global matching through cells with ranges of their own, from the definition.
 
-use super::{cell_volume::CellVolume, path::NO_COST};
+use super::cell_volume::CellVolume;
 use crate::{
     dense::{Direction, Penalties},
     image::{Plane, Size},
 };
 
+/// The path cost of a disparity that a pixel does not have: the largest of all.
+const LARGEST: u32 = u8::MAX as u32;
+
 /// The stage `path` where the disparities of a pixel are those of its cell: a disparity that the pixel before does not have
-/// costs as much as a jump.
+/// has the largest path cost there.
 pub fn cell_path(
     reference: &Plane<u32>,
     costs: &CellVolume,
@@ -37,7 +40,7 @@ pub fn cell_path(
             before.clear();
             before.extend((disparities.start..disparities.end + 2).map(|behind| {
                 let cost = behind.checked_sub(1 + others.start).and_then(|index| costs_before.get(index as usize));
-                cost.map_or(NO_COST, |&cost| cost.into())
+                cost.map_or(LARGEST, |&cost| cost.into())
             }));
             for (cost, near) in values[starts[place(x, y)]..].iter_mut().zip(before.windows(3)) {
                 let step = near[0].min(near[2]) + penalties.p1;

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// A cost above every other, to which a penalty can be added.
-pub(super) const NO_COST: u32 = u32::MAX / 2;
+const NO_COST: u32 = u32::MAX / 2;
 
 /// The path costs of each pixel of `reference` and disparity, in the layout of `costs` (Hirschmueller, PAMI 2008).
 pub fn path(reference: &Plane<u32>, costs: &[u8], penalties: &Penalties, direction: Direction) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! A path of semi-global matching through cells with ranges of their own. `shaders/dense/cell_path.wgsl`.
 
 use super::{
-    cell_layout::{GRAIN, LevelBand, layout_constants},
+    cell_layout::{LevelBand, layout_constants},
     line_buffers::LineBuffers,
     path::penalty_constants,
 };
@@ -35,7 +35,7 @@ pub struct CellPath(Kernel);
 impl CellPath {
     /// Source, bindings and constants of the kernel.
     pub fn stage(penalties: &Penalties) -> Stage {
-        let mut constants = vec![("WORKGROUP", WORKGROUP.into()), ("GRAIN", GRAIN.into())];
+        let mut constants = vec![("WORKGROUP", WORKGROUP.into())];
         constants.extend(penalty_constants(penalties));
         constants.extend(layout_constants());
         Stage {
