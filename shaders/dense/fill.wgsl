@@ -46,6 +46,8 @@ struct Params {
     direction: i32,
     // Index of the first u32 of the confidences in `map`.
     confidence_offset: u32,
+    // First row of tiles that is filled.
+    first_tile_row: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -247,7 +249,7 @@ fn main(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_index)
         atomicStore(&count, 0u);
     }
     workgroupBarrier();
-    let first = vec2<i32>(i32(tile.x) * TILE_WORDS, i32(tile.y) * TILE_ROWS);
+    let first = vec2<i32>(i32(tile.x) * TILE_WORDS, i32(params.first_tile_row + tile.y) * TILE_ROWS);
     if thread < TILE_WORDS * TILE_ROWS {
         var rest = holes_of(first.x + i32(thread) % TILE_WORDS, first.y + i32(thread) / TILE_WORDS);
         while rest != 0u {

@@ -21,6 +21,9 @@ use crate::{
 /// Most bytes of the volumes of a band: more take no less time.
 const MOST_BYTES: u64 = 1 << 27;
 
+/// The matching's part of the work on a level that is refined.
+const MATCHING: f32 = 0.7;
+
 /// Matches a `pair` over `pyramid`, in bands of at most `band_rows` rows, and calls `progress` with the share of the
 /// work that is done, 0 to 1. Holes are filled by the colours of the reference view.
 pub(super) async fn compute(
@@ -82,17 +85,22 @@ async fn matched(
     kernels: &LevelKernels,
     task: LevelTask<'_>,
     limits: BandLimits,
-    progress: impl FnMut(f32),
+    mut progress: impl FnMut(f32),
 ) -> Result<Dense> {
     let size = task.table.size;
-    let (plan, mut readback) = guarded(gpu, "dense matching", || {
+    let (matching, mut readback) = guarded(gpu, "dense matching", || {
         let plan = kernels.plan(gpu, task, limits)?;
         Ok((plan, readback(gpu, size, &task.pair.luma[0])))
     })
     .await?;
-    plan.run_by_parts(readback.outputs(), progress).await?;
-    // The volumes are free before the map is read.
-    drop(plan);
+    let part = if task.goes_on() { MATCHING } else { 1.0 };
+    matching.run_by_parts(readback.outputs(), |share| progress(part * share)).await?;
+    // The volumes are free before the map is refined, and read.
+    if let Some(map) = matching.into_map() {
+        let refinement = guarded(gpu, "dense matching", || task.plan_refinement(gpu, map, limits)).await?;
+        let after = |share| progress(part + (1.0 - part) * share);
+        refinement.run_by_parts(readback.outputs(), after).await?;
+    }
     readback.read().await
 }
 

@@ -87,6 +87,7 @@ impl Gpu {
         let required_limits = wgpu::Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            max_texture_dimension_2d: limits.max_texture_dimension_2d,
             ..wgpu::Limits::downlevel_defaults()
         };
         // Timestamps only measure kernels, and a pipeline cache only shortens their compilation; no kernel needs them.

@@ -1,5 +1,7 @@
 //! Filling of holes along rays. `shaders/dense/fill.wgsl`.
 
+use std::ops::Range;
+
 use super::{
     bitmap::Bitmaps,
     map_buffer::{MapBuffer, MapLayout},
@@ -49,6 +51,7 @@ shader_struct! {
         most: i32,
         direction: i32,
         confidence_offset: u32,
+        first_tile_row: u32,
     }
 }
 
@@ -107,15 +110,18 @@ impl Fill {
         Self(Kernel::new(gpu, &Self::stage()))
     }
 
-    /// Fills the holes of a map of `view`, whose confidences are 0 there, with disparities within `range`.
+    /// Fills the holes in `rows` of a map of `view`, whose confidences are 0 there, with disparities within `range`. A few
+    /// rows around these may be filled too.
     pub fn prepare(
         &self,
         range: DisparityRange,
         view: View,
         Surroundings { tangents, projected, bitmaps }: Surroundings<'_>,
         map: MapBuffer<'_>,
+        rows: Range<u32>,
     ) -> Dispatch {
         let MapBuffer { buffer, layout } = map;
+        let tile_rows = rows.start / TILE[1]..rows.end.div_ceil(TILE[1]);
         let MapLayout { width, rows: height } = layout;
         let params = Params {
             width,
@@ -124,8 +130,9 @@ impl Fill {
             most: range.last() * SCALE,
             direction: view.direction(),
             confidence_offset: layout.confidence_offset(),
+            first_tile_row: tile_rows.start,
         };
-        let groups = [width.div_ceil(32 * TILE[0]), height.div_ceil(TILE[1]), 1];
+        let groups = [width.div_ceil(32 * TILE[0]), tile_rows.len() as u32, 1];
         self.0.dispatch(&params, &[tangents, projected, bitmaps, buffer], groups)
     }
 }

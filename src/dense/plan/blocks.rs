@@ -10,7 +10,7 @@ use super::{
     coarse_to_fine::Coarse,
     compared::ComparedBytes,
     other_winners::OtherWinners,
-    refine::{After, Unrefined, plan_after_bands},
+    refine::{After, StoredMap, Unrefined, plan_after_bands},
 };
 use crate::{
     dense::{
@@ -83,7 +83,7 @@ pub(in crate::dense) fn plan(
         let map = matches.buffer;
         let range = config.searched(width)?;
         let after = After::of(&config.parameters);
-        let unrefined = Unrefined { matches: map, size, range, pair, reference: view };
+        let unrefined = Unrefined { map: StoredMap::of(&plan, map), size, range, pair, reference: view };
         plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
     }
     Ok(plan)

@@ -10,7 +10,7 @@
 
 use super::{
     BandLimits, Plan,
-    refine::{After, Unrefined, plan_after_bands},
+    refine::{After, StoredMap, Unrefined, plan_after_bands},
     transform::Transform,
 };
 use crate::{
@@ -111,7 +111,7 @@ pub(in crate::dense) fn plan(
     if goes_on {
         let map = &reference.matches;
         let after = After::of(&config.parameters);
-        let unrefined = Unrefined { matches: map, size, range, pair, reference: config.reference };
+        let unrefined = Unrefined { map: StoredMap::of(&plan, map), size, range, pair, reference: config.reference };
         plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
     }
     Ok(plan)

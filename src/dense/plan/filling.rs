@@ -2,6 +2,8 @@
 //!
 //! projection to the other view, bitmaps of the holes -> tangent planes beside holes -> filling along rays.
 
+use std::ops::Range;
+
 use super::Plan;
 use crate::{
     dense::{
@@ -43,8 +45,15 @@ impl<'a> Filling<'a> {
         })
     }
 
-    /// Fills the holes of `map`, which has the rows of the view from row `top` on.
-    pub(super) fn plan(&self, plan: &mut Plan, (range, view): (DisparityRange, View), top: u32, map: MapBuffer<'_>) {
+    /// Fills, between checkpoints, the holes in `rows` of `map`, which has the rows of the view from row `top` on.
+    pub(super) fn plan(
+        &self,
+        plan: &mut Plan,
+        (range, view): (DisparityRange, View),
+        top: u32,
+        map: MapBuffer<'_>,
+        rows: Range<u32>,
+    ) {
         let Self { kernels, colours, with_holes, projected, bitmaps, tangents } = self;
         let (project, bitmap, tangent, fill) = kernels;
         let MapBuffer { buffer: disparities, layout } = map;
@@ -65,6 +74,8 @@ impl<'a> Filling<'a> {
         plan.fill_texture(disparities, with_holes);
         plan.run(bitmap.prepare(size, with_holes, bitmaps));
         plan.run(tangent.prepare(size, range, with_holes, bitmaps, tangents));
-        plan.run(fill.prepare(range, view, Surroundings { tangents, projected, bitmaps }, map));
+        plan.checkpoint();
+        plan.run(fill.prepare(range, view, Surroundings { tangents, projected, bitmaps }, map, rows));
+        plan.checkpoint();
     }
 }

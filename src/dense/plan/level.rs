@@ -6,8 +6,8 @@
 use std::ops::Range;
 
 use super::{
-    BandLimits, Plan,
-    refine::{After, Unrefined, plan_after_bands},
+    BandLimits, Plan, WholeMap,
+    refine::{After, StoredMap, Unrefined, plan_after_bands},
     transform::Transform,
 };
 use crate::{
@@ -55,6 +55,30 @@ pub(in crate::dense) struct LevelTask<'a> {
     pub(in crate::dense) pair: &'a UploadedPair,
 }
 
+impl LevelTask<'_> {
+    /// What is done to the map of all bands.
+    fn after(&self) -> After {
+        After { filters: self.filters.cloned(), ..After::of(&self.config.parameters) }
+    }
+
+    /// Whether the map of all bands is worked on.
+    pub(in crate::dense) fn goes_on(&self) -> bool {
+        let after = self.after();
+        after.filters.is_some() || after.agreement.is_some() || self.pair.masks.is_some()
+    }
+
+    /// Plans what follows the matching, in windows of rows within `limits`: a plan of its own, so that the volumes of the
+    /// matching are free before. `map` is what the plan of the matching has collected.
+    pub(in crate::dense) fn plan_refinement(&self, gpu: &Gpu, map: WholeMap, limits: BandLimits) -> Result<Plan> {
+        let &LevelTask { config, table, pair, .. } = self;
+        let mut plan = Plan::new(gpu, config, 1);
+        let (size, range, map) = (table.size, table.range, StoredMap::Whole(map));
+        let unrefined = Unrefined { map, size, range, pair, reference: config.reference };
+        plan_after_bands(gpu, &mut plan, &self.after(), unrefined, limits)?;
+        Ok(plan)
+    }
+}
+
 impl LevelKernels {
     /// Compiles the kernels for `config`, which has costs and at least one path.
     pub(in crate::dense) fn new(gpu: &Gpu, config: &DenseConfig) -> Self {
@@ -80,16 +104,15 @@ impl LevelKernels {
         }
     }
 
-    /// Plans the matching of a level in bands within `limits`, with a checkpoint after each.
+    /// Plans the matching of a level in bands within `limits`, with a checkpoint after each. The map is collected if it is
+    /// to be refined.
     pub(in crate::dense) fn plan(&self, gpu: &Gpu, task: LevelTask<'_>, limits: BandLimits) -> Result<Plan> {
-        let LevelTask { config, table, filters, pair } = task;
+        let LevelTask { config, table, .. } = task;
         let (size, range) = (table.size, table.range);
         let volumes = Volumes::new(table, self.directions.len() as u64, limits)?;
         let mut plan = Plan::new(gpu, config, volumes.bands.len());
-        let after = After { filters: filters.cloned(), ..After::of(&config.parameters) };
-        let goes_on = after.filters.is_some() || after.agreement.is_some() || pair.masks.is_some();
-        if goes_on {
-            plan.keep(size)?;
+        if task.goes_on() {
+            plan.keep_whole(size)?;
         }
         let level = self.level(gpu, &mut plan, task, volumes)?;
         let check = match config.parameters.consistency {
@@ -111,10 +134,6 @@ impl LevelKernels {
             }
             plan.hand_out(matches, band.top, band.rows);
             plan.checkpoint();
-        }
-        if goes_on {
-            let unrefined = Unrefined { matches: &level.matches, size, range, pair, reference: config.reference };
-            plan_after_bands(gpu, &mut plan, &after, unrefined, limits)?;
         }
         Ok(plan)
     }

@@ -143,11 +143,16 @@ impl Plan {
     }
 
     /// Keeps the maps of all bands, of a picture of this size, for later steps to read.
-    pub(super) fn keep(&mut self, Size { width, height }: Size) -> Result<()> {
-        if self.bands == 1 {
-            self.kept = Kept::InPlace;
-            return Ok(());
+    pub(super) fn keep(&mut self, size: Size) -> Result<()> {
+        if self.bands > 1 {
+            return self.keep_whole(size);
         }
+        self.kept = Kept::InPlace;
+        Ok(())
+    }
+
+    /// [`Self::keep`] in buffers of their own.
+    pub(super) fn keep_whole(&mut self, Size { width, height }: Size) -> Result<()> {
         let mut whole = |label, row: u32| {
             let bytes = 4 * u64::from(row) * u64::from(height);
             self.bytes += bytes;
@@ -157,6 +162,11 @@ impl Plan {
         let confidences = whole("all confidences", width.div_ceil(4))?;
         self.kept = Kept::Whole(WholeMap { disparities, confidences });
         Ok(())
+    }
+
+    /// The collected maps, for another plan; the memory of this one becomes free.
+    pub(super) fn into_map(self) -> Option<WholeMap> {
+        if let Kept::Whole(map) = self.kept { Some(map) } else { None }
     }
 
     /// Copies the map of a band of `rows` rows from `first_row` to where it is kept, or to the caller's outputs.

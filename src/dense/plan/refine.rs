@@ -3,6 +3,8 @@
 //! agreement of neighbours -> residuals and support -> weighted medians of the supported disparities -> filling ->
 //! weighted medians of all pixels -> a plain median.
 
+use std::ops::Range;
+
 use super::{BandLimits, Kept, Plan, WholeMap, filling::Filling};
 use crate::{
     dense::{
@@ -56,8 +58,8 @@ impl After {
 
 /// A map to be refined.
 pub(super) struct Unrefined<'a> {
-    /// The buffer of the matches of a band, in which the map lies if there is only one.
-    pub(super) matches: &'a wgpu::Buffer,
+    /// Where the map lies.
+    pub(super) map: StoredMap,
     /// Width and height of the map.
     pub(super) size: Size,
     /// The searched disparities; filled pixels stay within them.
@@ -66,6 +68,14 @@ pub(super) struct Unrefined<'a> {
     pub(super) pair: &'a UploadedPair,
     /// The reference view, to which the map belongs.
     pub(super) reference: View,
+}
+
+/// A window of rows of a map.
+struct Window {
+    /// Row of the map where the window begins.
+    top: u32,
+    /// The rows of the window that are handed out.
+    result: Range<u32>,
 }
 
 /// The weighted-median kernels of a refinement. Most filters share their parameters, and each kernel is compiled once.
@@ -119,13 +129,13 @@ impl<'a> Refining<'a> {
         })
     }
 
-    /// Plans the refinement of a window of rows that begins in row `top`, in `unrefined`. Returns the buffers of the result:
-    /// of its disparities, and of the confidences, which lie behind a map.
+    /// Plans the refinement of a window of rows, in `unrefined`. Returns the buffers of the result: of its disparities, and
+    /// of the confidences, which lie behind a map.
     fn plan<'b>(
         &'b self,
         plan: &mut Plan,
         unrefined: MapBuffer<'b>,
-        top: u32,
+        Window { top, result }: Window,
         (views, range): (ComparedViews<'_>, DisparityRange),
     ) -> [&'b wgpu::Buffer; 2] {
         let layout = unrefined.layout;
@@ -148,7 +158,9 @@ impl<'a> Refining<'a> {
         if let Some(filling) = &self.filling {
             join(plan, maps[0], confidences, layout);
             confidences = maps[0];
-            filling.plan(plan, (range, views.reference), top, MapBuffer { buffer: maps[0], layout });
+            let reach: u32 = self.filters.after.iter().map(|median| median.radius).sum();
+            let filled = result.start.saturating_sub(reach)..(result.end + reach).min(layout.rows);
+            filling.plan(plan, (range, views.reference), top, MapBuffer { buffer: maps[0], layout }, filled);
         }
         for &median in &self.filters.after {
             plan.run(filter(median, maps));
@@ -166,7 +178,7 @@ pub(super) fn plan_after_bands(
     gpu: &Gpu,
     plan: &mut Plan,
     after: &After,
-    Unrefined { matches, size, range, pair, reference }: Unrefined<'_>,
+    Unrefined { map, size, range, pair, reference }: Unrefined<'_>,
     limits: BandLimits,
 ) -> Result<()> {
     let Size { width, height } = size;
@@ -176,10 +188,12 @@ pub(super) fn plan_after_bands(
     let views = ComparedViews { luma: pair.luma.each_ref(), brightness, reference };
     let rows = window_rows(gpu, size, halo, after.fills(), limits)?;
     let largest = MapLayout { width, rows: (rows + 2 * halo).min(height) };
-    let map = StoredMap::new(plan, matches, size);
-    // A map that lies whole in the buffer of the matches stays there.
-    let in_place = rows == height && matches!(plan.kept, Kept::InPlace);
-    let window = if in_place { matches.clone() } else { plan.buffer("map of a window", largest.words())? };
+    // A map that lies whole in one buffer stays there.
+    let in_place = if let (true, StoredMap::Matches(matches)) = (rows == height, &map) { Some(matches) } else { None };
+    let window = match in_place {
+        Some(matches) => matches.clone(),
+        None => plan.buffer("map of a window", largest.words())?,
+    };
     let agreement = match after.agreement {
         Some(least) => Some((Agreement::new(gpu), least, plan.word_texture("map before the check", largest.words())?)),
         None => None,
@@ -194,10 +208,11 @@ pub(super) fn plan_after_bands(
         let result_rows = rows.min(height - first_row);
         let top = first_row.saturating_sub(halo);
         let layout = MapLayout { width, rows: (first_row + result_rows + halo).min(height) - top };
-        if !in_place {
-            map.copy_rows(plan, top, MapBuffer { buffer: &window, layout });
+        if in_place.is_none() {
+            map.copy_rows(plan, size, top, MapBuffer { buffer: &window, layout });
         }
         let matches = MapBuffer { buffer: &window, layout };
+        let skipped = first_row - top;
         if let Some((agreement, least, before)) = &agreement {
             plan.fill_texture(&window, before);
             plan.run(agreement.prepare(before, *least, matches));
@@ -207,7 +222,10 @@ pub(super) fn plan_after_bands(
         }
         let [disparities, mut confidences] = match &refining {
             None => [&window, &window],
-            Some(refining) => refining.plan(plan, matches, top, (views, range)),
+            Some(refining) => {
+                let result = skipped..skipped + result_rows;
+                refining.plan(plan, matches, Window { top, result }, (views, range))
+            }
         };
         if let Some((unseen, masks)) = &unseen {
             join(plan, disparities, confidences, layout);
@@ -215,13 +233,12 @@ pub(super) fn plan_after_bands(
             let refined = MapBuffer { buffer: disparities, layout };
             plan.run(unseen.prepare(refined, top, reference, [&masks.own, &masks.other], Loss::Confidence));
         }
-        let skipped = u64::from(first_row - top);
         for (from, start, row_words, to) in [
             (disparities, 0, width, CopyTarget::Disparities),
             (confidences, u64::from(layout.confidence_offset()), width.div_ceil(4), CopyTarget::Confidences),
         ] {
             let row_words = u64::from(row_words);
-            let from_word = start + row_words * skipped;
+            let from_word = start + row_words * u64::from(skipped);
             let (to_word, words) = (row_words * u64::from(first_row), row_words * u64::from(result_rows));
             plan.copy(WordCopy { from: from.clone(), from_word, to, to_word, words });
         }
@@ -240,32 +257,39 @@ fn join(plan: &mut Plan, disparities: &wgpu::Buffer, confidences: &wgpu::Buffer,
     }
 }
 
-/// The map of all bands, in one or two buffers.
-struct StoredMap {
-    /// Buffer and first word of the disparities and of the confidences.
-    parts: [(wgpu::Buffer, u64); 2],
+/// The map of all bands.
+pub(super) enum StoredMap {
+    /// In the buffer of the matches of the only band.
+    Matches(wgpu::Buffer),
+    /// Collected.
+    Whole(WholeMap),
 }
 
 impl StoredMap {
-    /// The map that `plan` keeps; `matches` is the buffer of the only band.
-    fn new(plan: &Plan, matches: &wgpu::Buffer, Size { width, height }: Size) -> Self {
-        let parts = match &plan.kept {
-            Kept::Whole(WholeMap { disparities, confidences }) => {
-                [disparities, confidences].map(|buffer| (buffer.clone(), 0))
-            }
-            Kept::InPlace | Kept::Nowhere => {
-                let offset = MapLayout { width, rows: height }.confidence_offset();
-                [0, offset.into()].map(|word| (matches.clone(), word))
-            }
-        };
-        Self { parts }
+    /// The map that `plan` keeps; `matches` is the buffer of the matches of a band.
+    pub(super) fn of(plan: &Plan, matches: &wgpu::Buffer) -> Self {
+        match &plan.kept {
+            Kept::Whole(map) => Self::Whole(map.clone()),
+            Kept::InPlace | Kept::Nowhere => Self::Matches(matches.clone()),
+        }
     }
 
-    /// Plans a copy of as many rows as `window` has, from row `top` on.
-    fn copy_rows(&self, plan: &mut Plan, top: u32, MapBuffer { buffer, layout }: MapBuffer<'_>) {
+    /// Buffer and first word of the disparities and of the confidences of a map of `size`.
+    fn parts(&self, Size { width, height }: Size) -> [(&wgpu::Buffer, u64); 2] {
+        match self {
+            Self::Matches(buffer) => {
+                let offset = MapLayout { width, rows: height }.confidence_offset();
+                [(buffer, 0), (buffer, offset.into())]
+            }
+            Self::Whole(WholeMap { disparities, confidences }) => [(disparities, 0), (confidences, 0)],
+        }
+    }
+
+    /// Plans a copy of as many rows as `window` has, from row `top` on, of a map of `size`.
+    fn copy_rows(&self, plan: &mut Plan, size: Size, top: u32, MapBuffer { buffer, layout }: MapBuffer<'_>) {
         let MapLayout { width, rows } = layout;
         let places = [(width, 0), (width.div_ceil(4), u64::from(layout.confidence_offset()))];
-        for ((from, start), (row_words, to_word)) in self.parts.iter().zip(places) {
+        for ((from, start), (row_words, to_word)) in self.parts(size).into_iter().zip(places) {
             let from_word = start + u64::from(row_words) * u64::from(top);
             let words = u64::from(row_words) * u64::from(rows);
             let to = CopyTarget::Buffer(buffer.clone());

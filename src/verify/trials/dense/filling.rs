@@ -250,7 +250,7 @@ impl Trial for FillTrial {
         let buffer = bench.upload(&words)?;
         let surroundings = kernels::Surroundings { tangents: &tangents, projected: &projected, bitmaps: &bitmaps };
         let map = MapBuffer { buffer: &buffer, layout };
-        let dispatch = Fill::new(bench.gpu).prepare(self.range, self.view, surroundings, map);
+        let dispatch = Fill::new(bench.gpu).prepare(self.range, self.view, surroundings, map, 0..size.height);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(arrays(&bench.download(&buffer)?, layout.pixels() as usize))
     }
