@@ -78,6 +78,8 @@ cargo test
 say 'regression suite'
 verify() { "$hsad" verify -o "$(mktemp -d)/hsad-verify" "$@"; }
 verify
+# What GPUs get, as a whole.
+verify --plan lanes --only balanced --only quality
 
 say 'regression suite, on SwiftShader'
 swiftshader="${HSAD_SWIFTSHADER:-/usr/lib/chromium/vk_swiftshader_icd.json}"

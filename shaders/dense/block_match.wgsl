@@ -14,7 +14,7 @@
 // a factor of forty on software drivers.
 
 #import selection
-#import consistent
+#import block_search
 #import words
 
 // Constants:
@@ -34,8 +34,6 @@
 //   DIRECTION        partner column = column + DIRECTION * disparity: -1 if the reference is the left view, 1 if the
 //                    right view
 //   START            first of the WORDS searched u32 loaded before the first step: 1 if a step shifts rows down, else 0
-//   HALVED           1: the other view's disparities are of a picture of half the size; 0: of the picture's size
-//   SHIFT            bits of a disparity's index in a key
 //   FULL             1: disparities, checked and interpolated, and confidences; 0: the winners' whole disparities alone
 //   NONE             sentinel: the pixel has no disparity
 
@@ -79,42 +77,6 @@ struct Params {
 // One number per disparity of a step and pixel of a tile's row.
 alias Costs = array<array<vec4<u32>, QUADS>, 4>;
 
-// Search state of four neighbouring pixels: keys of the disparities visited so far, or NO_KEY. With FULL = 0 only
-// `before` is used, for the best of all.
-struct Search {
-    // Key of the last disparity, and the best key of the disparities before the last.
-    previous: vec4<u32>,
-    before: vec4<u32>,
-    // Best key of the disparities two or more away from the winner.
-    rival: vec4<u32>,
-    // Keys of the winner's two neighbours.
-    below: vec4<u32>,
-    above: vec4<u32>,
-}
-
-// Keys of the winners.
-fn best_of(s: Search) -> vec4<u32> {
-    return select(min(s.previous, s.before), s.before, FULL == 0);
-}
-
-// Visits the next disparity. `wins`: `key` is the best so far; `last_won`: the previous key was the best so far.
-fn visit(s: Search, key: vec4<u32>, wins: vec4<bool>, last_won: vec4<bool>) -> Search {
-    let no_key = vec4<u32>(NO_KEY);
-    var next = s;
-    if FULL == 0 {
-        next.before = min(s.before, key);
-        return next;
-    }
-    next.previous = key;
-    next.before = best_of(s);
-    // A key next to the winner is the winner's neighbour, later keys compete for the rival. The rival of a new winner
-    // is the best key before the new winner's lower neighbour.
-    next.rival = min(s.rival, select(select(key, no_key, last_won), s.before, wins));
-    next.below = select(s.below, s.previous, wins);
-    next.above = select(select(s.above, key, last_won), no_key, wins);
-    return next;
-}
-
 // The bits that turn a step's costs into keys, for pixels from column x on: the disparity's index, or all ones if the
 // partner lies outside the picture or the disparity outside the range.
 fn index_bits(x: i32, step: u32, range: vec2<u32>) -> Costs {
@@ -154,15 +116,6 @@ fn visit_step(searches: array<Search, QUADS>, window: Costs, tags: Costs) -> arr
         }
     }
     return next;
-}
-
-// Shifts from the four bytes of a u32 to costs, which stand SHIFT bits up: one shift per byte, left or right.
-const SHIFTS = vec4<i32>(SHIFT, SHIFT - 8, SHIFT - 16, SHIFT - 24);
-const LEFT_SHIFTS = vec4<u32>(max(SHIFTS, vec4<i32>(0)));
-const RIGHT_SHIFTS = vec4<u32>(max(-SHIFTS, vec4<i32>(0)));
-
-fn unpack(word: u32) -> vec4<i32> {
-    return vec4<i32>(((vec4<u32>(word) << LEFT_SHIFTS) >> RIGHT_SHIFTS) & vec4<u32>(255u << SHIFT));
 }
 
 // Sums of absolute differences along one row of the windows, for a step's four disparities and the pixels of a tile's
@@ -290,21 +243,6 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             searches[n + HELD_SIDE - 1] = searches[n + HELD_SIDE];
         }
     }
-}
-
-// Whether the other view's disparity at the pixel's partner leads back; with HALVED at the partner or one of its two
-// neighbours in the row, since at half the size a window extends twice as far across depth edges.
-fn is_confirmed(x: u32, y: u32, disparity: i32) -> bool {
-    let partner = partner_of(i32(x), disparity, DIRECTION);
-    let row = (i32(y >> HALVED) + params.others_first_row) * i32(params.others_width);
-    var holds = params.max_difference == 0xffffffffu;
-    for (var i = 0; i < HALVED + HALVED + 1; i++) { // unroll
-        let column = clamp((partner >> HALVED) + i - HALVED, 0, i32(params.others_width) - 1);
-        let other = i32(textureLoad(others, texel_of(u32(row + column))).x);
-        let scaled = select(NONE, other << HALVED, other != NONE);
-        holds = holds || is_consistent(disparity, partner, params.width, scaled, params.max_difference);
-    }
-    return holds;
 }
 
 // Writes disparities and confidences of four pixels, some of which may lie right of the picture.

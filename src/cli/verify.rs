@@ -9,10 +9,13 @@ use std::{
 };
 
 use anyhow::{anyhow, bail};
-use clap::Args;
+use clap::{
+    Args,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
 use hsad::{
     Error,
-    gpu::{DeviceChoice, Gpu},
+    gpu::{DeviceChoice, Gpu, SgmPlan},
     image::Size,
     io::atomic,
     verify::{Array, Bench, Case, Comparison, Extent, Outcome, SIZES, Tolerance, cases},
@@ -41,6 +44,10 @@ pub struct Verify {
     /// Device to verify: best, or the index or a part of the name of a device (see hsad devices)
     #[arg(long, default_value_t = DeviceChoice::Best)]
     device: DeviceChoice,
+    /// How threads share the work of semi-global matching: a thread per line, or threads across disparities [default:
+    /// lines on a CPU, lanes on a GPU]
+    #[arg(long, value_parser = plans())]
+    plan: Option<SgmPlan>,
     /// Verify at one size (131x67) instead of all
     #[arg(long)]
     quick: bool,
@@ -64,6 +71,10 @@ pub struct Verify {
     quiet: bool,
 }
 
+fn plans() -> impl TypedValueParser<Value = SgmPlan> {
+    PossibleValuesParser::new(SgmPlan::ALL.map(SgmPlan::name)).map(|name| name.parse().expect("one of the names above"))
+}
+
 /// Parses `WIDTHxHEIGHT`.
 fn size(text: &str) -> Result<Size, String> {
     let sides =
@@ -72,6 +83,12 @@ fn size(text: &str) -> Result<Size, String> {
 }
 
 impl Verify {
+    /// The command that repeats `case` alone.
+    fn command(&self, case: &Case) -> String {
+        let plan = self.plan.map_or(String::new(), |plan| format!(" --plan {plan}"));
+        case.command(&self.device) + &plan
+    }
+
     /// Runs all cases, prints one row per case, and writes the arrays of failed cases.
     pub fn run(self) -> anyhow::Result<()> {
         let cases = self.cases()?;
@@ -79,7 +96,10 @@ impl Verify {
         let folder = Output::open(&self.output)?;
         let json_file = self.json.as_deref().filter(|file| *file != Path::new("-"));
         json_file.map(check_writable).transpose()?;
-        let gpu = Gpu::open(&self.device)?;
+        let mut gpu = Gpu::open(&self.device)?;
+        if let Some(plan) = self.plan {
+            gpu = gpu.with_sgm_plan(plan);
+        }
         let table = !self.quiet && self.json.as_deref() != Some(Path::new("-"));
         let print = |text: &str| if table { terminal::print(text) } else { Ok(()) };
         let device = described(&gpu);
@@ -94,7 +114,7 @@ impl Verify {
             progress.suspend(|| print(&row(&outcome)))?;
             if !outcome.passes() {
                 faults += 1;
-                let written = write_failure(folder.folder(), &device, &outcome, &case.command(&self.device));
+                let written = write_failure(folder.folder(), &device, &outcome, &self.command(case));
                 unsaved.extend(written.err());
             }
             reports.push(self.report(&outcome));
@@ -176,7 +196,7 @@ impl Verify {
             "seconds": { "device": device_time.as_secs_f64(), "twin": twin_time.as_secs_f64() },
             "passes": outcome.passes(),
             "faults": faults,
-            "command": case.command(&self.device),
+            "command": self.command(case),
         })
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{
     device::{DeviceChoice, adapters, find},
     pipelines::Pipelines,
+    sgm_plan::SgmPlan,
 };
 use crate::error::{Error, Result};
 
@@ -31,6 +32,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The pipeline cache for kernels, of the same device.
     pub cache: Option<wgpu::PipelineCache>,
+    /// How semi-global matching is shared out, if that is chosen.
+    sgm_plan: Option<SgmPlan>,
     /// Compiled kernels, shared by clones.
     pub(super) pipelines: Arc<Pipelines>,
 }
@@ -39,13 +42,13 @@ impl Gpu {
     /// Wraps a device and its own queue. With the queue of another device nothing works, and wgpu reports that only to
     /// the device's handler of uncaptured errors.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        Self { device, queue, cache: None, pipelines: Arc::default() }
+        Self { device, queue, cache: None, sgm_plan: None, pipelines: Arc::default() }
     }
 
     /// Adds the application's pipeline cache. The kernels compiled so far are left to the clones without this cache.
     #[must_use]
     pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
-        Self { cache: Some(cache), ..Self::new(self.device, self.queue) }
+        Self { cache: Some(cache), sgm_plan: self.sgm_plan, ..Self::new(self.device, self.queue) }
     }
 
     /// Opens the chosen adapter, with its own limits for buffer sizes and the downlevel defaults for all others.
@@ -99,6 +102,17 @@ impl Gpu {
             .await
             .map_err(|e| Error::Unsupported(format!("{}: {e}", adapter.get_info().name)))?;
         Ok(Self::new(device, queue))
+    }
+
+    /// Chooses how semi-global matching is shared out; else the class of the adapter decides.
+    #[must_use]
+    pub fn with_sgm_plan(self, plan: SgmPlan) -> Self {
+        Self { sgm_plan: Some(plan), ..self }
+    }
+
+    /// How semi-global matching is shared out.
+    pub fn sgm_plan(&self) -> SgmPlan {
+        self.sgm_plan.unwrap_or_else(|| SgmPlan::of(&self.info()))
     }
 
     /// Describes the adapter of the device.

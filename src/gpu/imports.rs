@@ -12,6 +12,7 @@ macro_rules! parts {
 
 const PARTS: &[(&str, &str)] = parts![
     "bitmap_rows",
+    "block_search",
     "brightness",
     "catmull_rom",
     "cell_layout",
@@ -26,6 +27,7 @@ const PARTS: &[(&str, &str)] = parts![
     "map_fixed_point",
     "map_pixels",
     "path_step",
+    "pixel_cost",
     "quotient",
     "selection",
     "texel_bytes",

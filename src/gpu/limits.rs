@@ -32,7 +32,7 @@ pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_sampled_textures_per_shader_stage, 1),
     limit!(max_storage_textures_per_shader_stage, 2),
     limit!(max_texture_dimension_2d, 2048),
-    limit!(max_compute_workgroup_storage_size, 3072),
+    limit!(max_compute_workgroup_storage_size, 6016),
     limit!(max_compute_invocations_per_workgroup, 256),
     limit!(max_compute_workgroup_size_x, 64),
     limit!(max_compute_workgroup_size_y, 16),

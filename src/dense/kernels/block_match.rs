@@ -5,6 +5,7 @@ use super::{
     map_buffer::MapBuffer,
     pad::PadParams,
     selection::{ResultKind, selection_constants},
+    tile_match,
 };
 use crate::{
     dense::config::{DenseConfig, DenseParameters, View},
@@ -14,7 +15,7 @@ use crate::{
     image::Size,
 };
 
-/// The pixels that one thread matches, and the tiles of a workgroup.
+/// The pixels that one thread matches, and the tiles of a workgroup; see also [`Tile::HARDWARE`].
 ///
 /// A larger tile shares more row sums and loads; a smaller one needs fewer registers, compiles faster and leaves more
 /// threads. The result is the same. Where each cell has its own range, a tile must lie in one cell, and the lanes that
@@ -43,8 +44,9 @@ impl Tile {
     /// CPU drivers compile this tile in minutes.
     pub const LARGE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
 
-    /// For all other devices: GPUs prefer many threads with few registers.
-    pub const HARDWARE: Self = Self { quads: 1, height: 4, across: 8, down: 8 };
+    /// For all other devices, which prefer many threads with few registers: the tile of a whole workgroup, in which a
+    /// thread has a column of pixels. See `shaders/dense/tile_match.wgsl`.
+    pub const HARDWARE: Self = Self { quads: 16, height: 4, across: 1, down: 1 };
 
     /// The fastest tile on the device of `gpu` for windows of `side` pixels.
     pub fn of(gpu: &Gpu, side: u32) -> Self {
@@ -64,7 +66,8 @@ impl Tile {
 }
 
 shader_struct! {
-    struct Params {
+    /// Uniforms of both kernels of block matching.
+    pub(super) struct Params {
         width: u32,
         rows: u32,
         stride: u32,
@@ -94,21 +97,33 @@ pub struct BlockMatch {
 }
 
 /// Margin of a padded row on either side of the picture, in pixels: the radius, rounded up to whole words.
-fn margin(radius: u32) -> u32 {
+pub(super) fn margin(radius: u32) -> u32 {
     radius.next_multiple_of(4)
+}
+
+/// Constants of `shaders/shared/block_search.wgsl` and of what it imports.
+pub(super) fn search_constants(parameters: &DenseParameters, view: View, kind: ResultKind) -> Vec<(&'static str, i64)> {
+    let mut constants = vec![
+        ("DIRECTION", view.direction().into()),
+        ("HALVED", parameters.is_coarse_to_fine().into()),
+        ("ROW_BITS", ROW_BITS.into()),
+        ("SCALE_BITS", SCALE.ilog2().into()),
+    ];
+    constants.extend(selection_constants(parameters.interpolation, kind, parameters.index_bits()));
+    constants
 }
 
 impl BlockMatch {
     /// Source, bindings and constants of the kernel.
     pub fn stage(parameters: &DenseParameters, view: View, kind: ResultKind, tile: Tile) -> Stage {
+        if tile == Tile::HARDWARE {
+            return tile_match::stage(parameters, view, kind);
+        }
         let (radius, side) = (parameters.radius(), parameters.window());
         let core = tile.core(side);
         let constant = |value: u32| i64::from(value);
         // Each step appends words: in front when searching to the left, behind when searching to the right.
-        let (direction, front) = match view {
-            View::Left => (-1, 4),
-            View::Right => (1, 0),
-        };
+        let front = if view == View::Left { 4 } else { 0 };
         Stage {
             name: "block_match",
             source: include_str!("../../../shaders/dense/block_match.wgsl"),
@@ -126,14 +141,10 @@ impl BlockMatch {
                 ("WORDS", constant(2 * margin(radius) / 4 + tile.quads)),
                 ("FIRST", constant(margin(radius) - radius)),
                 ("SEARCHED_FIRST", constant(margin(radius) - radius + front)),
-                ("DIRECTION", direction),
                 ("START", i64::from(view == View::Right)),
-                ("HALVED", parameters.is_coarse_to_fine().into()),
-                ("ROW_BITS", ROW_BITS.into()),
-                ("SCALE_BITS", SCALE.ilog2().into()),
             ]
             .into_iter()
-            .chain(selection_constants(parameters.interpolation, kind, parameters.index_bits()))
+            .chain(search_constants(parameters, view, kind))
             .collect(),
         }
     }

@@ -11,12 +11,15 @@ use crate::{
 
 /// The kernel of matching costs within cells, for one view as the reference.
 #[derive(Debug)]
-pub struct CellCost(Kernel);
+pub struct CellCost {
+    kernel: Kernel,
+    pixels: u32,
+}
 
 impl CellCost {
-    /// Source, bindings and constants of the kernel.
-    pub fn stage(cost: &Cost, view: View) -> Stage {
-        let mut constants = cost_constants(cost, view);
+    /// Source, bindings and constants of the kernel, with so many pixels per thread, a multiple of four.
+    pub fn stage(cost: &Cost, view: View, pixels: u32) -> Stage {
+        let mut constants = cost_constants(cost, view, pixels);
         constants.extend(layout_constants());
         Stage {
             name: "cell_cost",
@@ -29,9 +32,9 @@ impl CellCost {
         }
     }
 
-    /// Compiles the kernel.
-    pub fn new(gpu: &Gpu, cost: &Cost, view: View) -> Self {
-        Self(Kernel::new(gpu, &Self::stage(cost, view)))
+    /// Compiles the kernel, with so many pixels per thread, a multiple of four.
+    pub fn new(gpu: &Gpu, cost: &Cost, view: View, pixels: u32) -> Self {
+        Self { kernel: Kernel::new(gpu, &Self::stage(cost, view, pixels)), pixels }
     }
 
     /// Writes the costs of `band`, as [`super::CostVolume::prepare`] does; `min_disparity` is that of the whole range.
@@ -45,6 +48,7 @@ impl CellCost {
         let &LevelBand { layout, width, top, first_row, rows } = band;
         let (columns, cells) = (layout.columns, layout.cells);
         let params = Params { width, rows, first_row, min_disparity, pixel_words: 0, top, columns, cells };
-        self.0.dispatch(&params, &[reference, other, volume, &layout.words.view], groups(width, rows))
+        let groups = groups(width, rows, self.pixels);
+        self.kernel.dispatch(&params, &[reference, other, volume, &layout.words.view], groups)
     }
 }

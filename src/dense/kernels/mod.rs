@@ -16,6 +16,10 @@ mod consistency;
 mod cost;
 mod fill;
 mod halve;
+mod lane_cost;
+mod lane_path;
+mod lane_select;
+mod lanes;
 mod line_buffers;
 mod map_back;
 mod map_buffer;
@@ -30,6 +34,7 @@ mod selection;
 mod soft_rank;
 mod support;
 mod tangent;
+mod tile_match;
 mod unseen;
 mod volume_band;
 mod weighted_median;
@@ -50,9 +55,14 @@ pub use census::Census;
 pub(crate) use census::HALO_ROWS;
 pub use claim::Claim;
 pub use consistency::{CheckedAgainst, Consistency};
-pub use cost::CostVolume;
+pub(in crate::dense) use cost::pixels_per_thread;
+pub use cost::{CostVolume, PIXELS_HARDWARE, PIXELS_SOFTWARE};
 pub use fill::{Fill, Surroundings, rays};
 pub use halve::Halve;
+pub use lane_cost::LaneCost;
+pub use lane_path::{FollowedPath, LanePath};
+pub use lane_select::LaneSelect;
+pub use lanes::Lanes;
 pub use line_buffers::{LineBuffers, PathVolumes};
 pub use map_back::{MapBack, SURFACE};
 pub use map_buffer::{MapBuffer, MapLayout};
@@ -105,12 +115,23 @@ pub fn stages() -> Vec<Stage> {
     let part = Difference { weight: 1, limit: 1 };
     let cost = Cost { census: 1, difference: part, gradient: part, weak_spread: None };
     for cost in [cost, Cost { weak_spread: Some(1), ..cost }] {
-        stages.extend(View::ALL.map(|view| CostVolume::stage(&cost, view)));
-        stages.extend(View::ALL.map(|view| CellCost::stage(&cost, view)));
+        for pixels in [PIXELS_SOFTWARE, PIXELS_HARDWARE] {
+            stages.extend(View::ALL.map(|view| CostVolume::stage(&cost, view, pixels)));
+            stages.extend(View::ALL.map(|view| CellCost::stage(&cost, view, pixels)));
+        }
+        stages.extend(View::ALL.map(|view| LaneCost::stage(&cost, view)));
     }
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.extend([Path::stage(&penalties, 4), CellPath::stage(&penalties)]);
+    stages.push(LanePath::stage(&penalties));
+    for interpolation in Interpolation::ALL {
+        stages.extend(
+            [(ResultKind::Matches, true), (ResultKind::Winners, false)].map(|(kind, keys)| {
+                LaneSelect::stage(Selection { stored: 4, interpolation, kind, keys, uniqueness: 0 })
+            }),
+        );
+    }
     stages.extend([true, false].map(|keys| {
         let interpolation = Interpolation::Equiangular;
         CellSelect::stage(Selection { stored: 4, interpolation, kind: ResultKind::Matches, keys, uniqueness: 0 })

@@ -10,6 +10,7 @@
 
 use super::{
     BandLimits, Plan,
+    followers::{CostKernel, Following, PathKernel, SelectKernel},
     refine::{After, StoredMap, Unrefined, plan_after_bands},
     transform::Transform,
 };
@@ -17,8 +18,8 @@ use crate::{
     dense::{
         config::{CostAggregation, CrossCheck, DenseConfig, Direction, View},
         kernels::{
-            BoxMean, CheckedAgainst, Claim, Consistency, CostVolume, LineBuffers, MapBuffer, MapLayout, Path,
-            PathVolumes, ResultKind, Select, Selection, VolumeBand,
+            BoxMean, CheckedAgainst, Claim, Consistency, FollowedPath, LineBuffers, MapBuffer, MapLayout, PathVolumes,
+            ResultKind, Selection, VolumeBand,
         },
         uploaded::UploadedPair,
         word_copy::{CopyTarget, WordCopy},
@@ -41,7 +42,7 @@ pub(in crate::dense) fn plan(
 ) -> Result<Plan> {
     let width = size.width;
     let range = config.searched(width)?;
-    let bands = Bands::new(size, range, costs, limits)?;
+    let bands = Bands::new(gpu, size, range, costs, limits)?;
     let mut plan = Plan::new(gpu, config, bands.count());
     let goes_on = config.parameters.goes_on() || pair.masks.is_some();
     if goes_on {
@@ -133,18 +134,18 @@ struct Bands {
     rows: u32,
     /// Halo rows of costs on either side of a band: the radius of the averaging window.
     radius: u32,
-    /// Direction of the last path, which the selection kernel follows.
-    last: Direction,
+    /// By which kernels paths are followed.
+    following: Following,
     /// Directions of the stored paths.
     directions: &'static [Direction],
 }
 
 impl Bands {
-    fn new(size: Size, range: DisparityRange, costs: &CostAggregation, limits: BandLimits) -> Result<Self> {
-        let (last, directions) = costs.last_and_stored();
+    fn new(gpu: &Gpu, size: Size, range: DisparityRange, costs: &CostAggregation, limits: BandLimits) -> Result<Self> {
+        let (following, directions) = Following::new(gpu, costs, range);
         let radius = costs.radius();
         let rows = band_rows_within(limits, size, range, (directions.len() as u64, radius))?;
-        Ok(Self { size, range, rows, radius, last, directions })
+        Ok(Self { size, range, rows, radius, following, directions })
     }
 
     fn count(&self) -> usize {
@@ -188,8 +189,7 @@ struct Workspace {
     box_mean: Option<(BoxMean, wgpu::Buffer)>,
     /// The volumes of the stored paths, one after the other.
     paths: wgpu::Buffer,
-    /// The path kernel; none where no path is stored.
-    path: Option<Path>,
+    path: PathKernel,
 }
 
 impl Workspace {
@@ -214,7 +214,7 @@ impl Workspace {
             box_mean,
             // At least the four words that kernels load at once, where no path is stored.
             paths: plan.buffer("paths", (bands.path_words() * bands.directions.len() as u64).max(4))?,
-            path: (!bands.directions.is_empty()).then(|| Path::new(gpu, &penalties, bands.band(0).words())),
+            path: PathKernel::new(gpu, bands.following, &penalties, bands.band(0).words(), bands.directions.len()),
             bands,
         })
     }
@@ -224,6 +224,46 @@ impl Workspace {
         let halo = self.bands.halo();
         let first_row = self.bands.first_row(index).cast_signed() - halo.cast_signed();
         self.transform.plan(plan, first_row, self.bands.band(index).rows + 2 * halo);
+    }
+
+    /// The volumes of the stored paths from number `path` on.
+    fn volumes(&self, path: usize) -> PathVolumes {
+        let (row, words) = (self.bands.row_words(), self.bands.path_words());
+        PathVolumes { start: (path as u64 * words + row) as u32, volume_words: words as u32 }
+    }
+
+    /// Plans the copy of the row `entered_from`, from which stored path `path` enters band `index`, and returns whether there is
+    /// one; without it the path begins in the band.
+    fn enter(&self, plan: &mut Plan, index: usize, path: usize, entered_from: Option<PathRow<'_>>) -> bool {
+        let Some((rows, place)) = entered_from else { return false };
+        let (bands, row) = (&self.bands, self.bands.row_words());
+        // The halo row above the band, or the one below it.
+        let halo_row = if bands.directions[path].dy > 0 { 0 } else { u64::from(bands.band(index).rows) + 1 };
+        plan.copy(WordCopy {
+            from: rows.clone(),
+            from_word: place * row,
+            to: CopyTarget::Buffer(self.paths.clone()),
+            to_word: path as u64 * bands.path_words() + halo_row * row,
+            words: row,
+        });
+        true
+    }
+
+    /// Plans `paths`, stored from number `first` on, through band `index` of a view.
+    fn follow(&self, plan: &mut Plan, view: View, index: usize, first: usize, paths: &[FollowedPath]) {
+        self.path.plan(plan, &self.bands.band(index), paths, self.lines(view), self.volumes(first));
+    }
+
+    /// Keeps row `row` of the volume of stored path `path`, of which row 0 is the halo, as row number `place` of `to`.
+    fn keep_row(&self, plan: &mut Plan, path: usize, row: u32, (to, place): PathRow<'_>) {
+        let words = self.bands.row_words();
+        plan.copy(WordCopy {
+            from: self.paths.clone(),
+            from_word: path as u64 * self.bands.path_words() + words * u64::from(row),
+            to: CopyTarget::Buffer(to.clone()),
+            to_word: place * words,
+            words,
+        });
     }
 
     /// The buffers of a path of a view.
@@ -236,8 +276,8 @@ impl Workspace {
 /// Kernels of one view, and the path rows that it carries from band to band.
 struct Side {
     view: View,
-    cost: CostVolume,
-    select: Select,
+    cost: CostKernel,
+    select: SelectKernel,
     /// The last rows so far of the paths from above; none where there is one band.
     above: Option<wgpu::Buffer>,
     /// For each band but the first, the first rows of the paths from below.
@@ -270,8 +310,8 @@ impl Side {
             ResultKind::Matches => plan.buffer("matches", layout.words() + key_words)?,
             ResultKind::Winners => plan.buffer("winners of the other view", layout.pixels().into())?,
         };
-        let (cost, penalties) = (CostVolume::new(gpu, &costs.cost, view), costs.followed_with());
-        let select = Select::new(gpu, &penalties, bands.band(0).words(), selection);
+        let (cost, penalties) = (CostKernel::new(gpu, bands.following, &costs.cost, view), costs.followed_with());
+        let select = SelectKernel::new(gpu, bands.following, &penalties, bands.band(0).words(), selection);
         Ok(Self { view, cost, select, above, below, matches })
     }
 
@@ -282,7 +322,7 @@ impl Side {
         let above = bands.radius.min(first_row);
         let below = bands.radius.min(bands.size.height - first_row - band.rows);
         let with_halo = VolumeBand { first_row: band.first_row - above, rows: above + band.rows + below, ..band };
-        plan.run(self.cost.prepare(&with_halo, workspace.transform.of(self.view), &workspace.costs));
+        self.cost.plan(plan, &with_halo, workspace.transform.of(self.view), &workspace.costs);
         if let Some((box_mean, means)) = &workspace.box_mean {
             let band_rows = above..above + band.rows;
             for pass in box_mean.prepare(&with_halo, band_rows, &workspace.costs, means) {
@@ -293,80 +333,38 @@ impl Side {
 
     /// Plans the paths from below through band `index`, and keeps their first rows for the band above.
     fn plan_paths_from_below(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
-        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
+        let bands = &workspace.bands;
         self.plan_costs(plan, workspace, index);
         for (path, place) in paths_with(bands, -1) {
-            self.plan_path(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
-            plan.copy(WordCopy {
-                from: workspace.paths.clone(),
-                from_word: path as u64 * bands.path_words() + row,
-                to: CopyTarget::Buffer(self.below[index - 1].clone()),
-                to_word: place * row,
-                words: row,
-            });
-        }
-    }
-
-    /// Plans stored path `path` through band `index`, continued from the row `entered_from`; without that row the path
-    /// begins in the band.
-    fn plan_path(
-        &self,
-        plan: &mut Plan,
-        workspace: &Workspace,
-        index: usize,
-        path: usize,
-        entered_from: Option<PathRow<'_>>,
-    ) {
-        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
-        let (band, direction) = (bands.band(index), bands.directions[path]);
-        let volume = path as u64 * bands.path_words();
-        if let Some((rows, place)) = entered_from {
-            // The halo row above the band, or the one below it.
-            let halo_row = if direction.dy > 0 { 0 } else { u64::from(band.rows) + 1 };
-            plan.copy(WordCopy {
-                from: rows.clone(),
-                from_word: place * row,
-                to: CopyTarget::Buffer(workspace.paths.clone()),
-                to_word: volume + halo_row * row,
-                words: row,
-            });
-        }
-        // A stored path implies a path kernel.
-        if let Some(kernel) = &workspace.path {
-            let (lines, start) = (workspace.lines(self.view), (volume + row) as u32);
-            plan.run(kernel.prepare(&band, direction, lines, start, entered_from.is_some()));
+            let goes_on = workspace.enter(plan, index, path, self.below.get(index).map(|rows| (rows, place)));
+            workspace.follow(plan, self.view, index, path, &[(bands.directions[path], goes_on)]);
+            workspace.keep_row(plan, path, 1, (&self.below[index - 1], place));
         }
     }
 
     /// Plans costs, paths and selection of band `index`.
     fn match_band(&self, plan: &mut Plan, workspace: &Workspace, index: usize) {
-        let (bands, row) = (&workspace.bands, workspace.bands.row_words());
+        let bands = &workspace.bands;
         let band = bands.band(index);
         self.plan_costs(plan, workspace, index);
+        let mut paths: Vec<_> = bands.directions.iter().map(|&direction| (direction, false)).collect();
         for (path, place) in paths_with(bands, -1) {
-            self.plan_path(plan, workspace, index, path, self.below.get(index).map(|rows| (rows, place)));
+            paths[path].1 = workspace.enter(plan, index, path, self.below.get(index).map(|rows| (rows, place)));
         }
         for (path, place) in paths_with(bands, 1) {
             let above = self.above.as_ref().filter(|_| index > 0).map(|rows| (rows, place));
-            self.plan_path(plan, workspace, index, path, above);
-            if let Some(above) = &self.above {
-                plan.copy(WordCopy {
-                    from: workspace.paths.clone(),
-                    from_word: path as u64 * bands.path_words() + row * u64::from(band.rows),
-                    to: CopyTarget::Buffer(above.clone()),
-                    to_word: place * row,
-                    words: row,
-                });
+            paths[path].1 = workspace.enter(plan, index, path, above);
+        }
+        workspace.follow(plan, self.view, index, 0, &paths);
+        if let Some(above) = &self.above {
+            for (path, place) in paths_with(bands, 1) {
+                workspace.keep_row(plan, path, band.rows, (above, place));
             }
         }
-        for (path, _) in paths_with(bands, 0) {
-            self.plan_path(plan, workspace, index, path, None);
-        }
-        let volumes = PathVolumes { start: band.row_words(), volume_words: bands.path_words() as u32 };
         let layout = MapLayout { width: band.width, rows: bands.rows };
         let matches = MapBuffer { buffer: &self.matches, layout };
         plan.clear(&self.matches);
-        plan.run(self.select.prepare(&band, bands.last, workspace.lines(self.view), volumes, matches));
+        self.select.plan(plan, &band, workspace.lines(self.view), workspace.volumes(0), matches);
     }
 }
 

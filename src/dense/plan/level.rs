@@ -15,7 +15,7 @@ use crate::{
         config::{Aggregation, Cost, DenseConfig, Direction, Filters, View},
         kernels::{
             CellCost, CellLayout, CellPath, CellSelect, CheckedAgainst, Claim, Consistency, LevelBand, LineBuffers,
-            MapBuffer, MapLayout, PathVolumes, ResultKind, Selection, row_words,
+            MapBuffer, MapLayout, PathVolumes, ResultKind, Selection, pixels_per_thread, row_words,
         },
         pyramid::CellTable,
         uploaded::UploadedPair,
@@ -95,7 +95,7 @@ impl LevelKernels {
         };
         Self {
             matching: costs.cost,
-            cost: CellCost::new(gpu, &costs.cost, config.reference),
+            cost: CellCost::new(gpu, &costs.cost, config.reference, pixels_per_thread(gpu)),
             path: CellPath::new(gpu, &costs.followed_with()),
             select: CellSelect::new(gpu, selection),
             claim: Claim::new(gpu),

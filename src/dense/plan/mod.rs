@@ -5,6 +5,7 @@ mod coarse_to_fine;
 mod compared;
 pub(super) mod costs;
 mod filling;
+mod followers;
 mod level;
 mod other_winners;
 mod refine;

@@ -6,9 +6,9 @@ use hsad::{
     image::{Plane, Size},
     internals::{
         cpu::dense::Transforms,
-        dense::{CellRange, CellTable},
+        dense::{CellRange, CellTable, PIXELS_HARDWARE, PIXELS_SOFTWARE},
     },
-    verify::trials::{CellCostTrial, CostTrial},
+    verify::trials::{CellCostTrial, CostKernel, CostTrial},
 };
 
 use super::levels::{LARGE, table};
@@ -26,8 +26,11 @@ fn the_twin_costs_the_same() {
     for size in SIZES.into_iter().chain(LARGE) {
         for view in [View::Left, View::Right] {
             let views = [1, 2].map(|seed| Transforms::new(&picture(size, seed), &COST));
-            let trial = CellCostTrial { views, view, cost: COST, table: table(size, 70), band_rows: 23 };
-            assert_twin(&format!("{size} {view:?}"), &trial);
+            for pixels in [PIXELS_SOFTWARE, PIXELS_HARDWARE] {
+                let (views, table) = (views.clone(), table(size, 70));
+                let trial = CellCostTrial { views, view, cost: COST, table, band_rows: 23, pixels };
+                assert_twin(&format!("{size} {view:?}, {pixels} pixels per thread"), &trial);
+            }
         }
     }
 }
@@ -37,10 +40,11 @@ fn a_cell_has_its_part_of_the_whole_costs() {
     let size = Size::new(40, 3);
     let views = [1, 2].map(|seed| Transforms::new(&picture(size, seed), &COST));
     let range = DisparityRange::new(-5, 48).unwrap();
-    let whole = CostTrial { views: views.clone(), view: View::Left, cost: COST, range, rows: 0..3 };
+    let whole =
+        CostTrial { views: views.clone(), view: View::Left, cost: COST, range, rows: 0..3, by: CostKernel::Lanes };
     let ranges = [CellRange { first: 2, words: 4 }, CellRange { first: 0, words: 8 }];
     let table = CellTable { size, range, cells: Plane::new((2, 1), ranges.to_vec()).unwrap(), above: 0 };
-    let of_cells = CellCostTrial { views, view: View::Left, cost: COST, table, band_rows: 3 };
+    let of_cells = CellCostTrial { views, view: View::Left, cost: COST, table, band_rows: 3, pixels: PIXELS_HARDWARE };
     let (all, part) = (values(&whole), values(&of_cells));
     // 48 values per pixel; the first cell has 32 pixels with numbers 8 to 23, the second 8 with 0 to 31.
     let row = 32 * 16 + 8 * 32;

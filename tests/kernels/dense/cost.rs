@@ -4,8 +4,14 @@ use hsad::{
     dense::{Cost, Difference, View},
     disparity::DisparityRange,
     image::{Plane, Size},
-    internals::cpu::dense::Transforms,
-    verify::{Values, trials::CostTrial},
+    internals::{
+        cpu::dense::Transforms,
+        dense::{PIXELS_HARDWARE, PIXELS_SOFTWARE},
+    },
+    verify::{
+        Values,
+        trials::{CostKernel, CostTrial},
+    },
 };
 
 use crate::common::*;
@@ -22,10 +28,12 @@ fn compare(Size { width, height }: Size, view: View, cost: &Cost, (min, count): 
     let range = DisparityRange::new(min, count).unwrap();
     let views = [1, 2].map(|seed| Transforms::new(&picture((width, height), seed), cost));
     let what = format!("{width}x{height} {view:?} {cost:?} {count} from {min}");
-    let whole = CostTrial { views, view, cost: *cost, range, rows: 0..height };
-    assert_twin(&what, &whole);
-    if height > 2 {
-        assert_twin(&what, &CostTrial { rows: 1..height - 1, ..whole });
+    for by in [CostKernel::Pixels(PIXELS_SOFTWARE), CostKernel::Pixels(PIXELS_HARDWARE), CostKernel::Lanes] {
+        let whole = CostTrial { views: views.clone(), view, cost: *cost, range, rows: 0..height, by };
+        assert_twin(&format!("{what} by {by:?}"), &whole);
+        if height > 2 {
+            assert_twin(&format!("{what} by {by:?}, some rows"), &CostTrial { rows: 1..height - 1, ..whole });
+        }
     }
 }
 
@@ -60,7 +68,8 @@ fn by_hand() {
     let b = Plane::new((3, 1), vec![50, 70, 70]).unwrap();
     let range = DisparityRange::new(0, 1).unwrap();
     let views = [a, b].map(|census| Transforms { census, wide: None });
-    let trial = CostTrial { views, view: View::Left, cost: COST, range, rows: 0..1 };
+    let trial =
+        CostTrial { views, view: View::Left, cost: COST, range, rows: 0..1, by: CostKernel::Pixels(PIXELS_SOFTWARE) };
     let [Values::U8(costs)] = &leaves(&trial)[..] else { panic!("costs") };
     assert_eq!(costs[16], 36);
 }
@@ -75,7 +84,14 @@ fn of_weak_texture_by_hand() {
     let b = Plane::new((3, 1), vec![50, 70, 70]).unwrap();
     let views = [(a, wide_a), (b, wide_b)].map(|(census, wide)| Transforms { census, wide: Some(wide) });
     let range = DisparityRange::new(0, 1).unwrap();
-    let [Values::U8(costs)] = &leaves(&CostTrial { views, view: View::Left, cost: WEAK, range, rows: 0..1 })[..] else {
+    let [Values::U8(costs)] = &leaves(&CostTrial {
+        views,
+        view: View::Left,
+        cost: WEAK,
+        range,
+        rows: 0..1,
+        by: CostKernel::Pixels(PIXELS_SOFTWARE),
+    })[..] else {
         panic!("costs")
     };
     // Weak: (40 * 5 + 8 * 10) / 16 = 17.5. Not weak: luma by 10, gradients -40 and 0: (16 * 10 + 8 * 40) / 16.

@@ -1,6 +1,6 @@
 //! The dense half as a whole, in step with the twins.
 
-use std::{sync::mpsc::channel, thread, time::Duration};
+use std::{collections::BTreeSet, sync::mpsc::channel, thread, time::Duration};
 
 use hsad::{
     Error,
@@ -10,11 +10,11 @@ use hsad::{
         Destination, Difference, Matcher, Paths, Penalties, Refinement, Search, SemiGlobal, View,
     },
     disparity::{DisparityRange, coverage},
-    gpu::Gpu,
+    gpu::{Gpu, SgmPlan},
     image::{Luma, Size},
     internals::{cpu::dense::compute, dense::CELL},
     luma::pack,
-    verify::trials::DenseTrial,
+    verify::{Bench, compare, trials::DenseTrial},
     wgpu,
 };
 
@@ -85,6 +85,36 @@ fn the_twins_end_with_the_same_bytes() {
             let (left, right) = (left.clone(), right.clone());
             let what = format!("{width}x{height} {reference:?}");
             assert_twin(&what, &DenseTrial { left, right, config, band_rows: u32::MAX });
+        }
+    }
+}
+
+/// Whether one thread follows a line or threads share the disparities, in one band and in several.
+#[test]
+fn both_plans_end_with_the_same_bytes() {
+    let (left, right) = pair(130, 67);
+    let device = gpu().clone().with_sgm_plan(SgmPlan::Lanes);
+    let kernels = |gpu: &Gpu, config: &DenseConfig| {
+        let matcher = block_on(Matcher::new_async(gpu, (130, 67), config)).unwrap();
+        block_on(matcher.profile()).unwrap().1.into_iter().map(|(kernel, _)| kernel).collect::<BTreeSet<_>>()
+    };
+    for config in [
+        costs(View::Left, 1, Some(Paths::Three), CrossCheck::Claimed),
+        costs(View::Right, 1, Some(Paths::Eight), CrossCheck::Searched),
+        costs(View::Left, 5, None, CrossCheck::Searched),
+        costs(View::Right, 3, Some(Paths::Four), CrossCheck::Claimed),
+    ] {
+        let (here, there) = (kernels(gpu(), &config), kernels(&device, &config));
+        let follows =
+            config.parameters.aggregation != costs(View::Left, 5, None, CrossCheck::Searched).parameters.aggregation;
+        assert!(here.contains("select") && !here.contains("lane_path"), "{here:?}");
+        assert_eq!(there.contains("lane_path") && there.contains("lane_select"), follows, "{there:?}");
+        for band_rows in [u32::MAX, 19] {
+            let (left, right) = (left.clone(), right.clone());
+            let trial = DenseTrial { left, right, config: config.clone(), band_rows };
+            for comparison in compare(&trial, &Bench::new(&device)).expect("a device that works") {
+                assert_eq!(comparison.fault, None, "bands of {band_rows}");
+            }
         }
     }
 }

@@ -15,8 +15,12 @@ use crate::{
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
-pub(super) const SUBJECTS: &[Subject] =
-    &[Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice)))];
+pub(super) const SUBJECTS: &[Subject] = &[
+    Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice))),
+    Subject::kernel("tile_match", |size, dice| {
+        Box::new(BlockMatchTrial { tile: Tile::HARDWARE, ..BlockMatchTrial::draw(size, dice) })
+    }),
+];
 
 /// A pair for block matching.
 #[derive(Clone, Debug)]
@@ -113,7 +117,7 @@ impl BlockMatchTrial {
         let parameters =
             DenseParameters { aggregation, interpolation, uniqueness, consistency, agreement: 0, refinement: None };
         let config = DenseConfig { parameters, ..DenseConfig::new(range) };
-        let in_cells = dice.coin() && CELL.is_multiple_of(4 * tile.quads);
+        let in_cells = dice.coin() && (tile == Tile::HARDWARE || CELL.is_multiple_of(4 * tile.quads));
         let ranges = config.searched(size.width).ok().filter(|_| in_cells).map(|range| {
             Plane::from_fn((size.width.div_ceil(CELL), size.height.div_ceil(CELL)), |_, _| {
                 let first = dice.below(range.count);

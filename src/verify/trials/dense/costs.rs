@@ -5,7 +5,7 @@ use crate::{
     cpu::dense::{Transforms, box_mean, census, cost, pad, wide_census},
     dense::{
         Brightness, Cost, Difference, View,
-        kernels::{BoxMean, Census, CostVolume, VolumeBand},
+        kernels::{BoxMean, Census, CostVolume, LaneCost, PIXELS_HARDWARE, PIXELS_SOFTWARE, VolumeBand},
     },
     disparity::DisparityRange,
     error::Result,
@@ -15,7 +15,8 @@ use crate::{
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
-    Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice))),
+    Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice, CostKernel::of_pixels))),
+    Subject::kernel("lane_cost", |size, dice| Box::new(CostTrial::draw(size, dice, |_| CostKernel::Lanes))),
     Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
 ];
 
@@ -104,6 +105,21 @@ impl Trial for BoxMeanTrial {
     }
 }
 
+/// A kernel of the matching cost.
+#[derive(Clone, Copy, Debug)]
+pub enum CostKernel {
+    /// [`CostVolume`], with so many pixels per thread.
+    Pixels(u32),
+    /// [`LaneCost`].
+    Lanes,
+}
+
+impl CostKernel {
+    fn of_pixels(dice: &mut Dice) -> Self {
+        Self::Pixels(dice.pick(&[PIXELS_SOFTWARE, PIXELS_HARDWARE]))
+    }
+}
+
 /// Two census transforms whose pixels are compared.
 #[derive(Clone, Debug)]
 pub struct CostTrial {
@@ -117,10 +133,12 @@ pub struct CostTrial {
     pub range: DisparityRange,
     /// The rows whose costs are computed.
     pub rows: std::ops::Range<u32>,
+    /// By which kernel.
+    pub by: CostKernel,
 }
 
 impl CostTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
+    fn draw(size: Size, dice: &mut Dice, by: fn(&mut Dice) -> CostKernel) -> Self {
         let mut part = || Difference { weight: dice.below(40), limit: dice.below(60) };
         let (difference, gradient) = (part(), part());
         let census_weight = dice.pick(&[0, 20, 40, 255]);
@@ -131,13 +149,13 @@ impl CostTrial {
         let rows = first..size.height - dice.below(size.height - first);
         let weak_spread = weak_spread(dice);
         let cost = Cost { census: census_weight, difference, gradient, weak_spread };
-        Self { views: pair.map(|luma| Transforms::new(&luma, &cost)), view, cost, range, rows }
+        Self { views: pair.map(|luma| Transforms::new(&luma, &cost)), view, cost, range, rows, by: by(dice) }
     }
 }
 
 impl Trial for CostTrial {
     fn parameters(&self) -> String {
-        format!("{:?} {:?} {:?} rows {:?}", self.view, self.cost, self.range, self.rows)
+        format!("{:?} {:?} {:?} rows {:?} by {:?}", self.view, self.cost, self.range, self.rows, self.by)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -151,8 +169,12 @@ impl Trial for CostTrial {
         let band = VolumeBand { width, first_row: rows.start, rows: rows.len() as u32, range: *range };
         let volume = bench.output(band.row_words() * band.rows)?;
         let views = [&bench.upload(&transforms(reference))?, &bench.upload(&transforms(other))?];
-        let kernel = CostVolume::new(bench.gpu, &self.cost, self.view);
-        let dispatch = kernel.prepare(&band, views, &volume);
+        let dispatch = match self.by {
+            CostKernel::Pixels(pixels) => {
+                CostVolume::new(bench.gpu, &self.cost, self.view, pixels).prepare(&band, views, &volume)
+            }
+            CostKernel::Lanes => LaneCost::new(bench.gpu, &self.cost, self.view).prepare(&band, views, &volume),
+        };
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("costs", bytes(&bench.download(&volume)?))])
     }

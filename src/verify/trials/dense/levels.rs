@@ -11,8 +11,8 @@ use crate::{
     dense::{
         Cost, DenseConfig, Difference, Direction, Interpolation, Penalties, View,
         kernels::{
-            CellCost, CellLayout, CellPath, CellSelect, LevelBand, LineBuffers, MapBuffer, MapLayout, PathVolumes,
-            ResultKind, Selection,
+            CellCost, CellLayout, CellPath, CellSelect, LevelBand, LineBuffers, MapBuffer, MapLayout, PIXELS_HARDWARE,
+            PIXELS_SOFTWARE, PathVolumes, ResultKind, Selection,
         },
         pyramid::{CellRange, CellTable},
     },
@@ -76,6 +76,8 @@ pub struct CellCostTrial {
     pub table: CellTable,
     /// Most rows of a band.
     pub band_rows: u32,
+    /// Pixels of a row per thread.
+    pub pixels: u32,
 }
 
 impl CellCostTrial {
@@ -86,7 +88,8 @@ impl CellCostTrial {
         let cost = Cost { census: dice.pick(&[0, 20, 40]), difference, gradient, weak_spread };
         let (view, table) = (dice.view(), table(size, 90, dice));
         let views = dice.pair(size).map(|luma| Transforms::new(&luma, &cost));
-        Self { views, view, cost, table, band_rows: 1 + dice.below(size.height) }
+        let band_rows = 1 + dice.below(size.height);
+        Self { views, view, cost, table, band_rows, pixels: dice.pick(&[PIXELS_SOFTWARE, PIXELS_HARDWARE]) }
     }
 }
 
@@ -105,7 +108,7 @@ impl Trial for CellCostTrial {
         let bands = bands_of(height, self.band_rows);
         let layout = CellLayout::new(bench.gpu, &self.table, &bands)?;
         let views = [&bench.upload(&transforms(&self.views[0]))?, &bench.upload(&transforms(&self.views[1]))?];
-        let kernel = CellCost::new(bench.gpu, &self.cost, self.view);
+        let kernel = CellCost::new(bench.gpu, &self.cost, self.view, self.pixels);
         let mut costs = Vec::new();
         for rows in bands {
             let volume = bench.output(layout.words_of(rows.clone()) as u32)?;

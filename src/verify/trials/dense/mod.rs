@@ -5,6 +5,7 @@ mod cells;
 mod checks;
 mod costs;
 mod filling;
+mod lanes;
 mod levels;
 mod maps;
 mod paths;
@@ -14,8 +15,9 @@ mod words;
 pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
 pub use checks::{AgreementTrial, ConsistencyTrial, UnseenTrial};
-pub use costs::{BoxMeanTrial, CensusTrial, CostTrial};
+pub use costs::{BoxMeanTrial, CensusTrial, CostKernel, CostTrial};
 pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
+pub use lanes::{LanePathTrial, LaneSelectTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
 pub use maps::{MapBackTrial, MapTextureTrial, MedianTrial, ResidualTrial, SupportTrial};
 pub use paths::{ClaimTrial, PathTrial, SelectTrial};
@@ -23,12 +25,13 @@ pub use planes::{PadTrial, SoftRankTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const SUBJECTS: [&[Subject]; 9] = [
+pub(super) const SUBJECTS: [&[Subject]; 10] = [
     planes::SUBJECTS,
     blocks::SUBJECTS,
     cells::SUBJECTS,
     costs::SUBJECTS,
     paths::SUBJECTS,
+    lanes::SUBJECTS,
     levels::SUBJECTS,
     checks::SUBJECTS,
     maps::SUBJECTS,

@@ -36,7 +36,7 @@ pub(super) fn penalties(dice: &mut Dice) -> Penalties {
 }
 
 /// Costs of all pixels, 0 to 127, padded to a multiple of 16 disparities.
-fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
+pub(super) fn costs(Size { width, height }: Size, count: u32, seed: u32) -> Vec<u8> {
     let noise = smooth_noise((width * DisparityRange::padded(count), height), seed);
     noise.data().iter().map(|&value| value / 2).collect()
 }
