@@ -63,6 +63,7 @@ RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --no-default-features
 RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 
 say 'tests'
+[ -d "${HSAD_CASES:-../shared/cases}" ] || echo 'NOT RUN: the reported cases of ../shared/cases, or of HSAD_CASES, which are not there'
 [ -d ../shared/data ] || echo 'NOT RUN: what needs the real pairs of ../shared/data, which is not there'
 check_translations() { command -v spirv-val && command -v glslangValidator; } >/dev/null
 if ! check_translations; then

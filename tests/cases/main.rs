@@ -1,7 +1,7 @@
 //! Situations that people report: what `hsad match` makes of them, and what the program says.
 //!
-//! Each test makes a small pair that shows one situation, from the shipped scenes or from rendered layers. `shared.rs`
-//! walks a folder of further pairs, if it lies beside the project.
+//! Each test makes a small pair that shows one situation, from the shipped scenes or from rendered layers. `shared/`
+//! walks a folder of further pairs, if it is at hand.
 
 #![cfg(feature = "cli")]
 

@@ -102,6 +102,24 @@ impl Run {
         eval::score(&self.disparity(), truth, None, &[2.0]).expect("maps of one size").bad[0]
     }
 
+    /// Shares of the pixels that are wrong by over 2 px, 0 to 1: of the surer half of the disparities with known truth, and of
+    /// those with a confidence of at least 192; NaN where there are none.
+    pub fn wrong_of_sure(&self, truth: &Plane<f32>) -> [f64; 2] {
+        let (map, confidence) = (self.disparity(), self.confidence());
+        let pixels = map.data().iter().zip(confidence.data()).zip(truth.data());
+        let known = pixels.filter(|(_, truth)| truth.is_finite());
+        let mut judged: Vec<(u8, bool)> = known
+            .filter_map(|((&found, &sure), truth)| Some((sure, (disparity::pixels(found)? - truth).abs() > 2.0)))
+            .collect();
+        // Of equally confident pixels the wrong ones come first, so that ties never help.
+        judged.sort_unstable_by(|a, b| b.cmp(a));
+        let sure = judged.partition_point(|&(confidence, _)| confidence >= 192);
+        [judged.len() / 2, sure].map(|count| {
+            let wrong = judged[..count].iter().filter(|(_, wrong)| *wrong).count();
+            wrong as f64 / count as f64
+        })
+    }
+
     /// Why trust is on the wrong side of 0.5, if it is: more than 30 % of the disparities are wrong by over 2 px and
     /// trusted, or fewer than 10 % and not trusted.
     pub fn misjudgement(&self, truth: &Plane<f32>) -> Option<String> {
