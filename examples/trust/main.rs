@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example trust -- [TABLE...] [SCENE...]`, with the tables `trust`, `rows`, `ranges`, `confidence`, and
 //! a `SCENE` as for `hsad eval dense`. The default is all tables, on the scenes of `data/`. `confidence data/planes` takes a
-//! second.
+//! few seconds.
 #![expect(clippy::print_stdout, reason = "a measurement prints")]
 
 mod confidence;

@@ -32,6 +32,8 @@ pub enum Variant {
     Enlarged(f64),
     /// Both views are blurred by a Gaussian of this standard deviation in pixels; then noise of 1 grey value is added.
     Blurred(f64),
+    /// Both views are blurred over so many pixels along rows, as by a camera that moves; then noise of 1 grey value is added.
+    Shaken(u32),
     /// Noise of this standard deviation in grey values is added to both views.
     Noisy(f64),
     /// The left view has 0.15 of its brightness, the right view 0.12.
@@ -58,7 +60,12 @@ impl Variant {
         [&[Self::AsIs][..], &lower, &[Self::Rotated(0.3), Self::Enlarged(1.01)]].concat()
     }
 
-    /// All variants; [`Self::OtherRight`] only if there is another scene.
+    /// The variants that are blurred.
+    pub fn of_blur() -> Vec<Self> {
+        [[1.5, 3.0].map(Self::Blurred), [9, 17].map(Self::Shaken)].concat()
+    }
+
+    /// All variants but those that are shaken; [`Self::OtherRight`] only if there is another scene.
     pub fn all(has_other: bool) -> Vec<Self> {
         let mut all = Self::of_rows();
         all.extend([1.0, 3.0].map(Self::LowerNotAligned));
@@ -78,6 +85,7 @@ impl Variant {
             Self::Rotated(angle) => format!("rotated by {angle} degrees"),
             Self::Enlarged(scale) => format!("{:.0} % larger", 100.0 * (scale - 1.0)),
             Self::Blurred(sigma) => format!("blur {sigma} px"),
+            Self::Shaken(length) => format!("blur along rows, {length} px"),
             Self::Noisy(deviation) => format!("noise {deviation}"),
             Self::Dark => "dark".into(),
             Self::RoundMask => "black outside a circle".into(),
@@ -103,6 +111,10 @@ impl Variant {
             Self::Rotated(angle) => moved(scene, Condition::new(Kind::Rotation, angle)?.apply(&scene.right, 0)),
             Self::Enlarged(scale) => moved(scene, Condition::new(Kind::Scale, scale)?.apply(&scene.right, 0)),
             Self::Blurred(sigma) => by(scene, [[(Kind::Blur, sigma), (Kind::Noise, 1.0)]; 2])?,
+            Self::Shaken(length) => {
+                let [left, right] = [&scene.left, &scene.right].map(|view| along_rows(view, length));
+                by(&Scene { left, right, ..scene.clone() }, [[(Kind::Noise, 1.0)]; 2])?
+            }
             Self::Noisy(deviation) => by(scene, [[(Kind::Noise, deviation)]; 2])?,
             Self::Dark => by(scene, [[(Kind::Gain, 0.15)], [(Kind::Gain, 0.12)]])?,
             Self::RoundMask => Scene { left: in_circle(&scene.left), right: in_circle(&scene.right), ..scene.clone() },
@@ -148,6 +160,16 @@ fn moved(scene: &Scene, Changed { picture, map, .. }: Changed) -> Scene {
         if disparity.is_finite() && is_seen { (f64::from(x) - partner.x) as f32 } else { f32::INFINITY }
     });
     Scene { right: picture, truth, ..scene.clone() }
+}
+
+/// The picture, each pixel the mean of `length` pixels of its row, an odd number.
+fn along_rows(picture: &Picture, length: u32) -> Picture {
+    let reach = i64::from(length / 2);
+    Picture::from_fn(picture.size(), |x, y| {
+        let around = (-reach..=reach).map(|i| picture.get_clamped(i64::from(x) + i, y.into()));
+        let sums = around.fold([0; 4], |sums: [u32; 4], pixel| [0, 1, 2, 3].map(|c| sums[c] + u32::from(pixel[c])));
+        sums.map(|sum| ((2 * sum + length) / (2 * length)) as u8)
+    })
 }
 
 /// The picture, black outside the largest circle about its centre.
@@ -224,6 +246,10 @@ mod tests {
         let (dark, _) = variant(Variant::Dark);
         // 0.15 * 140 and 0.12 * 140.
         assert_eq!((dark.left.get(0, 10)[0], dark.right.get(0, 10)[0]), (21, 17));
+        assert_eq!(
+            along_rows(&Picture::from_fn((5, 1), |x, _| [u8::from(x == 4) * 90, 0, 0, 255]), 3).get(4, 0)[0],
+            60
+        );
         let (masked, _) = variant(Variant::RoundMask);
         // The circle of 30 px reaches from column 5 to column 34.
         let row = [4, 5, 34, 35].map(|x| masked.right.get(x, 14)[1]);

@@ -1,6 +1,7 @@
 //! Smoothing and resampling of pictures, on the host, for planes of any number of 8-bit channels. Results are the same
 //! bytes on every machine: only `f64` arithmetic and functions of `libm` are used, which are arithmetic themselves.
 
+mod detail;
 mod gaussian;
 mod repetition;
 mod resample;
@@ -9,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::image::{Plane, Size};
 
+pub(crate) use detail::{CELL, detail};
 pub use gaussian::gaussian;
 pub(crate) use repetition::repetition;
 pub use resample::{about_centre, resample};

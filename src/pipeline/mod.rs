@@ -1,6 +1,7 @@
 //! The pipeline from two pictures to a disparity map.
 
 mod back;
+mod confidence;
 mod metric;
 mod range;
 mod rectified;
@@ -21,16 +22,17 @@ pub use trust::TRUSTED;
 
 use web_time::{Duration, Instant};
 
+use confidence::{by_detail, in_proportion, without_constant, without_ends};
 use range::range_to_search;
 use search::{Found, Search};
-use trust::{in_proportion, of_steps, shows_no_parallax, trust, without_constant, without_ends};
+use trust::{of_steps, shows_no_parallax, trust};
 use views::Views;
 
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;
 use crate::{
     backend::Backend,
-    config::Config,
+    config::{Config, Method},
     dense::{Brightness, Dense, View},
     disparity::DisparityRange,
     error::{Error, Result},
@@ -89,7 +91,7 @@ pub struct Outcome {
     /// for other views.
     pub repetition: u32,
     /// Disparities and confidences of the reference view; confidence 0 also where a disparity lies at an end of the range or the view is
-    /// constant around the pixel.
+    /// constant around the pixel, less where the view has little detail, and below 192 where [`Self::trust`] is below [`TRUSTED`].
     pub dense: Dense,
     /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
     pub trust: f32,
@@ -255,14 +257,21 @@ async fn run_on(
     let Found { range, dense, at_ends } = search.widening(range, range_source, progress).await?;
     let dense = without_ends(dense, range, range_source.ends_at_zero());
     let (left, right) = views.pair.views();
-    let dense = without_constant(dense, if config.reference == View::Left { left } else { right });
+    let own = if config.reference == View::Left { left } else { right };
+    let dense = without_constant(dense, own);
     let trust = trust(&dense, config, &seeding) * of_steps(repetition);
+    let no_parallax = shows_no_parallax(&dense);
+    let dense = match config.method {
+        Method::Hsad(_) => by_detail(dense, own),
+        // Its confidences tell how alike the views look, and not how many neighbours agree.
+        Method::Kamencay(_) => dense,
+    };
     let dense = in_proportion(dense, trust);
     enter(None);
     Ok(Some(Outcome {
         features,
         points_found,
-        no_parallax: shows_no_parallax(&dense),
+        no_parallax,
         trust,
         seeding,
         range,

@@ -1,4 +1,4 @@
-//! Trust in a map, and confidences that are too high for what the whole map shows.
+//! Trust in a map.
 //!
 //! Trust was fitted to 240 maps with known truth: 11 scenes, and the scenes with rows off, blur, noise, little light, masks,
 //! wrong ranges, and other right views. Maps with under 10 % of the pixels wrong by over 2 px have a trust of at least 0.5, maps
@@ -7,8 +7,7 @@
 use crate::{
     config::{Config, Method},
     dense::{Aggregation, Compared, Dense, FILLED, View},
-    disparity::{DisparityRange, pixels},
-    image::{Luma, Size},
+    disparity::pixels,
     seeding::Seeding,
 };
 
@@ -31,8 +30,8 @@ const SEEDS: (f32, f32) = (0.6, 400.0);
 const FILLED_WITHIN: u8 = 8;
 /// Share of such pixels up to which they are the gaps of any map, and how much more of them leave no trust, 0 to 1.
 const GAPS: (f32, f32) = (0.21, 0.11);
-/// Pixels on either side of a pixel that its census transform sees.
-const CONSTANT: u32 = 2;
+/// The same share for block matching, which leaves holes where a match is not unique.
+const GAPS_OF_BLOCKS: f32 = 0.42;
 /// Largest magnitude of half of the disparities of a pair without parallax, in pixels.
 const ZERO: f32 = 0.25;
 /// Largest magnitude of nearly all disparities of such a pair, in pixels, and their smallest share, 0 to 1. Six pictures with
@@ -67,7 +66,10 @@ pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let seeds = seeding.seeds.len() as f32;
     let by_seeds = SEEDS.0 + (1.0 - SEEDS.0) * seeds / (seeds + SEEDS.1);
     let covered = (seeding.coarse.coverage() / COVERED).min(1.0);
-    let gaps = (1.0 - (share(filled) - GAPS.0).max(0.0) / GAPS.1).max(0.0);
+    let is_of_blocks =
+        matches!(&config.method, Method::Hsad(found) if matches!(found.aggregation, Aggregation::Sad { .. }));
+    let usual = if is_of_blocks { GAPS_OF_BLOCKS } else { GAPS.0 };
+    let gaps = (1.0 - (share(filled) - usual).max(0.0) / GAPS.1).max(0.0);
     let consistent = (1.0 - CONTRADICTION * share(contradicted)).max(0.0);
     let evidence = share(sure) / 255.0 * consistent * by_seeds * covered * gaps;
     let full = match &config.method {
@@ -108,50 +110,6 @@ pub(super) fn shows_no_parallax(dense: &Dense) -> bool {
         && (share(above) - share(below)).abs() <= IMBALANCE
 }
 
-/// The map with confidence 0 where a disparity lies at an end of `range`, beyond which it may go on.
-pub(super) fn without_ends(mut dense: Dense, range: DisparityRange, ends_at_zero: bool) -> Dense {
-    let Size { width, height } = dense.disparity.size();
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let [low, high] = range.is_at_end(dense.disparity.get(x, y));
-        if low && !ends_at_zero || high {
-            dense.confidence.set(x, y, 0);
-        }
-    }
-    dense
-}
-
-/// The map of `view` with confidence 0 where the view is constant around a pixel, as where it is overexposed: such a pixel costs
-/// the same with all disparities whose partner is alike, and only its surroundings tell which it has.
-pub(super) fn without_constant(mut dense: Dense, view: &Luma) -> Dense {
-    let Size { width, height } = view.size();
-    let around = |at: u32, length: u32| at.saturating_sub(CONSTANT)..length.min(at + CONSTANT + 1);
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let own = view.get(x, y);
-        if around(y, height).all(|j| around(x, width).all(|i| view.get(i, j) == own)) {
-            dense.confidence.set(x, y, 0);
-        }
-    }
-    dense
-}
-
-/// The map with confidences in proportion to `trust`, where that is below [`TRUSTED`].
-pub(super) fn in_proportion(mut dense: Dense, trust: f32) -> Dense {
-    if trust < TRUSTED {
-        // In 1/256, so that the arithmetic is in integers.
-        let factor = (256.0 * trust / TRUSTED) as u32;
-        for value in dense.confidence.data_mut() {
-            let lowered = (u32::from(*value) * factor / 256) as u8;
-            // Measured pixels stay above filled ones, and filled ones above those of which nothing is known.
-            *value = match *value {
-                0 => 0,
-                1..=FILLED => lowered.max(1),
-                _ => lowered.max(FILLED + 1),
-            };
-        }
-    }
-    dense
-}
-
 /// Column and row of each pixel with a disparity, and the disparity in pixels.
 fn known_pixels(dense: &Dense) -> impl Iterator<Item = ((u32, u32), f32)> {
     let width = dense.disparity.width() as usize;
@@ -166,7 +124,7 @@ mod tests {
     use crate::{
         config::Preset,
         disparity::{NONE, SCALE},
-        image::Plane,
+        image::{Luma, Plane},
         seeding::SeedingConfig,
     };
 
@@ -176,36 +134,6 @@ mod tests {
             disparity: Plane::from_fn((40, 10), |x, _| if x < 20 { 10 * SCALE } else { 20 * SCALE }),
             confidence: Plane::filled((40, 10), confidence),
         }
-    }
-
-    #[test]
-    fn an_end_has_no_confidence_unless_it_is_zero() {
-        let range = |min, last| DisparityRange::inclusive(min, last).unwrap();
-        let halves = |dense: Dense| [dense.confidence.get(0, 0), dense.confidence.get(39, 0)];
-        assert_eq!(halves(without_ends(map(90), range(8, 22), false)), [90, 90]);
-        assert_eq!(halves(without_ends(map(90), range(9, 22), false)), [0, 90]);
-        assert_eq!(halves(without_ends(map(90), range(9, 21), true)), [90, 0]);
-    }
-
-    #[test]
-    fn constant_areas_have_no_confidence() {
-        // Constant from column 10 on, but for one pixel.
-        let view =
-            Luma::from_fn((40, 10), |x, y| if x < 10 { (37 * x + 59 * y) as u8 } else { 255 - 9 * u8::from(x == 30) });
-        let confidence = without_constant(map(90), &view).confidence;
-        for x in 0..40 {
-            let is_constant = x >= 12 && !(28..=32).contains(&x);
-            assert_eq!(confidence.get(x, 5), if is_constant { 0 } else { 90 }, "column {x}");
-        }
-    }
-
-    #[test]
-    fn confidences_follow_a_small_trust() {
-        assert_eq!(in_proportion(map(200), 0.5).confidence.get(0, 0), 200);
-        assert_eq!(in_proportion(map(200), 0.25).confidence.get(0, 0), 100);
-        assert_eq!(in_proportion(map(200), 0.0).confidence.get(0, 0), FILLED + 1);
-        assert_eq!(in_proportion(map(FILLED), 0.25).confidence.get(0, 0), FILLED / 2);
-        assert_eq!([0, 1, FILLED].map(|value| in_proportion(map(value), 0.0).confidence.get(0, 0)), [0, 1, 1]);
     }
 
     #[test]
@@ -258,13 +186,21 @@ mod tests {
             assert!((by_margin - expected * 0.71 / full).abs() < 1e-6, "{preset}");
         }
         // Gaps of a fifth are those of any map, of a third are the most of what both views show.
-        let with_gaps = |columns: u32| {
+        let gaps = |columns: u32, config: &Config| {
             let confidence = Plane::from_fn((40, 10), |x, _| if x < columns { FILLED } else { 102 });
-            trust(&Dense { confidence, ..flat(102) }, &config, &seeding)
+            trust(&Dense { confidence, ..flat(102) }, config, &seeding)
         };
+        let with_gaps = |columns| gaps(columns, &config);
         assert!((with_gaps(8) - 0.8 * expected).abs() < 1e-6);
         assert!((with_gaps(10) - 0.75 * expected * (1.0 - 0.04 / 0.11)).abs() < 1e-6);
         assert_eq!(with_gaps(13), 0.0);
+        // Of block matching, twice as many.
+        let mut of_blocks = Preset::Fast.config();
+        if let (Method::Hsad(blocks), Method::Hsad(balanced)) = (&mut of_blocks.method, &config.method) {
+            blocks.refinement = balanced.refinement;
+        }
+        assert!((gaps(16, &of_blocks) - 0.6 * expected).abs() < 1e-6);
+        assert!((gaps(18, &of_blocks) - 0.55 * expected * (1.0 - 0.03 / 0.11)).abs() < 1e-6);
         // What the surfaces contradict, and views without content, are not trusted.
         assert_eq!(trust(&map(255), &config, &seeding), 0.0);
         let grey = Luma::filled((40, 10), 90);

@@ -4,6 +4,7 @@ use hsad::{eval::conditions::Kind, image::Plane};
 
 use crate::{
     pair::{Pair, changed},
+    run::Run,
     scene::{Layer, layered, wall},
     texture::texture,
 };
@@ -18,6 +19,15 @@ fn good_maps_are_trusted() {
                 assert!(run.code == 0 && run.trust() >= 0.5, "{scene}: {}", run.told);
             }
         }
+    }
+}
+
+/// Block matching leaves more holes than semi-global matching, also in good maps.
+#[test]
+fn filled_maps_of_blocks_are_trusted() {
+    for scene in ["planes", "weak"] {
+        let pair = Pair::shipped(scene);
+        pair.matched(&["--preset", "fast", "--fill"]).ends(0, &[]).judges(&pair.truth).errs_below(0.1, &pair.truth);
     }
 }
 
@@ -37,6 +47,28 @@ fn a_plain_wall_is_not_trusted() {
     let pair = layered((360, 240), &[poster, picture, wall(20.0, |_, _| 200.0)]);
     let pair = pair.with(|view, eye| changed(&view, Kind::Noise, 1.5, eye.into()));
     pair.matched(&[]).judges(&pair.truth);
+    pair.matched(&["--preset", "fast", "--fill"]).judges(&pair.truth);
+}
+
+/// Both views blurred along rows, as when the camera moves: edges spread, and fit at the disparities of both of their sides.
+#[test]
+fn confidences_of_blurred_views_are_low() {
+    let pair = Pair::shipped("planes");
+    let sharp = pair.matched(&[]).ends(0, &[]);
+    let blurred = pair.clone().with(|view, _| {
+        Plane::from_fn(view.size(), |x, y| {
+            let along = |channel: usize| {
+                let sum: u32 = (-8..=8).map(|i| u32::from(view.get_clamped(i64::from(x) + i, y.into())[channel])).sum();
+                ((2 * sum + 17) / 34) as u8
+            };
+            [along(0), along(1), along(2), 255]
+        })
+    });
+    let run = blurred.matched(&[]).judges(&pair.truth);
+    let sure = |run: &Run| run.confidence().data().iter().filter(|&&confidence| confidence >= 192).count();
+    assert!(3 * sure(&run) < sure(&sharp), "{} of {}", sure(&run), sure(&sharp));
+    let [_, wrong] = run.wrong_of_sure(&pair.truth);
+    assert!(wrong.is_nan() || wrong < 0.02, "{wrong}");
 }
 
 #[test]
