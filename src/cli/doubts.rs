@@ -4,8 +4,11 @@ use hsad::{
     Error,
     config::Config,
     disparity::DisparityRange,
+    glam::DVec2,
     io::Picture,
-    pipeline::{Outcome, RangeSource, TRUSTED},
+    matching::Seed,
+    pipeline::{self, Outcome, RangeSource, TRUSTED},
+    rectify::{Correspondence, RowKind, epipolar::turned_on_the_spot},
     seeding::Verdict,
 };
 
@@ -60,6 +63,7 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         let reason = "no pixel has a partner further away than the picture is wide";
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }
+    warnings.extend(turn(outcome));
     warnings.extend(distortion(outcome));
     warnings.extend(outside(config, outcome));
     warnings.extend(at_end(config, outcome));
@@ -105,6 +109,24 @@ fn left_out(outcome: &Outcome) -> Option<String> {
 /// A disparity range as text, `MIN to MAX px`.
 pub fn span(range: DisparityRange) -> String {
     format!("{} to {} px", range.min, range.last())
+}
+
+/// A warning if the matches are what a camera sees that turned on the spot: then rows are those of a perspective.
+fn turn(outcome: &Outcome) -> Option<String> {
+    let rows = &outcome.seeding.rectification.rows;
+    if rows.kind() != RowKind::Projective {
+        return None;
+    }
+    let point = |seed: &Seed| {
+        let [x, y, right] = [seed.x, seed.y, seed.right_x()].map(f64::from);
+        Correspondence { left: DVec2::new(x, y), right: DVec2::new(right, rows.right_row(right, y)) }
+    };
+    let points: Vec<Correspondence> = outcome.seeding.seeds.iter().map(point).collect();
+    let size = outcome.dense.disparity.size();
+    turned_on_the_spot(&points, [size; 2], pipeline::reduction(size)).then(|| {
+        "the camera turned on the spot, and disparities tell no depth: take the second picture from another place"
+            .into()
+    })
 }
 
 /// A warning if rows differ as the rows of a distorted lens do.

@@ -9,7 +9,7 @@ use hsad::{
     dense::View,
     gpu::block_on,
     io::{Calibration, Picture, load::Stretch},
-    pipeline::{self, Outcome, RectifiedPair, WayBack},
+    pipeline::{self, Outcome, RectifiedPair, TakenPair, WayBack},
     seeding::Verdict,
 };
 
@@ -183,7 +183,12 @@ impl Job {
         if !self.config.align {
             return Ok(as_taken(self.as_it_is(backend, force, progress)?));
         }
-        let as_is = self.as_it_is_unless_distorted(backend, progress);
+        let looked = self.first_look(backend, progress)?;
+        let as_is = match looked.as_ref().and_then(TakenPair::rows) {
+            Some(rows) if rows.is_distorted() => Ok(None),
+            Some(rows) => Err(Error::NotRectified { diagnosis: rows.to_string() }),
+            None => self.as_it_is_unless_distorted(backend, progress),
+        };
         let why = match &as_is {
             Err(error @ Error::SizesDiffer { .. }) => error.to_string(),
             Err(Error::NotRectified { diagnosis }) => format!("the pair is not rectified: {diagnosis}"),
@@ -201,7 +206,12 @@ impl Job {
             }
         };
         progress.begin("rectifying");
-        let refused = match pipeline::rectify(backend, (&self.left, &self.right)) {
+        let was_looked_at = looked.is_some();
+        let pair = match looked {
+            Some(pair) => pair.rectify(backend),
+            None => pipeline::rectify(backend, (&self.left, &self.right)),
+        };
+        let refused = match pair {
             Ok(pair) if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 => {
                 return Ok(as_taken(self.as_it_is(backend, force, progress)?));
             }
@@ -213,6 +223,7 @@ impl Job {
             Err(Error::NotRectifiable { reason }) => reason,
             Err(error) => return Err(error.into()),
         };
+        let as_is = if was_looked_at { self.as_it_is_unless_distorted(backend, progress) } else { as_is };
         let outcome = match as_is {
             Err(Error::NotRectified { .. }) if force => self.as_it_is(backend, true, progress)?,
             Err(Error::NotRectified { diagnosis }) => {
@@ -226,6 +237,18 @@ impl Job {
             as_is => return self.taken_or(as_is?, backend, progress),
         };
         Ok(as_taken(outcome))
+    }
+
+    /// The pair, if a first look tells that it is not to be matched as it was taken: rows differ by more than a small warp mends, or the
+    /// lens distorts them. With a calibration, which is of a rectified pair then, nobody looks.
+    fn first_look(&self, backend: &Backend, progress: &Progress) -> Result<Option<TakenPair>> {
+        if self.calibration.is_some() {
+            return Ok(None);
+        }
+        progress.begin("rectifying");
+        let pair = TakenPair::new(backend, (&self.left, &self.right))?;
+        let is_unfit = pair.rows().is_some_and(|rows| rows.is_distorted() || rows.rows_differ());
+        Ok(is_unfit.then_some(pair))
     }
 
     /// The outcome of the pair as it was taken, if it was matched; else it is matched now.

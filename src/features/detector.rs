@@ -140,11 +140,12 @@ impl Detector {
     /// [`Error::DeviceLost`].
     pub async fn detect(&self, luma: &wgpu::Buffer) -> Result<Detected> {
         let input = self.input(luma).await?;
-        submit(&self.gpu, |encoder| self.record(encoder, &input)).await?;
+        submit(&self.gpu, |encoder| self.record_finding(encoder, &input)).await?;
         let found = self.count().await?;
         if found > self.list.capacity() {
             self.keep_strongest(found).await?;
         }
+        submit(&self.gpu, |encoder| record_run(encoder, &self.describing, None)).await?;
         let features = self.read_listed(found.min(self.list.capacity())).await?;
         Ok(Detected { features, found: found as usize })
     }
@@ -171,10 +172,16 @@ impl Detector {
     /// # Panics
     /// If `input` was prepared for another detector.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
+        self.record_finding(encoder, input);
+        record_run(encoder, &self.describing, None);
+    }
+
+    /// Records the stages from the integral image of `input` to the keypoints.
+    fn record_finding(&self, encoder: &mut wgpu::CommandEncoder, input: &DetectorInput) {
         self.assert_own(input);
         encoder.clear_buffer(self.list.count(), 0, None);
         input.dispatch.record(encoder);
-        record_run(encoder, self.finding.iter().chain(&self.describing), None);
+        record_run(encoder, &self.finding, None);
     }
 
     /// Compiles what [`Self::record`] would compile when the device first runs it, and waits for that: see
@@ -254,7 +261,7 @@ impl Detector {
         Ok(count.read::<u32>(1).await?[0])
     }
 
-    /// Puts the strongest of all `found` keypoints into the list, which has no room for all, and describes them.
+    /// Puts the strongest of all `found` keypoints into the list, which has no room for all.
     async fn keep_strongest(&self, found: u32) -> Result<()> {
         let (gpu, room) = (&self.gpu, self.list.capacity());
         let (all, keypoints) = guarded(gpu, "finding interest points", || {
@@ -277,7 +284,7 @@ impl Detector {
             strongest(&ranked, self.size, room as usize).into_iter().map(|index| keypoints[index]).collect();
         gpu.queue.write_buffer(self.list.count(), 0, bytemuck::bytes_of(&room));
         gpu.queue.write_buffer(self.list.keypoints(), 0, bytemuck::cast_slice(&kept));
-        submit(gpu, |encoder| record_run(encoder, &self.describing, None)).await
+        Ok(())
     }
 
     /// Copies the first `keypoint_count` keypoints of the list and their descriptors to the host.

@@ -8,19 +8,18 @@ use crate::image::{Luma, Size};
 /// nothing is seen stays as it is.
 pub(crate) fn extended(luma: &Luma, mask: &Mask) -> Luma {
     let Size { width, height } = luma.size();
-    let mut out = luma.clone();
-    let seen_rows: Vec<u32> = (0..height).filter(|&y| mask.row(y).iter().any(|&value| value != 0)).collect();
-    for &y in &seen_rows {
-        let seen: Vec<u32> = (0..width).filter(|&x| mask.get(x, y) != 0).collect();
-        (0..width).for_each(|x| out.set(x, y, luma.get(nearest(&seen, x), y)));
-    }
-    if !seen_rows.is_empty() {
-        for y in 0..height {
-            let from = nearest(&seen_rows, y);
-            (0..width).for_each(|x| out.set(x, y, out.get(x, from)));
+    let seen_rows = (0..height).map(|y| mask.row(y).iter().any(|&value| value != 0));
+    let Some(rows) = nearest(seen_rows) else { return luma.clone() };
+    let mut data = Vec::with_capacity(luma.data().len());
+    let mut columns: Option<(u32, Vec<u32>)> = None;
+    for from in rows {
+        if columns.as_ref().is_none_or(|(row, _)| *row != from) {
+            columns = nearest(mask.row(from).iter().map(|&value| value != 0)).map(|columns| (from, columns));
         }
+        let row = luma.row(from);
+        data.extend(columns.iter().flat_map(|(_, columns)| columns).map(|&x| row[x as usize]));
     }
-    out
+    Luma::new((width, height), data).expect("a value per pixel")
 }
 
 /// The view with noise in place of the unseen pixels. Noise of another `seed` corresponds to it nowhere, so that no path carries
@@ -38,11 +37,22 @@ fn noise(x: u32, y: u32, seed: u32) -> u8 {
     (mixed ^ mixed >> 13) as u8
 }
 
-/// The nearest of `sorted` places, the smaller one of two.
-fn nearest(sorted: &[u32], place: u32) -> u32 {
-    let after = sorted.partition_point(|&other| other < place);
-    let candidates = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|index| sorted.get(index));
-    *candidates.min_by_key(|other| other.abs_diff(place)).expect("there is a seen pixel")
+/// For each place the nearest one that is seen, the smaller one of two; `None` if none is seen.
+fn nearest(seen: impl Iterator<Item = bool>) -> Option<Vec<u32>> {
+    let mut nearest: Vec<u32> = Vec::new();
+    let mut last: Option<u32> = None;
+    for (place, is_seen) in (0..).zip(seen) {
+        if is_seen {
+            // Of the places since the last one that is seen, those after the middle are nearer to this one.
+            let from = last.map_or(0, |last| (last + place) / 2 + 1);
+            nearest.resize(from as usize, last.unwrap_or(0));
+            nearest.resize(place as usize + 1, place);
+            last = Some(place);
+        } else {
+            nearest.push(last.unwrap_or(0));
+        }
+    }
+    last.map(|_| nearest)
 }
 
 #[cfg(test)]

@@ -8,16 +8,20 @@ mod rectified;
 mod reduction;
 mod search;
 mod taken;
+mod taken_pair;
 mod trust;
 mod upright;
 mod views;
 
 pub use back::WayBack;
 pub use range::RangeSource;
-pub use rectified::{RectifiedPair, rectify_async, rectify_by_async};
 #[cfg(not(target_arch = "wasm32"))]
-pub use rectified::{rectify, rectify_by};
+pub use rectified::rectify_by;
+pub use rectified::{RectifiedPair, rectify_by_async};
 pub use reduction::reduction;
+#[cfg(not(target_arch = "wasm32"))]
+pub use taken_pair::rectify;
+pub use taken_pair::{TakenPair, rectify_async};
 pub use trust::TRUSTED;
 
 use web_time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Rectification of a pair, by a calibration or from its own matches.
+//! A pair whose rows were brought to correspond, and rectification by a calibration.
 
 use super::{
     back::WayBack,
@@ -10,29 +10,19 @@ use crate::gpu::block_on;
 use crate::{
     backend::Backend,
     calibration::StereoCalibration,
-    cpu,
     dense::View,
-    error::{Error, Result},
+    error::Result,
     features::FeatureConfig,
     image::{self, Luma, Plane, Size},
     io::Picture,
     mask,
-    rectify::{
-        CalibratedRectification, Correspondence, Residual, RowModel, StereoRectification, WarpMap,
-        epipolar::Uncalibrated,
-    },
-    wide_baseline::{WideBaselineConfig, match_points, match_upright},
+    rectify::{CalibratedRectification, Correspondence, Residual, RowModel, StereoRectification},
+    wide_baseline::{WideBaselineConfig, match_upright},
 };
 
 /// Largest number of interest points of a view that are matched, the strongest, spread over the view: the time to match points grows
-/// with the square of their number. A view of half the scale has few points in common with those of the other.
-const MOST_POINTS: u32 = 8000;
-/// Number of inliers below which more points are sought along the rows of a first rectification.
-const FEW: usize = 200;
-/// Number of times that they are sought, the second time along better rows.
-const ROUNDS: usize = 2;
-/// Largest row difference of points that are sought along rows, in pixels of the detection.
-const MAX_DY: f32 = 3.0;
+/// with the square of their number, and rows become no more precise with 8000 points.
+const MOST_POINTS: u32 = 4000;
 /// Precision of the rows of a match, in pixels of the detection: the width of the Cauchy loss.
 const PRECISION: f64 = 0.3;
 
@@ -74,7 +64,7 @@ impl RectifiedPair {
     /// map, [`crate::seeding::Rectification::rows`].
     ///
     /// # Errors
-    /// See [`WarpMap::new`].
+    /// See [`crate::rectify::WarpMap::new`].
     pub fn way_back(&self, reference: View, rows: &RowModel) -> Result<WayBack> {
         Ok(WayBack::new(match reference {
             View::Left => self.rectification.map_back(0)?,
@@ -83,56 +73,10 @@ impl RectifiedPair {
     }
 }
 
-/// Rectifies a pair from its own matches. The views may differ in size, turn and scale.
-///
-/// # Errors
-/// [`Error::NotRectifiable`] if no depth follows from the pair, or no warp brings its rows to correspond;
-/// [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of [`crate::features::detect`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
-    block_on(rectify_async(backend, views))
-}
-
-/// The asynchronous [`rectify`]. Work on the host blocks.
-///
-/// # Errors
-/// See [`rectify`].
-pub async fn rectify_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<RectifiedPair> {
-    let views = [TakenView::new(left)?, TakenView::new(right)?];
-    let factor = geometry_reduction(larger([left.size(), right.size()]));
-    let small = views.each_ref().map(|view| view.seen.reduced(factor));
-    let sizes = small.each_ref().map(|view| view.luma.size());
-    let config = config();
-    let mut points = match_points(backend, &small[0].luma, &small[1].luma, &config).await?;
-    points.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
-    let mut found = Uncalibrated::new(&points, sizes, 1);
-    for round in 0..ROUNDS {
-        let Ok(first) = &found else { break };
-        if round == 0 && first.evidence.inliers >= FEW {
-            break;
-        }
-        let more = more_points(backend, &small, first, &config).await?;
-        match Uncalibrated::new(&more, sizes, 1) {
-            Ok(better) if more.len() > points.len() => (points, found) = (more, Ok(better)),
-            _ => break,
-        }
-    }
-    if factor > 1 {
-        points.iter_mut().for_each(|point| *point = enlarged(point, factor));
-        found = Uncalibrated::new(&points, [left.size(), right.size()], factor);
-    }
-    let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
-    let residual = found.residual;
-    let rectification = StereoRectification::Uncalibrated(found.into());
-    let (pictures, luma) = warped(backend, &views, &rectification).await?;
-    let [_, right] = views;
-    Ok(RectifiedPair { rectification, pictures, points, residual, luma, right })
-}
-
 /// Rectifies a pair by a calibration of its cameras.
 ///
 /// # Errors
-/// See [`CalibratedRectification::new`]; [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of
+/// See [`CalibratedRectification::new`]; [`crate::Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of
 /// [`crate::features::detect`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn rectify_by(backend: &Backend, views: (&Picture, &Picture), stereo: &StereoCalibration) -> Result<RectifiedPair> {
@@ -174,7 +118,7 @@ pub async fn rectify_by_async(
 }
 
 /// The rectified pictures and their luma; a left view that stays is not resampled.
-async fn warped(
+pub(super) async fn warped(
     backend: &Backend,
     [left, right]: &[TakenView; 2],
     by: &StereoRectification,
@@ -192,36 +136,19 @@ fn row_error(rectification: &StereoRectification, point: &Correspondence) -> Opt
     Some(rectification.rectified_of(0, point.left)?.y - rectification.rectified_of(1, point.right)?.y)
 }
 
-fn larger([left, right]: [Size; 2]) -> Size {
+pub(super) fn larger([left, right]: [Size; 2]) -> Size {
     if left.pixels() >= right.pixels() { left } else { right }
 }
 
 /// A point of views reduced by `factor`, in pixels of the views.
-fn enlarged(point: &Correspondence, factor: u32) -> Correspondence {
+pub(super) fn enlarged(point: &Correspondence, factor: u32) -> Correspondence {
     let factor = f64::from(factor);
     let [left, right] = [point.left, point.right].map(|place| place * factor + (factor - 1.0) / 2.0);
     Correspondence { left, right }
 }
 
 /// Parameters of matching.
-fn config() -> WideBaselineConfig {
+pub(super) fn config() -> WideBaselineConfig {
     let config = WideBaselineConfig::default();
     WideBaselineConfig { features: FeatureConfig { max_features: MOST_POINTS, ..config.features }, ..config }
-}
-
-/// Points found along the rows of a first rectification: where views are alike, many more points match.
-async fn more_points(
-    backend: &Backend,
-    views: &[Seen; 2],
-    first: &Uncalibrated,
-    config: &WideBaselineConfig,
-) -> Result<Vec<Correspondence>> {
-    let maps: [WarpMap; 2] = first.maps()?;
-    let level = [0, 1].map(|view: usize| cpu::rectify::warp(&views[view].luma, &maps[view]));
-    let found = match_upright(backend, [&level[0], &level[1]], config, Some(MAX_DY)).await?;
-    let back = |point: &Correspondence| {
-        let (left, right) = (first.original(0, point.left)?, first.original(1, point.right)?);
-        (views[0].shows(left) && views[1].shows(right)).then_some(Correspondence { left, right })
-    };
-    Ok(found.iter().filter_map(back).collect())
 }

@@ -58,6 +58,9 @@ pub(super) enum Goal {
 ///
 /// For [`Goal::Descriptors`] a small remaining turn and scale stay.
 ///
+/// The search begins with `start`, a map from pixels of the second view to those of the aligned one, the identity if nothing is
+/// known.
+///
 /// Upright features measure small rotations and all scales by their rows, which do not depend on depth
 /// ([`Rectification`]); if they match too rarely, features with orientations are matched once. If rows do not
 /// correspond in the end, the last alignment is kept.
@@ -68,12 +71,13 @@ pub(super) async fn align(
     features: &FeatureConfig,
     matching: &MatchConfig,
     goal: Goal,
+    start: DAffine2,
 ) -> Result<Aligned> {
-    let mut aligned = Aligned {
-        view: View::new(detectors, second.clone(), features).await?,
-        map: DAffine2::IDENTITY,
-        rectified: false,
-        matches: Vec::new(),
+    let mut aligned = if start == DAffine2::IDENTITY {
+        let view = View::new(detectors, second.clone(), features).await?;
+        Aligned { view, map: start, rectified: false, matches: Vec::new() }
+    } else {
+        turned(detectors, &first.luma, second, start, features).await?
     };
     let mut tried_orientations = false;
     for round in 0..=ROUNDS {

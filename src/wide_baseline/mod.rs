@@ -10,6 +10,7 @@
 mod agreement;
 mod align;
 mod detector_cache;
+mod glance;
 mod points;
 
 use glam::{DAffine2, DVec2};
@@ -24,6 +25,7 @@ use crate::{
     matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
 };
 use detector_cache::DetectorCache;
+pub(crate) use glance::{Glance, glance};
 pub(crate) use points::{match_points, match_upright};
 
 /// Parameters of [`match_views`].
@@ -161,7 +163,8 @@ pub async fn match_views(
     // The first view is smoothed now, while the cached detector has its size: the aligned second view has another.
     firsts.by(1, &mut detectors, features).await?;
     let align::Aligned { view: second, map, rectified, .. } =
-        align::align(&mut detectors, &firsts.0[0], second, features, matching, align::Goal::Rows).await?;
+        align::align(&mut detectors, &firsts.0[0], second, features, matching, align::Goal::Rows, DAffine2::IDENTITY)
+            .await?;
     let (rows, max_dy) = if rectified { (Rows::Equal, Some(MAX_DY)) } else { (Rows::Matched, matching.max_dy) };
     let matching = MatchConfig { max_dy, ..matching.clone() };
     let mut seconds = SmoothedViews(vec![second]);

@@ -1,6 +1,6 @@
 //! Matches at the positions of the interest points themselves, for geometry.
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
 use super::{DetectorCache, NEIGHBOURHOOD, View, WideBaselineConfig, agreement::agreement, align};
 use crate::{
@@ -19,21 +19,24 @@ const LEAST_AGREEMENT: f32 = 0.25;
 /// view is rotated and scaled like the first, and points are matched in any row and left where they were detected. Smoothing and
 /// the search along rows of [`super::match_views`] are left out: rows are what these points measure.
 ///
+/// `start` is a map from pixels of the second view to pixels of one that is turned and scaled like the first, as far as it is known:
+/// [`super::Glance::map`].
+///
 /// Points of both views are detected in one orientation, so that a bias of the detector is the same in both and cancels.
 ///
 /// # Errors
 /// As [`super::match_views`].
 pub(crate) async fn match_points(
     backend: &Backend,
-    first: &Luma,
-    second: &Luma,
+    [first, second]: [&Luma; 2],
     WideBaselineConfig { features, matching, .. }: &WideBaselineConfig,
+    start: DAffine2,
 ) -> Result<Vec<Correspondence>> {
     let mut detectors = DetectorCache::new(backend);
     let reach = NEIGHBOURHOOD * first.width().max(first.height()) as f32;
     let first = View::new(&mut detectors, first.clone(), features).await?;
     let align::Aligned { view: second, map, matches, .. } =
-        align::align(&mut detectors, &first, second, features, matching, align::Goal::Descriptors).await?;
+        align::align(&mut detectors, &first, second, features, matching, align::Goal::Descriptors, start).await?;
     let back = map.inverse();
     let found = supported([&first.features, &second.features], &matches, reach);
     let place = |Correspondence { left, right }| Correspondence { left, right: back.transform_point2(right) };

@@ -70,7 +70,8 @@ fn a_distorted_lens_is_told() {
         })
     };
     let pair = Pair::shipped("planes").with(|view, _| distorted(&view));
-    let run = pair.matched(&["--force"]).ends(0, &["warning: rows are off by up to ", "remove the distortion"]);
+    let run = pair.matched(&["--rectify", "never", "--force"]);
+    let run = run.ends(0, &["warning: rows are off by up to ", "remove the distortion"]);
     assert!(run.range().min >= 0, "{:?}", run.range());
     assert!(run.report()["rectification"]["unexplained_px"].as_f64().unwrap() > 0.5);
     Pair::shipped("planes").matched(&[]).ends(0, &[]).never_says(&["distort"]);
@@ -168,6 +169,14 @@ fn a_right_view_turned_far_and_smaller_is_rectified() {
     assert_eq!(run.report()["rectified"]["model"], "affine");
     // The left view stays.
     run.errs_below(pair.matched(&[]).wrong(&pair.truth) + 0.05, &pair.truth);
+}
+
+#[test]
+fn a_camera_that_turned_to_the_side_is_named() {
+    let pair = Pair::shipped("planes");
+    let turned = pair.clone().with_right(|_| resampled(&pair.left, panned(0.12)));
+    turned.matched(&[]).ends(0, &["the camera turned on the spot, and disparities tell no depth"]);
+    pair.matched(&[]).never_says(&["on the spot"]);
 }
 
 #[test]

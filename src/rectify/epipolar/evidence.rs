@@ -10,7 +10,7 @@ use super::{
     relation::Relation,
     similarity::Similarity,
 };
-use crate::rectify::Correspondence;
+use crate::{image::Size, rectify::Correspondence};
 
 /// Smallest number of inliers, and smallest share of all points, of views of one scene.
 const RELATED: (usize, f64) = (20, 0.6);
@@ -24,6 +24,19 @@ const SCALES: (f64, f64) = (0.4, 2.5);
 const STILL: f64 = 0.5;
 /// Smallest share of the inliers whose rows agree as they are, for a scene without depth to count as rectified.
 const LEVEL: f64 = 0.9;
+
+/// Whether points of views of `sizes`, in pixels, detected in the views reduced by `factor`, show no depth and what only a camera sees
+/// that turned, or turned and zoomed, on the spot. Where a camera turns to the side, rows correspond nearly as they are, and a search
+/// along them finds disparities all the same.
+pub fn turned_on_the_spot(points: &[Correspondence], sizes: [Size; 2], factor: u32) -> bool {
+    let frame = Frame::new(sizes, factor);
+    let points: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
+    let Some(plane) = homography::consensus(&points, DEPTH.0 / frame.unit) else { return false };
+    let off = points.iter().filter(|point| homography::distance(&plane, point) > DEPTH.0 / frame.unit).count();
+    points.len() >= RELATED.0
+        && (off as f64) < DEPTH.1 * points.len() as f64
+        && flat::relation(&points, &frame) == Relation::Turned
+}
 
 /// The figures that tell how the cameras stand.
 #[derive(Clone, Copy, Debug, PartialEq)]

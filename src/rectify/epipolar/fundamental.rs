@@ -6,7 +6,7 @@ use super::{
     frame::{AGREEMENT, Frame, PRECISION},
     lens::Lens,
     linear::{null_space, rotation, singular},
-    minimise::minimise,
+    minimise::{minimise, sum_of_logarithms},
     sample::Samples,
 };
 use crate::rectify::Correspondence;
@@ -46,8 +46,7 @@ impl Fundamental {
 
     /// Sum over all points of `ln(1 + (r / 0.3 px)^2)` of their errors.
     pub fn cost(&self, points: &[Correspondence], unit: f64) -> f64 {
-        let scaled = |point| self.error(point) * unit / PRECISION;
-        points.iter().map(|point| libm::log1p(scaled(point) * scaled(point))).sum()
+        sum_of_logarithms(points.iter().map(|point| self.error(point) * unit / PRECISION))
     }
 
     /// The matrix that most points agree with: seven points at a time in a fixed random sequence (Fischler and Bolles 1981), the
@@ -56,15 +55,18 @@ impl Fundamental {
     pub fn consensus(points: &[Correspondence], unit: f64) -> Option<Self> {
         let tried = &points[..points.len().min(TRIED)];
         let limit = AGREEMENT / unit;
-        let cost =
-            |found: &Self| -> f64 { tried.iter().map(|point| (found.error(point) / limit).powi(2).min(1.0)).sum() };
+        // The cost, if it is below `least`.
+        let cost = |found: &Self, least: f64| {
+            tried.iter().try_fold(0.0, |sum, point| {
+                let sum = sum + (found.error(point) / limit).powi(2).min(1.0);
+                (sum < least).then_some(sum)
+            })
+        };
         let mut best: Option<(f64, Self)> = None;
         for seven in Samples::<7>::of(points.len()).take(SAMPLES) {
             for found in through(seven.map(|index| points[index])) {
-                let cost = cost(&found);
-                if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, found));
-                }
+                let least = best.map_or(f64::INFINITY, |(least, _)| least);
+                best = cost(&found, least).map(|cost| (cost, found)).or(best);
             }
         }
         let start = best?.1;

@@ -8,6 +8,8 @@ pub(super) const SINGULAR: f64 = 1e-13;
 const STEPS: usize = 60;
 /// Steps end when the cost falls by a smaller share.
 const SETTLED: f64 = 1e-9;
+/// Number of factors per logarithm: for errors up to 1e19.
+const FACTORS: usize = 8;
 /// Step of numeric derivatives, in units of the parameters, which are of the order of 1.
 const DELTA: f64 = 1e-6;
 
@@ -27,14 +29,27 @@ pub(super) struct Errors {
 
 impl Errors {
     fn cost(&self) -> f64 {
-        let robust: f64 = self.robust.iter().map(|error| libm::log1p(error * error)).sum();
-        robust + self.plain.iter().map(|error| error * error).sum::<f64>()
+        sum_of_logarithms(self.robust.iter().copied()) + self.plain.iter().map(|error| error * error).sum::<f64>()
     }
 
     /// All errors, the robust ones first.
     fn all(&self) -> impl Iterator<Item = f64> {
         self.robust.iter().chain(&self.plain).copied()
     }
+}
+
+/// The sum of `ln(1 + e^2)` over all `errors`: a logarithm per [`FACTORS`] of them, whose product stays below 1e308.
+pub(super) fn sum_of_logarithms(errors: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut product, mut count) = (0.0, 1.0, 0);
+    for error in errors {
+        product *= 1.0 + error * error;
+        count += 1;
+        if count == FACTORS {
+            sum += libm::log(product);
+            (product, count) = (1.0, 0);
+        }
+    }
+    sum + libm::log(product)
 }
 
 /// The parameters of least cost around `start`: Levenberg-Marquardt steps with Cauchy weights for the robust errors (Huber,

@@ -28,7 +28,7 @@ mod tests;
 
 use glam::{DMat3, DVec2, DVec3};
 
-pub use evidence::Evidence;
+pub use evidence::{Evidence, turned_on_the_spot};
 pub use refusal::Refusal;
 pub use relation::Relation;
 pub use shape::Distortion;
@@ -130,7 +130,14 @@ impl Uncalibrated {
             return Err(Refusal::Relation(evidence));
         }
         let lens = Lens::shown(&used, &found, &frame);
-        let (found, inliers) = if lens == Lens::NONE { (found, inliers) } else { found.behind(lens, &used, &frame) };
+        let (lens, found, inliers) = match lens {
+            Lens::NONE => (lens, found, inliers),
+            shown => {
+                let lens = shown.of_parallel_cameras(&found.behind(shown, &used, &frame).0, &used, &frame);
+                let (found, inliers) = found.behind(lens, &used, &frame);
+                (lens, found, inliers)
+            }
+        };
 
         let (model, maps) = chosen(&found, &inliers, &frame);
         let maps = [maps[0], columns(&maps, &inliers, &frame) * maps[1]];

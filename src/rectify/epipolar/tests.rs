@@ -210,6 +210,15 @@ fn the_distortion_of_the_lens_is_found_and_undone() {
 }
 
 #[test]
+fn a_distortion_of_parallel_cameras_is_not_taken_for_a_perspective() {
+    for k1 in [-0.25, -0.15] {
+        let (found, off) = Rig { k1, depths: [1.0, 4.0], ..SIDE_BY_SIDE }.rectified();
+        assert!(matches!(found.model, Model::Right(RowKind::AsIs | RowKind::Shift)), "{:?}", found.model);
+        assert!((found.k1 - k1).abs() < 0.015 && off < 0.3, "{k1}: {} {off}", found.k1);
+    }
+}
+
+#[test]
 fn a_pixel_goes_there_and_back() {
     let rig = Rig { k1: -0.15, turns: [DVec3::Z * 8.0, DVec3::new(1.0, 2.0, -9.0)], ..SIDE_BY_SIDE };
     let (found, _) = rig.rectified();
@@ -250,6 +259,18 @@ fn what_cannot_be_rectified_is_told_apart() {
     };
     assert_eq!(relation(&moved(DVec2::ZERO)), Relation::Still);
     assert_eq!(relation(&moved(DVec2::new(3.0, 40.0))), Relation::Plane);
+}
+
+#[test]
+fn a_turn_to_the_side_is_one_on_the_spot_though_rows_nearly_agree() {
+    let is_spot = |rig: Rig| turned_on_the_spot(&rig.points(300, 0.35), [SIZE; 2], 1);
+    for pan in [3.0, 6.0, 12.0] {
+        let turned = Rig::turned([0.0, pan, 0.0]);
+        assert!(is_spot(Rig { place: DVec3::ZERO, ..turned }), "{pan}");
+        assert!(!is_spot(turned), "{pan}: a scene with depth");
+        assert!(!is_spot(Rig { depths: [4.0, 4.0], ..turned }), "{pan}: a plane");
+    }
+    assert!(!is_spot(SIDE_BY_SIDE) && !is_spot(Rig { depths: [4.0, 4.0], ..SIDE_BY_SIDE }));
 }
 
 #[test]

@@ -1,0 +1,147 @@
+//! Rectification of a pair from its own matches.
+
+use super::{
+    rectified::{RectifiedPair, config, enlarged, larger, warped},
+    reduction::geometry_reduction,
+    taken::{Seen, TakenView},
+};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
+use crate::{
+    backend::Backend,
+    cpu,
+    error::{Error, Result},
+    image::Size,
+    io::Picture,
+    rectify::{Correspondence, StereoRectification, WarpMap, epipolar::Uncalibrated},
+    seeding::Rectification,
+    wide_baseline::{Glance, WideBaselineConfig, glance, match_points, match_upright},
+};
+
+/// Number of inliers below which more points are sought along the rows of a first rectification.
+const FEW: usize = 200;
+/// Number of times that they are sought, the second time along better rows.
+const ROUNDS: usize = 2;
+/// Largest row difference of points that are sought along rows, in pixels of the detection.
+const MAX_DY: f32 = 3.0;
+
+/// A pair as it was taken, after a first look at it.
+///
+/// The look costs a fraction of a rectification, which begins with it, and tells whether there must be one.
+#[derive(Clone, Debug)]
+pub struct TakenPair {
+    views: [TakenView; 2],
+    /// Both views reduced by [`Self::factor`], in which points are detected.
+    small: [Seen; 2],
+    factor: u32,
+    glance: Glance,
+}
+
+impl TakenPair {
+    /// Looks at a pair of views. They may differ in size, turn and scale.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of [`crate::features::detect`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(backend: &Backend, views: (&Picture, &Picture)) -> Result<Self> {
+        block_on(Self::new_async(backend, views))
+    }
+
+    /// The asynchronous [`Self::new`]. Work on the host blocks.
+    ///
+    /// # Errors
+    /// See [`Self::new`].
+    pub async fn new_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<Self> {
+        let views = [TakenView::new(left)?, TakenView::new(right)?];
+        let factor = geometry_reduction(larger([left.size(), right.size()]));
+        let small = views.each_ref().map(|view| view.seen.reduced(factor));
+        let glance = glance(backend, [&small[0].luma, &small[1].luma], &config()).await?;
+        Ok(Self { views, small, factor, glance })
+    }
+
+    /// How the rows of the views correspond as they are, from small copies of the views; in pixels of the views. `None` unless that is
+    /// certain.
+    pub fn rows(&self) -> Option<Rectification> {
+        self.glance.rows.map(|rows| rows.enlarged(self.factor))
+    }
+
+    /// Rectifies the pair from its own matches.
+    ///
+    /// # Errors
+    /// See [`rectify`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn rectify(self, backend: &Backend) -> Result<RectifiedPair> {
+        block_on(self.rectify_async(backend))
+    }
+
+    /// The asynchronous [`Self::rectify`]. Work on the host blocks.
+    ///
+    /// # Errors
+    /// See [`rectify`].
+    pub async fn rectify_async(self, backend: &Backend) -> Result<RectifiedPair> {
+        let Self { views, small, factor, glance: Glance { map: start, .. } } = self;
+        let config = config();
+        let mut points = match_points(backend, [&small[0].luma, &small[1].luma], &config, start).await?;
+        points.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
+        let sizes = views.each_ref().map(|view| view.picture.size());
+        let fit = |points: &[Correspondence]| {
+            let points: Vec<Correspondence> = points.iter().map(|point| enlarged(point, factor)).collect();
+            (Uncalibrated::new(&points, sizes, factor), points)
+        };
+        let (mut found, mut in_views) = fit(&points);
+        for round in 0..ROUNDS {
+            if found.as_ref().map_or(true, |found| round == 0 && found.evidence.inliers >= FEW) {
+                break;
+            }
+            let more = more_points(backend, &small, &points, &config).await?;
+            let (better, better_in_views) = fit(&more);
+            if better.is_err() || more.len() <= points.len() {
+                break;
+            }
+            (points, found, in_views) = (more, better, better_in_views);
+        }
+        let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
+        let residual = found.residual;
+        let rectification = StereoRectification::Uncalibrated(found.into());
+        let (pictures, luma) = warped(backend, &views, &rectification).await?;
+        let [_, right] = views;
+        Ok(RectifiedPair { rectification, pictures, points: in_views, residual, luma, right })
+    }
+}
+
+/// Rectifies a pair from its own matches. The views may differ in size, turn and scale.
+///
+/// # Errors
+/// [`Error::NotRectifiable`] if no depth follows from the pair, or no warp brings its rows to correspond;
+/// [`Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`]; the errors of [`crate::features::detect`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
+    block_on(rectify_async(backend, views))
+}
+
+/// The asynchronous [`rectify`]. Work on the host blocks.
+///
+/// # Errors
+/// See [`rectify`].
+pub async fn rectify_async(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
+    TakenPair::new_async(backend, views).await?.rectify_async(backend).await
+}
+
+/// Points found along the rows of a first rectification by `points`: where views are alike, many more points match.
+async fn more_points(
+    backend: &Backend,
+    views: &[Seen; 2],
+    points: &[Correspondence],
+    config: &WideBaselineConfig,
+) -> Result<Vec<Correspondence>> {
+    let sizes: [Size; 2] = views.each_ref().map(|view| view.luma.size());
+    let Ok(first) = Uncalibrated::new(points, sizes, 1) else { return Ok(Vec::new()) };
+    let maps: [WarpMap; 2] = first.maps()?;
+    let level = [0, 1].map(|view: usize| cpu::rectify::warp(&views[view].luma, &maps[view]));
+    let found = match_upright(backend, [&level[0], &level[1]], config, Some(MAX_DY)).await?;
+    let back = |point: &Correspondence| {
+        let (left, right) = (first.original(0, point.left)?, first.original(1, point.right)?);
+        (views[0].shows(left) && views[1].shows(right)).then_some(Correspondence { left, right })
+    };
+    Ok(found.iter().filter_map(back).collect())
+}
