@@ -144,6 +144,7 @@ pub mod matching;
 mod memory;
 mod mosaic;
 mod names;
+pub mod options;
 mod pair;
 pub mod pipeline;
 pub mod rectify;
@@ -164,6 +165,7 @@ pub use gpu::block_on;
 pub use gpu::{DeviceChoice, Gpu};
 pub use image::{Luma, Size};
 pub use io::Picture;
+pub use options::Options;
 pub use pair::Pair;
 pub use {glam, wgpu};
 

@@ -50,7 +50,7 @@ pub struct Features {
 impl Features {
     /// Detects the interest points and prints or writes them.
     pub fn run(self) -> anyhow::Result<()> {
-        let config = self.features.over(FeatureConfig::default());
+        let config = self.features.over(FeatureConfig::default())?;
         config.validate()?;
         let mut output = self.output.as_deref().map(Output::open).transpose()?;
         let picture = load::load(&self.image)?;

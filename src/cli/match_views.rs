@@ -8,7 +8,7 @@ use hsad::io::load::{LoadedPair, load_pair};
 use super::{
     depth::DepthOptions,
     job::Job,
-    options::{FeatureOptions, MatchOptions, RunOptions, UnseenOptions},
+    options::{FigureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
     products,
     rectification::{self, Names},
@@ -75,7 +75,7 @@ pub struct Match {
     #[command(flatten)]
     matching: MatchOptions,
     #[command(flatten)]
-    features: FeatureOptions,
+    figure: FigureOptions,
     #[command(flatten)]
     depth: DepthOptions,
     #[command(flatten)]
@@ -85,7 +85,7 @@ pub struct Match {
 impl Match {
     /// Matches the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
-        let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
+        let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
         let mut output = Output::open(&self.output)?;
         let LoadedPair { left, right, stretch, mut warnings } =
             load_pair(&self.left, &self.right, &self.unseen.unseen())?;

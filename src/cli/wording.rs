@@ -3,7 +3,7 @@
 //! The library names its own parameters, since embedding applications and the page in a browser show the same errors;
 //! here the options of `hsad` take their place.
 
-use hsad::Error;
+use hsad::{Error, Options};
 
 /// The message of a library error, with the options that help.
 pub fn in_options(error: &Error) -> String {
@@ -18,10 +18,14 @@ pub fn in_options(error: &Error) -> String {
             "{device} computes wrong results ({what}): use another device (hsad devices) or --device cpu, and repeat \
              the failure with {command}"
         ),
-        Error::Parameter { name, value, expected } => match OPTIONS.iter().find(|(parameter, _)| parameter == name) {
-            Some((_, option)) => format!("{option} is {value}, but {expected}"),
-            None => error.to_string(),
-        },
+        Error::Parameter { name, value, expected } => {
+            let expected = in_words_of_options(expected);
+            match OPTIONS.iter().find(|(parameter, _)| parameter == name) {
+                Some((_, option)) => format!("{option} is {value}, but {expected}"),
+                None if Options::described(name).is_ok() => format!("{} is {value}, but {expected}", spelled(name)),
+                None => format!("{name} is {value}, but {expected}"),
+            }
+        }
         Error::Format { .. } => {
             error.to_string().replace("name the unit of length", "name the unit of length with --calib-unit")
         }
@@ -29,24 +33,25 @@ pub fn in_options(error: &Error) -> String {
     }
 }
 
-/// Parameters of the library, and the options that set them.
-const OPTIONS: [(&str, &str); 16] = [
-    ("agreement", "--agreement"),
+/// The spelling of an option on the command line.
+fn spelled(name: &str) -> String {
+    format!("--{}", name.replace('_', "-"))
+}
+
+/// A sentence in which the library names options between backticks, with their spelling on the command line.
+pub fn in_words_of_options(sentence: &str) -> String {
+    let parts = sentence.split('`').enumerate();
+    parts.map(|(i, part)| if i % 2 == 0 { part.into() } else { spelled(part) }).collect()
+}
+
+/// Parameters that are no options of the library by name, and the options that set them.
+const OPTIONS: [(&str, &str); 6] = [
     ("condition", "--condition"),
-    ("max-lr-difference", "--max-lr-difference"),
-    ("max_features", "--max-features"),
-    ("octaves", "--octaves"),
     ("only", "--only"),
-    ("preset", "--preset"),
-    ("ratio", "--ratio"),
     ("size", "--size"),
-    ("step", "--step"),
     ("strongest", "--strongest"),
     ("the number of disparities", "--disparities"),
     ("the window of costs", "--cost-window"),
-    ("threshold", "--threshold"),
-    ("uniqueness", "--uniqueness"),
-    ("window", "--window"),
 ];
 
 #[cfg(test)]
@@ -68,6 +73,15 @@ mod tests {
                 &["rig.yml: a baseline of 3: name the unit of length with --calib-unit"],
             ),
             (even("another"), &["another is 8, but it must be odd"]),
+            (even("max_features"), &["--max-features is 8, but it must be odd"]),
+            (
+                Error::Parameter {
+                    name: "preset",
+                    value: "fast".into(),
+                    expected: "`cost_window` needs balanced".into(),
+                },
+                &["--preset is fast, but --cost-window needs balanced"],
+            ),
             (Error::NoAdapter, &[&Error::NoAdapter.to_string()]),
         ] {
             let text = in_options(&error);

@@ -18,10 +18,11 @@ use std::{
 
 use devtools::Browser;
 use hsad::{
-    Backend,
+    Backend, Options,
     config::Preset,
     gpu::DeviceChoice,
     io::{Picture, load},
+    options::Kind,
     pipeline,
 };
 use serde_json::json;
@@ -97,6 +98,7 @@ fn the_page_in_chromium() {
     let server = Server::start();
     let mut browser = Browser::start(1440, 900);
     browser.open(&server.url, "idle");
+    has_the_options_of_the_library(&mut browser);
     decodes_what_is_decoded_here(&mut browser);
     computes_what_is_computed_here(&mut browser);
     takes_files_as_the_command_line_does(&mut browser);
@@ -112,6 +114,22 @@ fn the_page_in_chromium() {
     draws_pictures_wider_than_a_texture(&mut browser);
     survives_a_panic(&mut browser, &server.url);
     says_that_there_is_no_webgpu(&mut browser, &server.url);
+}
+
+fn has_the_options_of_the_library(browser: &mut Browser) {
+    let told = browser.evaluate(
+        "import('./library.js').then(({ options }) => options()).then((options) =>
+            options.map(({ name, choices }) => [name, ...choices.map(({ name }) => name)].join(' ')).join(', '))",
+    );
+    let described = Options::ALL.iter().map(|option| match option.kind() {
+        Kind::Choice(choices) => {
+            [option.name].into_iter().chain(choices.iter().map(|choice| choice.name)).collect::<Vec<_>>().join(" ")
+        }
+        _ => option.name.into(),
+    });
+    assert_eq!(told, described.collect::<Vec<_>>().join(", "));
+    let offered = "[...document.querySelectorAll('input[name=preset]')].map(({ value }) => value).join()";
+    assert_eq!(browser.evaluate(offered), "fast,balanced,quality");
 }
 
 fn decodes_what_is_decoded_here(browser: &mut Browser) {
@@ -265,11 +283,10 @@ fn draws_pictures_wider_than_a_texture(browser: &mut Browser) {
 fn survives_a_panic(browser: &mut Browser, url: &str) {
     browser.open(url, "idle");
     browser.evaluate(
-        "window.Worker = class extends Worker {
-            postMessage(message, transfer) {
-                if (message.act !== 'match' || window.mended) super.postMessage(message, transfer);
-                else this.dispatchEvent(new ErrorEvent('error', { message: 'unreachable' }));
-            }
+        "const post = Worker.prototype.postMessage;
+        Worker.prototype.postMessage = function (message, transfer) {
+            if (message.act !== 'match' || window.mended) post.call(this, message, transfer);
+            else this.dispatchEvent(new ErrorEvent('error', { message: 'unreachable' }));
         };
         document.getElementById('example').click()",
     );

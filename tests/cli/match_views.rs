@@ -3,9 +3,11 @@
 use std::{fs, path::Path};
 
 use hsad::{
+    Options,
     disparity::{NONE, coverage},
     image::{Plane, Size},
     io::{disparity_png, load, pfm},
+    options::Kind,
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::{Value, json};
@@ -119,6 +121,20 @@ fn gpu_and_cpu_find_the_same_bytes() {
     let ((cpu, cpu_confidence, _), (gpu, gpu_confidence, gpu_report)) = (run("cpu"), run("0"));
     assert_ne!(gpu_report["device"]["backend"], "none", "this test needs a device; lavapipe is one");
     assert!(cpu == gpu && cpu_confidence == gpu_confidence);
+}
+
+/// What the library describes is an argument by itself.
+#[test]
+fn every_option_of_the_library_is_an_argument() {
+    let output = hsad().args(["match", "--help"]).assert().success().get_output().stdout.clone();
+    let help = String::from_utf8(output).unwrap();
+    for option in Options::ALL {
+        let name = option.name.replace('_', "-");
+        let own = help.split("\n      --").find(|own| own.split_whitespace().next() == Some(&name));
+        let own = own.unwrap_or_else(|| panic!("{name} is no argument"));
+        let Kind::Choice(choices) = option.kind() else { continue };
+        assert!(choices.iter().all(|choice| own.contains(choice.name)), "{own}");
+    }
 }
 
 #[test]

@@ -34,10 +34,15 @@ function badPicture(message) {
   return Object.assign(new Error(message), { name: "BadPicture" });
 }
 
+/** The options of a match, as the command line has them: `name`, `kind`, `help`, and `choices` with `name` and `help`. */
+export function options() {
+  return ask("options", {}, []);
+}
+
 /**
  * Matches a pair.
  *
- * @param {{left: ImageData, right: ImageData, preset: string, force: boolean}} pair
+ * @param {{left: ImageData, right: ImageData, options: object}} pair
  * @param {({device, step}: {device?: string, step?: string}) => void} news called with the GPU's name and with each step
  */
 export function match(pair, news) {

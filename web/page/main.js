@@ -152,7 +152,7 @@ async function match({ force = false } = {}) {
     const { force } = next;
     next = undefined;
     const preset = document.querySelector("input[name=preset]:checked").value;
-    const work = (awaited = { ...pair, preset, force });
+    const work = (awaited = { ...pair, options: { preset, force } });
     progress();
     try {
       const result = await library.match(work, ({ device, step }) => {
@@ -320,7 +320,20 @@ function listen() {
   at("disparity").onpointerleave = () => (at("probe").hidden = true);
 }
 
-function begin() {
+/** Offers the presets that the library has, but those whose map is the right view's: the page shows the left one's. */
+async function offerPresets() {
+  const { choices } = (await library.options()).find(({ name }) => name === "preset");
+  const offered = choices.filter(({ name }) => name !== "paper").map(({ name, help }) => {
+    const input = Object.assign(document.createElement("input"), { type: "radio", name: "preset", value: name });
+    input.defaultChecked = name === "balanced";
+    const label = made("label", "", input, made("span", "", name[0].toUpperCase() + name.slice(1)));
+    label.title = help;
+    return label;
+  });
+  at("preset").replaceChildren(...offered);
+}
+
+async function begin() {
   if (!navigator.gpu) {
     const text = isSecureContext
       ? "WebGPU is in Chrome and Edge since version 113, in Safari since 26, in Firefox since 141 on Windows and 145 on macOS. On Linux it may have to be turned on: chrome://flags/#enable-unsafe-webgpu."
@@ -332,6 +345,7 @@ function begin() {
   try {
     cloud = new Cloud(at("cloud"));
     window.cloud = cloud;
+    await offerPresets();
     listen();
     say("Two photographs, one depth map", "Drop a rectified stereo pair anywhere on this page: of the two files, the first by name is the left view.", {
       action: { label: "Show the example", run: loadExample },

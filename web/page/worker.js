@@ -1,6 +1,6 @@
 // The worker: decodes pictures and matches pairs, so that the page stays responsive.
 
-import init, { Session, View } from "./hsad_web.js";
+import init, { Session, View, options } from "./hsad_web.js";
 
 const ready = init();
 let session;
@@ -14,14 +14,17 @@ const acts = {
     return [picture, [picture.data.buffer]];
   },
 
-  async match({ left, right, preset, force }, tell) {
+  options: () => [options(), []],
+
+  async match({ left, right, options }, tell) {
     session ??= await Session.open();
     tell({ device: await adapterName() });
     const view = ({ width, height, data }) => new View(width, height, new Uint8Array(data.buffer));
-    const matched = await session.matchPair(view(left), view(right), preset, force, (step) => tell({ step }));
+    const matched = await session.matchPair(view(left), view(right), options, (step) => tell({ step }));
     const { first, last, found, matches, rectification, trust, coverage, measured, milliseconds, scale, none } = matched;
     const result = {
-      first, last, found, matches, rectification, trust, coverage, measured, milliseconds, scale, none, preset,
+      first, last, found, matches, rectification, trust, coverage, measured, milliseconds, scale, none,
+      preset: options.preset,
       width: left.width,
       height: left.height,
       disparities: matched.disparities(),

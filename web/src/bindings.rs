@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use hsad::{
-    Backend, Error,
-    config::{Config, Preset},
+    Backend, Error, Options,
     disparity::{NONE, SCALE, coverage},
     gpu::DeviceChoice,
     io::{Picture, color, load},
+    options::Kind,
     pipeline::{self, Outcome, RangeSource},
 };
 use wasm_bindgen::{Clamped, prelude::*};
@@ -17,6 +17,47 @@ use web_time::Instant;
 #[wasm_bindgen(start)]
 fn start() {
     console_error_panic_hook::set_once();
+}
+
+/// The options of [`Session::match_pair`], as the command line has them: an array of objects with `name`, `heading`, `kind` (`flag`,
+/// `whole`, `number` or `choice`), `unit`, `help`, and `choices`, an array of objects with `name` and `help`.
+#[wasm_bindgen]
+pub fn options() -> js_sys::Array {
+    let object = |entries: &[(&str, JsValue)]| {
+        let entries = entries.iter().map(|(name, value)| js_sys::Array::of2(&(*name).into(), value));
+        let entries = entries.collect::<js_sys::Array>();
+        js_sys::Object::from_entries(&entries).map_or(JsValue::UNDEFINED, JsValue::from)
+    };
+    let described = Options::ALL.iter().map(|option| {
+        let (kind, choices) = match option.kind() {
+            Kind::Flag => ("flag", Vec::new()),
+            Kind::Whole => ("whole", Vec::new()),
+            Kind::Number => ("number", Vec::new()),
+            Kind::Choice(choices) => ("choice", choices),
+        };
+        let choices =
+            choices.iter().map(|choice| object(&[("name", choice.name.into()), ("help", choice.help.into())]));
+        object(&[
+            ("name", option.name.into()),
+            ("heading", option.group.heading().into()),
+            ("kind", kind.into()),
+            ("unit", option.unit.into()),
+            ("help", option.help().into()),
+            ("choices", choices.collect::<js_sys::Array>().into()),
+        ])
+    });
+    described.collect()
+}
+
+/// The options in an object, by name; texts, numbers and booleans.
+fn given(object: &js_sys::Object) -> Result<Options, JsValue> {
+    let mut options = Options::default();
+    for entry in js_sys::Object::entries(object) {
+        let [name, value] = [0, 1].map(|place| js_sys::Reflect::get_u32(&entry, place));
+        let [name, value] = [name?, value?].map(|part| String::from(js_sys::Object::from(part).to_string()));
+        options.set(&name, &value).map_err(thrown)?;
+    }
+    Ok(options)
 }
 
 /// A picture.
@@ -70,18 +111,16 @@ impl Session {
         Ok(Self { backend })
     }
 
-    /// Matches a pair. `preset` is `fast`, `balanced`, `quality` or `paper`; `force` matches a pair even if it is not
-    /// rectified; `begin` is called with the name of each step.
+    /// Matches a pair. `options` is an object of what [`options`] describes; `begin` is called with the name of each step.
     #[wasm_bindgen(js_name = matchPair)]
     pub async fn match_pair(
         &self,
         left: View,
         right: View,
-        preset: String,
-        force: bool,
+        options: js_sys::Object,
         begin: js_sys::Function,
     ) -> Result<Matched, JsValue> {
-        let config = Config { force, ..preset.parse::<Preset>().map_err(thrown)?.config() };
+        let config = given(&options)?.config().map_err(thrown)?;
         let start = Instant::now();
         let outcome = pipeline::run_async(&self.backend, (&left.0, &right.0), &config, |step| {
             // An error of the page's callback does not stop the match.

@@ -153,7 +153,7 @@ impl Features {
         self.first.sort_unstable();
         self.first.dedup();
         let mut config = WideBaselineConfig { adapt: !self.plain, ..WideBaselineConfig::default() };
-        config.features = self.features.over(config.features);
+        config.features = self.features.over(config.features)?;
         config.matching.ratio = self.ratio.unwrap_or(config.matching.ratio);
         config.validate()?;
         self.check()?;

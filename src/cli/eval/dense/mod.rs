@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
     eval::{change::Change, report_failures, saved_results, scenes},
-    options::{FeatureOptions, MatchOptions, RunOptions},
+    options::{FigureOptions, MatchOptions, RunOptions},
     output::{Output, check_writable, write_json},
     report, terminal,
     wording::in_options,
@@ -88,7 +88,7 @@ pub struct Dense {
     #[command(flatten)]
     matching: MatchOptions,
     #[command(flatten)]
-    features: FeatureOptions,
+    figure: FigureOptions,
 }
 
 /// A scene, or a method on a scene, that could not be scored.
@@ -119,7 +119,7 @@ struct Results {
 impl Dense {
     /// Scores all scenes by all methods; a failure does not stop the others and is returned at the end.
     pub fn run(self) -> anyhow::Result<()> {
-        let (config, strongest) = (self.matching.config(&self.features)?, self.matching.strongest()?);
+        let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
         if self.condition.is_some() && config.reference == View::Right {
             return Err(Error::Parameter {
                 name: "--reference",
