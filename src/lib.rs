@@ -103,6 +103,7 @@
 //! | `pictures` | reading PNG, JPEG and other picture files |
 //! | `calibrations` | reading the calibrations of OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP and hsad itself |
 //! | `files` | writing maps as PNG, whole or not at all, and reading scenes with their ground truth |
+//! | `reports` | parameters, figures and scores as JSON |
 //! | `verify` | the kernels and their twins as a regression suite for a device |
 //! | `cli` | the command line, with all of the above |
 //!
@@ -148,6 +149,8 @@ pub mod options;
 mod pair;
 pub mod pipeline;
 pub mod rectify;
+#[cfg(feature = "reports")]
+pub mod report;
 pub mod seeding;
 mod size;
 #[cfg(all(feature = "verify", not(target_arch = "wasm32")))]

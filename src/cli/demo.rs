@@ -21,7 +21,7 @@ use super::{
     job::Job,
     options::RunOptions,
     output::Output,
-    products, score, summary,
+    products, summary,
     terminal::{self, Progress},
     way::Way,
 };
@@ -159,7 +159,7 @@ impl Accuracy {
     }
 
     fn report(&self) -> Value {
-        self.rows().into_iter().map(|(name, figures)| (name.replace('-', "_"), score::to_json(figures))).collect()
+        self.rows().into_iter().map(|(name, figures)| (name.replace('-', "_"), hsad::report::score(figures))).collect()
     }
 }
 

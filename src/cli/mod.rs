@@ -18,7 +18,6 @@ mod products;
 mod rectification;
 mod rectify;
 mod report;
-mod score;
 mod summary;
 pub mod terminal;
 mod threads;

@@ -4,17 +4,16 @@ use std::io::{self, Write};
 
 use hsad::{
     Result, Size,
-    glam::DMat3,
     io::{calibration::to_opencv_yaml, figure, png},
     pipeline::RectifiedPair,
     rectify::{
         CalibratedRectification, Residual, RowKind, StereoRectification,
         epipolar::{Evidence, Model, Uncalibrated},
     },
+    report,
 };
-use serde_json::{Value, json};
 
-use super::{output::Output, report};
+use super::output::Output;
 
 /// Number of epipolar lines in a figure.
 const LINES: usize = 24;
@@ -38,7 +37,7 @@ pub fn add_files(pair: &RectifiedPair, names: &Names, output: &mut Output) -> Re
     }
     let figure = figure::epipolar_lines(&pair.pictures[0], &pair.pictures[1], &lines(pair));
     output.add(names.figure, |out| png::write_rgb8(out, &figure))?;
-    output.add_json(names.json, &json(pair))?;
+    output.add_json(names.json, &report::rectified(pair))?;
     output.add(names.yaml, |out| match &pair.rectification {
         StereoRectification::Calibrated(found) => out.write_all(to_opencv_yaml(found).as_bytes()),
         StereoRectification::Uncalibrated(found) => write_yaml(out, found),
@@ -108,58 +107,6 @@ pub fn pictures(found: &StereoRectification) -> String {
             format!("{size} pixels; shapes change by up to {change}")
         }
     }
-}
-
-/// The rectification for programs: figures, and matrices row by row.
-pub fn json(pair: &RectifiedPair) -> Value {
-    let Residual { points, right, mean, most } = pair.residual;
-    let mut value = match &pair.rectification {
-        StereoRectification::Calibrated(found) => calibrated(found),
-        StereoRectification::Uncalibrated(found) => uncalibrated(found),
-    };
-    let Size { width, height } = pair.rectification.size();
-    value["width"] = json!(width);
-    value["height"] = json!(height);
-    value["sources"] =
-        pair.rectification.source_sizes().iter().map(|Size { width, height }| json!([width, height])).collect();
-    value["residual"] = json!({ "points": points, "right": right, "mean_px": mean, "95_percent_px": most });
-    value
-}
-
-fn calibrated(found: &CalibratedRectification) -> Value {
-    let [left, right] = found.views().each_ref().map(|view| rows(&view.rotation()));
-    let [p1, p2] = found.projections();
-    json!({
-        "method": "calibrated",
-        "rotations": { "left": left, "right": right },
-        "calibration": report::calibration(found.calibration()),
-        "P1": p1.as_chunks::<4>().0,
-        "P2": p2.as_chunks::<4>().0,
-        "Q": found.reprojection().as_chunks::<4>().0,
-        "quarter_turns": found.quarter_turns(),
-    })
-}
-
-fn uncalibrated(found: &Uncalibrated) -> Value {
-    let Evidence { inliers, points, off_plane, epipoles, .. } = found.evidence;
-    let distortion = found.distortion;
-    json!({
-        "method": "uncalibrated",
-        "model": found.model.name(),
-        "homographies": { "left": rows(&found.homographies[0]), "right": rows(&found.homographies[1]) },
-        "k1": found.k1,
-        "k1_unit_px": [found.mean_side(0), found.mean_side(1)],
-        "shift_px": found.shift,
-        "points": points,
-        "inliers": inliers,
-        "off_plane": off_plane,
-        "epipoles": epipoles,
-        "distortion": { "aspect": distortion.aspect, "skew_degrees": distortion.skew, "area": distortion.area },
-    })
-}
-
-fn rows(matrix: &DMat3) -> Value {
-    json!(matrix.transpose().to_cols_array_2d())
 }
 
 /// The rectification as OpenCV's `FileStorage` reads it. With M, D and H of a view,

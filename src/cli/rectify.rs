@@ -94,7 +94,7 @@ impl Rectify {
             "left": self.left.display().to_string(),
             "right": self.right.display().to_string(),
             "device": report::device(backend),
-            "rectified": rectification::json(&pair),
+            "rectified": hsad::report::rectified(&pair),
             "seconds": { "total": seconds },
             "warnings": warnings,
         });

@@ -22,12 +22,18 @@ use std::path::Path;
 use ::image::metadata::Orientation;
 
 use super::{
-    Picture, codec, malformed,
+    Picture, codec,
+    decoded::Decoded,
+    malformed,
     samples::{Kind, Samples},
 };
 use crate::error::Result;
 
-pub use super::{stretch::Stretch, unseen::Unseen};
+pub use super::{
+    raw::{RawPicture, RawSamples},
+    stretch::Stretch,
+    unseen::Unseen,
+};
 
 /// The views of a pair as 8-bit pictures, and what became of them on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,16 +81,44 @@ pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPai
         unseen.hide(&mut view, mask, path)?;
         Ok(view)
     };
-    let views = [&load(left, left_mask)?, &load(right, right_mask)?];
-    check_kinds(views, [left, right])?;
-    let warnings = turns(views, right)?.into_iter().collect();
-    let stretch = Stretch::of(&views);
-    let [left, right] = views.map(|view| picture(view, stretch));
-    Ok(LoadedPair { left, right, stretch, warnings })
+    LoadedPair::of([&load(left, left_mask)?, &load(right, right_mask)?], [left, right])
+}
+
+/// A picture in memory as RGBA of 8 bits.
+///
+/// # Errors
+/// [`crate::Error::Format`] if no pixel was seen.
+pub fn picture_of(raw: RawPicture) -> Result<Picture> {
+    let samples = seen(raw.into_decoded(), Path::new("the picture"))?;
+    Ok(picture(&samples, Stretch::of(&[&samples])))
+}
+
+impl LoadedPair {
+    /// The views of one pair in memory, both with the same stretch.
+    ///
+    /// # Errors
+    /// [`crate::Error::Format`] for a view without a seen pixel, and for one view of floats and one of integers.
+    pub fn from_raw(left: RawPicture, right: RawPicture) -> Result<Self> {
+        let names = [Path::new("the left view"), Path::new("the right view")];
+        Self::of([&seen(left.into_decoded(), names[0])?, &seen(right.into_decoded(), names[1])?], names)
+    }
+
+    fn of(views: [&Samples; 2], paths: [&Path; 2]) -> Result<Self> {
+        check_kinds(views, paths)?;
+        let warnings = turns(views, paths[1])?.into_iter().collect();
+        let stretch = Stretch::of(&views);
+        let [left, right] = views.map(|view| picture(view, stretch));
+        Ok(Self { left, right, stretch, warnings })
+    }
 }
 
 fn samples(bytes: &[u8], path: &Path) -> Result<Samples> {
-    let samples = Samples::new(codec::decode(bytes, path)?);
+    seen(codec::decode(bytes, path)?, path)
+}
+
+/// The samples of a picture, of which something must have been seen.
+fn seen(decoded: Decoded, path: &Path) -> Result<Samples> {
+    let samples = Samples::new(decoded);
     if samples.is_seen() {
         return Ok(samples);
     }

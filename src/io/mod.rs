@@ -32,8 +32,11 @@ pub mod load;
 pub mod pfm;
 pub mod picture;
 pub mod ply;
+mod ply_reader;
 #[cfg(feature = "files")]
 pub mod png;
+#[cfg(feature = "pictures")]
+mod raw;
 #[cfg(feature = "pictures")]
 mod samples;
 #[cfg(feature = "pictures")]

@@ -5,6 +5,7 @@
 
 use std::io::{self, Write};
 
+pub use super::ply_reader::{decode, read};
 use super::{Calibration, Picture};
 use crate::{
     error::{Result, check},

@@ -1,9 +1,12 @@
 //! Scores of one map, with their JSON and CSV forms.
 
-use hsad::eval::{Score, scene::Scores};
+use hsad::{
+    eval::{Score, scene::Scores},
+    report,
+};
 use serde_json::{Value, json};
 
-use crate::cli::{eval::saved_results, score};
+use crate::cli::eval::saved_results;
 
 /// Scores of one method's map of one scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +29,8 @@ impl saved_results::Saveable for Record {
         json!({
             "scene": scene,
             "method": method,
-            "all": score::to_json(&scores.all),
-            "non_occluded": scores.non_occluded.as_ref().map(score::to_json),
+            "all": report::score(&scores.all),
+            "non_occluded": scores.non_occluded.as_ref().map(report::score),
             "range": range,
             "seconds": seconds,
             "warnings": warnings,
@@ -38,12 +41,12 @@ impl saved_results::Saveable for Record {
         let text = |value: &Value| value.as_str().map(String::from);
         let non_occluded = match value.get("non_occluded")? {
             Value::Null => None,
-            figures => Some(score::from_json(figures)?),
+            figures => Some(report::score_from_json(figures)?),
         };
         Some(Self {
             scene: text(&value["scene"])?,
             method: text(&value["method"])?,
-            scores: Scores { all: score::from_json(&value["all"])?, non_occluded },
+            scores: Scores { all: report::score_from_json(&value["all"])?, non_occluded },
             range: value.get("range")?.clone(),
             seconds: value.get("seconds")?.as_f64(),
             warnings: value["warnings"].as_array()?.iter().map(text).collect::<Option<_>>()?,

@@ -1,7 +1,8 @@
 //! A score to JSON and back.
 
-use hsad::eval::{Bad, Outliers, Score};
 use serde_json::{Value, json};
+
+use crate::eval::{Bad, Outliers, Score};
 
 /// All figures of a score; shares are 0 to 1, an undefined figure is null.
 pub fn to_json(score: &Score) -> Value {
@@ -60,9 +61,8 @@ fn number(value: &Value, name: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use hsad::{eval::score_pixels, image::Plane};
-
     use super::*;
+    use crate::{eval::score_pixels, image::Plane};
 
     #[test]
     fn every_bit_comes_back() {
