@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// Pages, and the folders whose files they name.
-const PAGES: [&str; 13] = [
+const PAGES: [&str; 14] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/ARCHITECTURE.md",
@@ -12,13 +12,14 @@ const PAGES: [&str; 13] = [
     "docs/cli.md",
     "docs/embedding.md",
     "docs/evaluation.md",
+    "docs/python.md",
     "docs/rectification.md",
     "docs/results.md",
     "docs/trust.md",
     "docs/verify.md",
     "examples/README.md",
 ];
-const FOLDERS: [&str; 7] = ["src/", "shaders/", "tests/", "docs/", "examples/", "data/", "benches/"];
+const FOLDERS: [&str; 8] = ["src/", "python/", "shaders/", "tests/", "docs/", "examples/", "data/", "benches/"];
 
 /// The paths that a page names: between backticks, and as targets of links, relative to the page.
 fn named(page: &str, text: &str) -> Vec<String> {
