@@ -7,8 +7,10 @@
 # `hsad verify` runs on a second driver as well, SwiftShader, whose compiler and subgroups are others; Debian's package
 # chromium has it. HSAD_SWIFTSHADER names its ICD file elsewhere. Where it is not installed, root and apt install it.
 # The page in web/ is tested in that Chromium. `spirv-val` and `glslangValidator` check what the shaders are translated to,
-# `groff` checks the manual pages, and all three are installed in the same way. What is missing all the same is told as
-# NOT RUN.
+# `groff` checks the manual pages, and all three are installed in the same way. The Python package is built, installed into a
+# clean environment and tested there; HSAD_PYTHON names another interpreter, and HSAD_PYTHON_EXTRAS packages that its tests use where
+# they are installed (rerun-sdk, open3d, torch, ROS 2's), which are too large to be installed unasked. What is missing all the same is told
+# as NOT RUN.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -103,5 +105,38 @@ else
     echo "NOT RUN: there is no $chromium (Debian: apt-get install chromium, or HSAD_CHROMIUM names another one)," \
         "so the page was not tested"
 fi
+
+say 'in Python'
+python="${HSAD_PYTHON:-python3}"
+folder="$(mktemp -d)"
+environment() { "$python" -m venv "$folder/$1" && "$folder/$1/bin/pip" install --quiet --disable-pip-version-check "${@:2}"; }
+"$python" -c 'import ensurepip' 2>/dev/null || install python3 python3-venv
+# The tools that build a wheel, and the environment of someone who has none.
+if ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+    echo "NOT RUN: there is no Python 3.10 or later (HSAD_PYTHON names one), so the Python package was not built"
+elif ! environment tools 'maturin>=1.16,<2' || ! environment user pytest mypy; then
+    echo "NOT RUN: $python makes no environment with pip, or pip reaches no registry (Debian: apt-get install python3-venv), so the" \
+        "Python package was not built"
+else
+    # Without the interpreter's path, which is another one each time; the feature makes it of what was compiled above.
+    export PYO3_NO_PYTHON=1 PYO3_BUILD_EXTENSION_MODULE=1
+    cargo clippy -p hsad-python --features workspace -- -D warnings
+    "$folder/tools/bin/maturin" build -q -m python/Cargo.toml --profile dev --features workspace -i "$python" -o "$folder"
+    user="$folder/user/bin"
+    "$user/pip" install --quiet --disable-pip-version-check "$folder"/hsad-*.whl
+    # What tests use where it is.
+    # shellcheck disable=SC2086 # several packages
+    "$user/pip" install --quiet --disable-pip-version-check opencv-python-headless nbclient ipykernel ${HSAD_PYTHON_EXTRAS:-} ||
+        echo 'NOT RUN: what needs OpenCV, Jupyter or HSAD_PYTHON_EXTRAS, which pip does not install'
+    (cd python && "$user/mypy")
+    real="$PWD/../shared/data/stereo"
+    # -rs tells what was skipped, with the reason.
+    (
+        [ ! -d "$real" ] || export HSAD_REAL_PAIRS="$real"
+        PATH="$(realpath "$(dirname "$hsad")"):$PATH" "$user/python" -m pytest -q -rs -p no:cacheprovider python/tests
+    )
+    unset PYO3_NO_PYTHON PYO3_BUILD_EXTENSION_MODULE
+fi
+rm -r "$folder"
 
 say 'done'
