@@ -12,7 +12,7 @@ use hsad::{
     config::Preset,
     disparity::DisparityMap,
     eval::{self, Score},
-    image::Plane,
+    image::{Luma, Plane},
     io::{Calibration, Picture, figure, load, pfm, png},
 };
 use serde_json::Value;
@@ -49,6 +49,14 @@ pub struct Demo {
     output: PathBuf,
     #[command(flatten)]
     run: RunOptions,
+}
+
+/// Luma of the two views of the built-in scene, and its largest disparity in pixels.
+pub(super) fn views() -> anyhow::Result<([Luma; 2], f32)> {
+    let scene = Scene::new()?;
+    let known = scene.truth.data().iter().copied().filter(|disparity| disparity.is_finite());
+    let largest = known.fold(0.0, f32::max);
+    Ok(([scene.left.luma(), scene.right.luma()], largest))
 }
 
 impl Demo {

@@ -1,5 +1,6 @@
 //! The subcommands of `hsad`, one file each, and their shared modules.
 
+mod bench;
 mod completions;
 mod demo;
 mod depth;
@@ -55,6 +56,7 @@ enum Command {
     Demo(demo::Demo),
     Eval(eval::Eval),
     Verify(verify::Verify),
+    Bench(bench::Bench),
     Completions(completions::Completions),
     Man(man::Manual),
 }
@@ -72,6 +74,7 @@ impl Cli {
             Command::Demo(command) => command.run(),
             Command::Eval(command) => command.run(),
             Command::Verify(command) => command.run(),
+            Command::Bench(command) => command.run(),
             Command::Completions(command) => command.run(),
             Command::Man(command) => command.run(),
         }

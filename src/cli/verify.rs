@@ -71,12 +71,13 @@ pub struct Verify {
     quiet: bool,
 }
 
-fn plans() -> impl TypedValueParser<Value = SgmPlan> {
+/// The names of plans.
+pub(super) fn plans() -> impl TypedValueParser<Value = SgmPlan> {
     PossibleValuesParser::new(SgmPlan::ALL.map(SgmPlan::name)).map(|name| name.parse().expect("one of the names above"))
 }
 
 /// Parses `WIDTHxHEIGHT`.
-fn size(text: &str) -> Result<Size, String> {
+pub(super) fn size(text: &str) -> Result<Size, String> {
     let sides =
         text.split_once(['x', 'X']).and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides.map(Size::from).ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 311x239".into())
@@ -202,7 +203,7 @@ impl Verify {
 }
 
 /// Name, graphics interface and driver of the device, one line.
-fn described(gpu: &Gpu) -> String {
+pub(super) fn described(gpu: &Gpu) -> String {
     let info = gpu.info();
     format!("{} ({}, {} {})\n", info.name, info.backend, info.driver, info.driver_info)
 }

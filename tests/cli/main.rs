@@ -3,6 +3,7 @@
 #![cfg(feature = "cli")]
 
 mod bad_input;
+mod bench;
 mod calibrated;
 mod calibrations;
 mod common;
@@ -46,6 +47,7 @@ fn help_has_examples_and_exit_codes() {
         &["devices"],
         &["demo"],
         &["verify"],
+        &["bench"],
         &["completions"],
         &["man"],
         &["eval", "dense"],

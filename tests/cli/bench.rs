@@ -1,0 +1,41 @@
+//! `hsad bench`.
+
+use std::fs;
+
+use predicates::{prelude::PredicateBooleanExt, str::contains};
+use serde_json::Value;
+
+use crate::common::{folder, hsad};
+
+const SMALL: [&str; 9] = ["bench", "--preset", "balanced", "--size", "64x48", "--disparities", "32", "--runs", "2"];
+
+#[test]
+fn a_table_and_json_that_a_later_run_is_compared_with() {
+    let temporary = folder();
+    let file = temporary.path().join("figures.json");
+    let told = contains("balanced 64x48 32: first ").and(contains("  path  ")).and(contains("Mpd/s"));
+    hsad().args(SMALL).args(["--plan", "lines", "--json"]).arg(&file).assert().success().stdout(told).stderr("");
+    let report: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    let case = &report["cases"][0];
+    assert_eq!((&report["plan"], &case["preset"], &case["width"]), (&"lines".into(), &"balanced".into(), &64.into()));
+    let kernels = case["kernels"].as_array().unwrap();
+    let named = |name: &str| kernels.iter().find(|kernel| kernel["name"] == name);
+    assert_eq!(named("path").unwrap()["dispatches"], 2);
+    // Millions of pixels times disparities per second, from the median in milliseconds.
+    let rate = 64.0 * 48.0 * 32.0 / 1e3 / case["median_ms"].as_f64().unwrap();
+    assert!((case["mpd_per_s"].as_f64().unwrap() / rate - 1.0).abs() < 1e-9);
+
+    let compared = contains("of the earlier median").and(contains("lane_path").and(contains("in 1")));
+    hsad().args(SMALL).args(["--plan", "lanes", "--compare"]).arg(&file).assert().success().stdout(compared);
+}
+
+#[test]
+fn what_cannot_be_measured_is_told() {
+    let temporary = folder();
+    let file = temporary.path().join("text.json");
+    fs::write(&file, "{}").unwrap();
+    hsad().args(SMALL).arg("--compare").arg(&file).assert().code(1).stderr(contains("no figures of hsad bench --json"));
+    hsad().args(["bench", "--runs", "0"]).assert().code(2).stderr(contains("1..=10000"));
+    hsad().args(["bench", "--disparities", "0"]).assert().code(2);
+    hsad().args(["bench", "--device", "cpu"]).assert().code(1).stderr(contains("the CPU twins are no GPU"));
+}
