@@ -29,7 +29,7 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
             uniqueness: parameters.uniqueness,
         };
         let paths = paths.directions().len() as u32;
-        add(variant, kernels::Census::stage(costs.cost.weak_spread, kernels::ROWS_HARDWARE));
+        add(variant, kernels::Census::stage(costs.cost.weak_spread, kernels::Windows::Tiles));
         add(variant, kernels::LaneCost::stage(&costs.cost, View::Left));
         add(variant, kernels::LanePath::stage(&penalties));
         add(variant, kernels::LaneSelect::stage(selection(paths)));
@@ -71,7 +71,10 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
         "select",
         "soft_rank",
         "support",
-        "tile_match",
+        "tile_census",
+        "tile_block_match",
+        "tile_support",
+        "tile_weighted_median",
         "weighted_median",
     ];
     for (number, stage) in internals::stages().into_iter().filter(|stage| !shaped.contains(&stage.name)).enumerate() {
@@ -82,9 +85,9 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
 
 fn add_refinement(add: &mut impl FnMut(&str, Stage), variant: &str, parameters: &DenseParameters) {
     let Some(refinement) = &parameters.refinement else { return };
-    let rows = kernels::ROWS_HARDWARE;
-    add(variant, kernels::Support::stage(refinement.support, refinement.majority, rows));
+    let windows = kernels::Windows::Tiles;
+    add(variant, kernels::Support::stage(refinement.support, refinement.majority, windows));
     for median in refinement.before().chain(refinement.after()) {
-        add(&format!("{median:?}"), kernels::WeightedMedian::stage(median, rows));
+        add(&format!("{median:?}"), kernels::WeightedMedian::stage(median, windows));
     }
 }

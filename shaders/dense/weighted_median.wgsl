@@ -4,6 +4,8 @@
 // Ma, He, Wei, Sun and Wu: 'Constant time weighted median filtering for stereo matching and beyond', ICCV 2013; here
 // with integer weights and straight from the definition. The median is the least disparity of the window for which the
 // disparities up to and including it have at least half of the total weight.
+//
+// Here a thread walks down rows and keeps its windows in registers: for lavapipe. For GPUs: tile_weighted_median.wgsl.
 
 #import halving
 

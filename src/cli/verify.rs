@@ -212,7 +212,7 @@ pub(super) fn described(gpu: &Gpu) -> String {
 fn head() -> String {
     let [kernel, size, seed, difference] = ["kernel", "size", "seed", "difference"];
     let [tolerance, golden, device, twin] = ["tolerance", "golden", "device", "twin"];
-    format!("{kernel:<17}{size:<9}{seed:>4}  {difference:<20}{tolerance:<26}{golden:<7}{device:>9}{twin:>10}\n")
+    format!("{kernel:<21}{size:<9}{seed:>4}  {difference:<20}{tolerance:<26}{golden:<7}{device:>9}{twin:>10}\n")
 }
 
 /// Table row of a case: shows the array whose difference is largest relative to its tolerance.
@@ -233,7 +233,7 @@ fn row(outcome: &Outcome) -> String {
     };
     let Size { width, height } = case.size;
     let mut text = format!(
-        "{:<17}{:<9}{:>4}  {difference:<20}{tolerance:<26}{:<7}{:>9}{:>10}\n",
+        "{:<21}{:<9}{:>4}  {difference:<20}{tolerance:<26}{:<7}{:>9}{:>10}\n",
         case.subject.name,
         format!("{width}x{height}"),
         case.seed,

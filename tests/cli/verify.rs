@@ -14,7 +14,7 @@ fn one_case_as_a_table_and_as_json() {
     let mut command = hsad();
     command.current_dir(temporary.path()).args(["verify", "--only", "census", "--only", "pad"]);
     command.args(["--size", "17x13", "--seed", "4", "--json"]).arg(&file);
-    let table = contains("census           17x13       4  none").and(contains("all 2 cases pass"));
+    let table = contains("census               17x13       4  none").and(contains("all 2 cases pass"));
     command.assert().success().stdout(table).stderr("");
     // No case failed, so no arrays are written.
     assert_eq!(names(temporary.path()), ["report.json"]);

@@ -1,12 +1,15 @@
-//! The census transform, with the luma beside it, and the wide census transform. `shaders/dense/census.wgsl`.
+//! The census transform, with the luma beside it, and the wide census transform. `shaders/dense/census.wgsl`
+//! and `tile_census.wgsl`.
 
-use super::{pad::PadParams, rows_per_thread::rows_per_thread};
+use super::{
+    pad::PadParams,
+    windows::{Text, Windows},
+};
 use crate::{
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
     image::Size,
 };
 
-const WORKGROUP: [u32; 2] = [16, 4];
 /// Words of four pixels on either side of a row, and rows above and below the picture, as far as the wide census looks.
 const HALO_WORDS: u32 = 2;
 pub(crate) const HALO_ROWS: u32 = 5;
@@ -23,31 +26,37 @@ shader_struct! {
 #[derive(Debug)]
 pub struct Census {
     kernel: Kernel,
-    rows: u32,
+    /// Pixels per workgroup along x and y.
+    tile: [u32; 2],
 }
 
 impl Census {
-    /// Source, bindings and constants of the kernel, with `rows` rows per thread. With `weak_spread`, it makes wide census
-    /// transforms too: texture is weak where the sums of 3x3 lumas differ by at most that.
-    pub fn stage(weak_spread: Option<u32>, rows: u32) -> Stage {
-        Stage {
-            name: "census",
-            source: include_str!("../../../shaders/dense/census.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
-            constants: vec![
-                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
-                ("ROWS", rows.into()),
-                ("WIDE", weak_spread.is_some().into()),
-                ("SPREAD", weak_spread.unwrap_or(0).into()),
-            ],
+    /// Source, bindings and constants of the kernel. With `weak_spread`, it makes wide census transforms too: texture is
+    /// weak where the sums of 3x3 lumas differ by at most that.
+    pub fn stage(weak_spread: Option<u32>, windows: Windows) -> Stage {
+        Self::text(windows).stage(
+            &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Write],
+            vec![("WIDE", weak_spread.is_some().into()), ("SPREAD", weak_spread.unwrap_or(0).into())],
+        )
+    }
+
+    fn text(windows: Windows) -> Text {
+        match windows {
+            Windows::Rows => Text::rows("census", include_str!("../../../shaders/dense/census.wgsl"), Vec::new()),
+            Windows::Tiles => Text {
+                name: "tile_census",
+                source: include_str!("../../../shaders/dense/tile_census.wgsl"),
+                workgroup: [8, 8],
+                pixels: [4, 1],
+                constants: Vec::new(),
+            },
         }
     }
 
     /// Compiles the kernel.
-    pub fn new(gpu: &Gpu, weak_spread: Option<u32>) -> Self {
-        let rows = rows_per_thread(gpu);
-        Self { kernel: Kernel::new(gpu, &Self::stage(weak_spread, rows)), rows }
+    pub fn new(gpu: &Gpu, weak_spread: Option<u32>, windows: Windows) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(weak_spread, windows));
+        Self { kernel, tile: Self::text(windows).tile() }
     }
 
     /// The padding that the kernel needs of rows `first_row` to `first_row + rows` of a picture
@@ -78,7 +87,7 @@ impl Census {
         census: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, rows, stride: Self::stride(width) };
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), rows.div_ceil(self.rows * WORKGROUP[1]), 1];
+        let groups = [width.div_ceil(self.tile[0]), rows.div_ceil(self.tile[1]), 1];
         self.kernel.dispatch(&params, &[padded, census], groups)
     }
 }

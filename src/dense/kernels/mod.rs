@@ -38,6 +38,7 @@ mod tile_match;
 mod unseen;
 mod volume_band;
 mod weighted_median;
+mod windows;
 
 pub use agreement::{AGREEMENT_REACH, AGREEMENT_TOLERANCE, Agreement, AgreementTile};
 pub use bitmap::Bitmaps;
@@ -80,6 +81,7 @@ pub use tangent::{Tangents, fit};
 pub use unseen::{Loss, Unseen};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
+pub use windows::Windows;
 
 use super::config::{
     Aggregation, Compared, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
@@ -87,8 +89,8 @@ use super::config::{
 use crate::gpu::Stage;
 
 /// Every stage of dense matching with each set of constants that changes its code, for checks that need no GPU: block
-/// matching for every window, both views and both results, and stages with tiles or rows per thread both for lavapipe
-/// and for all other devices.
+/// matching for every window, both views and both results, and stages with tiles, rows per thread or windows of their own both
+/// for lavapipe and for all other devices.
 pub fn stages() -> Vec<Stage> {
     let mut stages = vec![Pad::stage(), Halve::stage(), CellRanges::stage()];
     stages.push(Claim::stage());
@@ -161,15 +163,12 @@ pub fn stages() -> Vec<Stage> {
     let refinement = Refinement { support: 5, majority: true, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));
     stages.extend([AgreementTile::SOFTWARE, AgreementTile::HARDWARE].map(Agreement::stage));
-    for rows in [ROWS_SOFTWARE, ROWS_HARDWARE] {
-        stages.extend([
-            SoftRank::stage(rows),
-            Census::stage(None, rows),
-            Census::stage(Some(1), rows),
-            Support::stage(5, false, rows),
-            Support::stage(5, true, rows),
-        ]);
-        stages.extend(refinement.before().chain(refinement.after()).map(|median| WeightedMedian::stage(median, rows)));
+    stages.extend([ROWS_SOFTWARE, ROWS_HARDWARE].map(SoftRank::stage));
+    for windows in Windows::ALL {
+        stages.extend([None, Some(1)].map(|weak_spread| Census::stage(weak_spread, windows)));
+        stages.extend([false, true].map(|majority| Support::stage(5, majority, windows)));
+        let medians = refinement.before().chain(refinement.after());
+        stages.extend(medians.map(|median| WeightedMedian::stage(median, windows)));
     }
     stages
 }

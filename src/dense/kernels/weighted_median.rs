@@ -1,14 +1,12 @@
-//! The weighted median of a map. `shaders/dense/weighted_median.wgsl`.
+//! The weighted median of a map. `shaders/dense/weighted_median.wgsl` and `tile_weighted_median.wgsl`.
 
-use super::rows_per_thread::rows_per_thread;
+use super::windows::{Text, Windows};
 use crate::{
     dense::config::Median,
     disparity::NONE,
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
     image::Size,
 };
-
-const WORKGROUP: [u32; 2] = [16, 4];
 
 /// A sentinel above any disparity.
 const FARTHEST: i64 = 1 << 30;
@@ -21,40 +19,55 @@ shader_struct! {
     }
 }
 
+/// Side of the window, in pixels.
+fn side(median: Median) -> u32 {
+    2 * median.radius + 1
+}
+
 /// The weighted-median kernel.
 #[derive(Debug)]
 pub struct WeightedMedian {
     kernel: Kernel,
-    rows: u32,
+    /// Pixels per workgroup along x and y.
+    tile: [u32; 2],
 }
 
 impl WeightedMedian {
-    /// Source, bindings and constants of the kernel, with `rows` rows per thread.
-    pub fn stage(median: Median, rows: u32) -> Stage {
-        let side = 2 * median.radius + 1;
-        Stage {
-            name: "weighted_median",
-            source: include_str!("../../../shaders/dense/weighted_median.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
-            constants: vec![
-                ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
-                ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
+    /// Source, bindings and constants of the kernel.
+    pub fn stage(median: Median, windows: Windows) -> Stage {
+        Self::text(median, windows).stage(
+            &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
+            vec![
                 ("RADIUS", median.radius.into()),
-                ("SIDE", side.into()),
-                ("KEPT", (side - 1).into()),
-                ("SPAN", (side + 3).into()),
+                ("SIDE", side(median).into()),
                 ("HALVING_BITS", median.halving_bits.into()),
-                ("ROWS", rows.into()),
                 ("FARTHEST", FARTHEST),
                 ("NONE", NONE.into()),
             ],
+        )
+    }
+
+    fn text(median: Median, windows: Windows) -> Text {
+        match windows {
+            Windows::Rows => Text::rows(
+                "weighted_median",
+                include_str!("../../../shaders/dense/weighted_median.wgsl"),
+                vec![("KEPT", (side(median) - 1).into()), ("SPAN", (side(median) + 3).into())],
+            ),
+            Windows::Tiles => Text {
+                name: "tile_weighted_median",
+                source: include_str!("../../../shaders/dense/tile_weighted_median.wgsl"),
+                workgroup: [16, 8],
+                pixels: [1, 1],
+                constants: Vec::new(),
+            },
         }
     }
 
     /// Compiles the kernel.
-    pub fn new(gpu: &Gpu, median: Median) -> Self {
-        let rows = rows_per_thread(gpu);
-        Self { kernel: Kernel::new(gpu, &Self::stage(median, rows)), rows }
+    pub fn new(gpu: &Gpu, median: Median, windows: Windows) -> Self {
+        let kernel = Kernel::new(gpu, &Self::stage(median, windows));
+        Self { kernel, tile: Self::text(median, windows).tile() }
     }
 
     /// Filters `disparities` into `filtered`, weighted by packed `luma` of their view; `first_row` is the row of the
@@ -67,7 +80,7 @@ impl WeightedMedian {
         filtered: &wgpu::Buffer,
     ) -> Dispatch {
         let params = Params { width, height, luma_start: first_row * width.div_ceil(4) };
-        let groups = [width.div_ceil(4 * WORKGROUP[0]), height.div_ceil(self.rows * WORKGROUP[1]), 1];
+        let groups = [width.div_ceil(self.tile[0]), height.div_ceil(self.tile[1]), 1];
         self.kernel.dispatch(&params, &[luma, disparities, filtered], groups)
     }
 }

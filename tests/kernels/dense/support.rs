@@ -4,6 +4,7 @@ use hsad::{
     dense::Dense,
     disparity::{DisparityMap, NONE},
     image::{Plane, Size},
+    internals::dense::Windows,
     luma::{pack, unpack},
     verify::{Values, trials::SupportTrial},
 };
@@ -25,10 +26,11 @@ fn the_twin_keeps_the_same() {
             let disparity = map(width, height, 81);
             let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE) * (d % 200) as u8), disparity };
             let residuals = picture((width, height), 82).map(|&value| value % 32);
-            assert_twin(
-                &format!("{width}x{height}, {least} {majority}"),
-                &SupportTrial { dense, residuals, least, majority },
-            );
+            for windows in Windows::ALL {
+                let (dense, residuals) = (dense.clone(), residuals.clone());
+                let trial = SupportTrial { dense, residuals, least, majority, windows };
+                assert_twin(&format!("{width}x{height}, {least} {majority} {windows:?}"), &trial);
+            }
         }
     }
 }
@@ -42,8 +44,11 @@ fn by_hand() {
     for residual in [0, 31] {
         let confidences = pack(&Plane::new((4, 1), vec![0, 16, 0, 0]).unwrap());
         let residuals = Plane::new((4, 1), vec![residual, residual, residual, residual + 3]).unwrap();
-        let kept = leaves(&SupportTrial { dense: dense.clone(), residuals, least: 3, majority: false });
-        assert_eq!(kept, [vec![NONE, 256, NONE, NONE].into(), confidences.into()]);
+        for windows in Windows::ALL {
+            let (dense, residuals) = (dense.clone(), residuals.clone());
+            let kept = leaves(&SupportTrial { dense, residuals, least: 3, majority: false, windows });
+            assert_eq!(kept, [vec![NONE, 256, NONE, NONE].into(), confidences.clone().into()], "{windows:?}");
+        }
     }
 }
 
@@ -52,25 +57,29 @@ fn residuals_lower_the_confidence() {
     // Of 49 pixels of one disparity: 1 + 5 * 48, and 3 for the confidence so far, less an eighth of 25 residuals.
     let dense = Dense { disparity: Plane::filled((7, 7), 100), confidence: Plane::filled((7, 7), 200) };
     for (residual, expected) in [(0, 244), (7, 244 - 21), (31, 244 - 96)] {
-        let residuals = Plane::filled((7, 7), residual);
-        let kept = leaves(&SupportTrial { dense: dense.clone(), residuals, least: 49, majority: true });
-        let [_, Values::U32(confidences)] = &kept[..] else { panic!("a map") };
-        assert_eq!(unpack((7, 7), confidences).get(3, 3), expected);
+        for windows in Windows::ALL {
+            let residuals = Plane::filled((7, 7), residual);
+            let kept = leaves(&SupportTrial { dense: dense.clone(), residuals, least: 49, majority: true, windows });
+            let [_, Values::U32(confidences)] = &kept[..] else { panic!("a map") };
+            assert_eq!(unpack((7, 7), confidences).get(3, 3), expected, "{windows:?}");
+        }
     }
 }
 
 #[test]
 fn a_majority_is_half_of_the_window_within_the_picture() {
     // In the corner the window has 16 pixels, and 8 of them have a disparity.
-    let half = |gone: Option<(u32, u32)>, step: i32| {
+    let half = |gone: Option<(u32, u32)>, step: i32, windows| {
         let value = |x: u32| 512 + step * (x as i32 % 2);
         let disparity = Plane::from_fn((4, 4), |x, y| if y < 2 && Some((x, y)) != gone { value(x) } else { NONE });
         let dense = Dense { confidence: disparity.map(|&d| u8::from(d != NONE)), disparity };
-        let trial = SupportTrial { dense, residuals: Plane::filled((4, 4), 0), least: 1, majority: true };
+        let trial = SupportTrial { dense, residuals: Plane::filled((4, 4), 0), least: 1, majority: true, windows };
         let [Values::I32(kept), _] = &leaves(&trial)[..] else { panic!("a map") };
         kept[0]
     };
     // Disparities up to 2 px larger count for a majority, and all smaller ones.
-    assert_eq!((half(None, 512), half(Some((3, 1)), 512)), (512, NONE));
-    assert_eq!((half(None, 513), half(None, -9000)), (NONE, 512));
+    for windows in Windows::ALL {
+        assert_eq!((half(None, 512, windows), half(Some((3, 1)), 512, windows)), (512, NONE));
+        assert_eq!((half(None, 513, windows), half(None, -9000, windows)), (NONE, 512));
+    }
 }

@@ -5,7 +5,7 @@ use crate::{
     cpu::dense::{Transforms, box_mean, census, cost, pad, wide_census},
     dense::{
         Brightness, Cost, Difference, View,
-        kernels::{BoxMean, Census, CostVolume, LaneCost, PIXELS_HARDWARE, PIXELS_SOFTWARE, VolumeBand},
+        kernels::{BoxMean, Census, CostVolume, LaneCost, PIXELS_HARDWARE, PIXELS_SOFTWARE, VolumeBand, Windows},
     },
     disparity::DisparityRange,
     error::Result,
@@ -14,7 +14,8 @@ use crate::{
 };
 
 pub(super) const SUBJECTS: &[Subject] = &[
-    Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice))),
+    Subject::kernel("census", |size, dice| Box::new(CensusTrial::draw(size, dice, Windows::Rows))),
+    Subject::kernel("tile_census", |size, dice| Box::new(CensusTrial::draw(size, dice, Windows::Tiles))),
     Subject::kernel("cost", |size, dice| Box::new(CostTrial::draw(size, dice, CostKernel::of_pixels))),
     Subject::kernel("lane_cost", |size, dice| Box::new(CostTrial::draw(size, dice, |_| CostKernel::Lanes))),
     Subject::kernel("box_mean", |size, dice| Box::new(BoxMeanTrial::draw(size, dice))),
@@ -27,11 +28,13 @@ pub struct CensusTrial {
     pub picture: Luma,
     /// Largest difference of the sums of weak texture; `None`: no wide census transforms.
     pub weak_spread: Option<u32>,
+    /// Where threads keep their windows.
+    pub windows: Windows,
 }
 
 impl CensusTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self { picture: dice.picture(size), weak_spread: dice.coin().then(|| dice.pick(&[0, 130, 700, 2295])) }
+    fn draw(size: Size, dice: &mut Dice, windows: Windows) -> Self {
+        Self { picture: dice.picture(size), weak_spread: dice.coin().then(|| dice.pick(&[0, 130, 700, 2295])), windows }
     }
 }
 
@@ -48,7 +51,7 @@ impl Trial for CensusTrial {
         let size = self.picture.size();
         let plane = pad(&self.picture, &Census::padding(size, 0, size.height), Brightness::SAME);
         let transformed = bench.output(2 * size.width * size.height)?;
-        let kernel = Census::new(bench.gpu, self.weak_spread);
+        let kernel = Census::new(bench.gpu, self.weak_spread, self.windows);
         let dispatch = kernel.prepare(size, &bench.upload(&plane)?, &transformed);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("census", bench.download::<u32>(&transformed)?)])

@@ -7,7 +7,7 @@ use crate::{
         Brightness, Dense, Median, View,
         kernels::{
             ComparedViews, MAX_RESIDUAL, MapBack, MapBuffer, MapLayout, MapRows, MapTexel, MapTexture, Residual,
-            Support, WeightedMedian,
+            Support, WeightedMedian, Windows,
         },
     },
     disparity::{DisparityMap, NONE, SCALE},
@@ -22,10 +22,12 @@ use crate::{
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("residual", |size, dice| Box::new(ResidualTrial::draw(size, dice))),
-    Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice))),
+    Subject::kernel("support", |size, dice| Box::new(SupportTrial::draw(size, dice, Windows::Rows))),
+    Subject::kernel("tile_support", |size, dice| Box::new(SupportTrial::draw(size, dice, Windows::Tiles))),
     Subject::kernel("map_texture", |size, dice| Box::new(MapTextureTrial::draw(size, dice))),
     Subject::kernel("map_back", |size, dice| Box::new(MapBackTrial::draw(size, dice))),
-    Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice))),
+    Subject::kernel("weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice, Windows::Rows))),
+    Subject::kernel("tile_weighted_median", |size, dice| Box::new(MedianTrial::draw(size, dice, Windows::Tiles))),
 ];
 
 /// Draws a map of all kinds of disparities, in 1/256 px: smooth, noisy, none, from `least` to `most` and possibly
@@ -134,13 +136,16 @@ pub struct SupportTrial {
     pub least: u32,
     /// Whether half of the window must nearly agree.
     pub majority: bool,
+    /// Where threads keep their windows.
+    pub windows: Windows,
 }
 
 impl SupportTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
+    fn draw(size: Size, dice: &mut Dice, windows: Windows) -> Self {
         let most = dice.pick(&[1, 8, u32::from(MAX_RESIDUAL) + 1]);
         let residuals = Plane::from_fn(size, |_, _| dice.below(most) as u8);
-        Self { least: dice.pick(&[0, 1, 9, 25, 49]), majority: dice.coin(), dense: dense(size, dice), residuals }
+        let (least, majority) = (dice.pick(&[0, 1, 9, 25, 49]), dice.coin());
+        Self { dense: dense(size, dice), residuals, least, majority, windows }
     }
 }
 
@@ -159,8 +164,8 @@ impl Trial for SupportTrial {
         let words = matches(&self.dense);
         let (from, to) = (bench.upload(&words)?, bench.output(words.len() as u32)?);
         let residuals = bench.upload_luma(&self.residuals)?;
-        let dispatch =
-            Support::new(gpu, self.least, self.majority).prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
+        let kernel = Support::new(gpu, self.least, self.majority, self.windows);
+        let dispatch = kernel.prepare(MapBuffer { buffer: &from, layout }, &residuals, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(arrays(&bench.download(&to)?, layout.pixels() as usize))
     }
@@ -237,12 +242,14 @@ pub struct MedianTrial {
     pub disparities: DisparityMap,
     /// The filter.
     pub median: Median,
+    /// Where threads keep their windows.
+    pub windows: Windows,
 }
 
 impl MedianTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
+    fn draw(size: Size, dice: &mut Dice, windows: Windows) -> Self {
         let median = Median { radius: 1 + dice.below(4), halving_bits: dice.pick(&[0, 3, 5, 31]) };
-        Self { luma: dice.picture(size), disparities: map(size, dice, -40 * SCALE, 60 * SCALE), median }
+        Self { luma: dice.picture(size), disparities: map(size, dice, -40 * SCALE, 60 * SCALE), median, windows }
     }
 }
 
@@ -262,7 +269,7 @@ impl Trial for MedianTrial {
         let (gpu, size) = (bench.gpu, self.disparities.size());
         let from = bench.upload(self.disparities.data())?;
         let (luma, to) = (bench.upload_luma(&self.luma)?, bench.output(size.width * size.height)?);
-        let dispatch = WeightedMedian::new(gpu, self.median).prepare(size, (&luma, 0), &from, &to);
+        let dispatch = WeightedMedian::new(gpu, self.median, self.windows).prepare(size, (&luma, 0), &from, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("filtered disparities", bench.download::<i32>(&to)?)])
     }
