@@ -263,7 +263,7 @@ fn no_uniform_is_inlinable_on_lavapipe() {
 }
 
 /// A stage has one name and one room in four places: its shader, its Rust side, its twin and its test. A second shader, for
-/// GPUs, has `tile_` in front of the name.
+/// GPUs, has `tile_` or `lane_` in front of the name.
 #[test]
 fn stages_are_named_the_same_everywhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -272,7 +272,7 @@ fn stages_are_named_the_same_everywhere() {
         for entry in std::fs::read_dir(root.join("shaders").join(room)).expect("a room of shaders") {
             let path = entry.expect("an entry").path();
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-            let stage = name.strip_prefix("tile_").unwrap_or(&name);
+            let stage = ["tile_", "lane_"].iter().find_map(|shape| name.strip_prefix(shape)).unwrap_or(&name);
             for place in [format!("src/{room}/kernels"), format!("src/cpu/{room}"), format!("tests/kernels/{room}")] {
                 assert!(root.join(&place).join(stage).with_extension("rs").is_file(), "{place} has no {stage}.rs");
             }

@@ -5,7 +5,7 @@ use super::{
     map_buffer::MapBuffer,
     pad::PadParams,
     selection::{ResultKind, selection_constants},
-    tile_match,
+    tile_block_match,
 };
 use crate::{
     dense::config::{DenseConfig, DenseParameters, View},
@@ -45,7 +45,7 @@ impl Tile {
     pub const LARGE: Self = Self { quads: 2, height: 8, across: 2, down: 4 };
 
     /// For all other devices, which prefer many threads with few registers: the tile of a whole workgroup, in which a
-    /// thread has a column of pixels. See `shaders/dense/tile_match.wgsl`.
+    /// thread has a column of pixels. See `shaders/dense/tile_block_match.wgsl`.
     pub const HARDWARE: Self = Self { quads: 16, height: 4, across: 1, down: 1 };
 
     /// The fastest tile on the device of `gpu` for windows of `side` pixels.
@@ -117,7 +117,7 @@ impl BlockMatch {
     /// Source, bindings and constants of the kernel.
     pub fn stage(parameters: &DenseParameters, view: View, kind: ResultKind, tile: Tile) -> Stage {
         if tile == Tile::HARDWARE {
-            return tile_match::stage(parameters, view, kind);
+            return tile_block_match::stage(parameters, view, kind);
         }
         let (radius, side) = (parameters.radius(), parameters.window());
         let core = tile.core(side);

@@ -34,7 +34,7 @@ mod selection;
 mod soft_rank;
 mod support;
 mod tangent;
-mod tile_match;
+mod tile_block_match;
 mod unseen;
 mod volume_band;
 mod weighted_median;

@@ -29,6 +29,6 @@ mod select;
 mod soft_rank;
 mod support;
 mod tangent;
-mod tile_match;
+mod tile_block_match;
 mod unseen;
 mod weighted_median;

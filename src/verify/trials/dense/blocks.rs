@@ -17,7 +17,7 @@ use crate::{
 
 pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("block_match", |size, dice| Box::new(BlockMatchTrial::draw(size, dice))),
-    Subject::kernel("tile_match", |size, dice| {
+    Subject::kernel("tile_block_match", |size, dice| {
         Box::new(BlockMatchTrial { tile: Tile::HARDWARE, ..BlockMatchTrial::draw(size, dice) })
     }),
 ];

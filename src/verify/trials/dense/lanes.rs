@@ -7,7 +7,7 @@ use super::{
     words::{bytes, words},
 };
 use crate::{
-    cpu::dense::{lane_path, lane_select},
+    cpu::dense::{path, path_winners, select},
     dense::{
         DenseConfig, Direction, Interpolation, Penalties,
         kernels::{
@@ -131,7 +131,8 @@ impl Trial for LanePathTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("paths", lane_path(&self.reference, &self.costs, &self.penalties, &self.directions))])
+        let volume = |&direction: &Direction| path(&self.reference, &self.costs, &self.penalties, direction);
+        Ok(vec![Array::exact("paths", self.directions.iter().flat_map(volume).collect::<Vec<_>>())])
     }
 }
 
@@ -208,7 +209,8 @@ impl Trial for LaneSelectTrial {
             parameters.interpolation = interpolation;
             parameters.uniqueness = uniqueness;
         });
-        let (dense, winners) = lane_select(&self.paths, self.size, &config);
+        let dense = select(&self.paths, self.size, &config);
+        let winners = path_winners(&self.paths, self.size, &config);
         let key = |winner: &Option<(u32, i32)>| {
             winner.map_or(u32::MAX, |(cost, disparity)| cost << 16 | (disparity - range.min) as u32)
         };

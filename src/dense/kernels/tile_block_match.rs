@@ -1,4 +1,4 @@
-//! Block matching with a tile per workgroup. `shaders/dense/tile_match.wgsl`.
+//! Block matching with a tile per workgroup. `shaders/dense/tile_block_match.wgsl`.
 
 use super::{
     block_match::{Tile, margin, search_constants},
@@ -23,8 +23,8 @@ pub(super) fn stage(parameters: &DenseParameters, view: View, kind: ResultKind) 
     ];
     constants.extend(search_constants(parameters, view, kind));
     Stage {
-        name: "tile_match",
-        source: include_str!("../../../shaders/dense/tile_match.wgsl"),
+        name: "tile_block_match",
+        source: include_str!("../../../shaders/dense/tile_block_match.wgsl"),
         bindings: &[
             Binding::Uniform(super::block_match::Params::SHAPE),
             Binding::Words,
