@@ -20,8 +20,11 @@ fn a_folder_gets_a_page_per_command() {
     let out = folder.path().join("share/man1");
     hsad().arg("man").arg(&out).assert().success().stdout("").stderr("");
     let commands = ["completions", "demo", "devices", "eval", "eval-dense", "eval-features", "eval-paper", "features"];
-    let mut expected: Vec<String> =
-        commands.iter().chain(&["man", "match", "rectify", "verify"]).map(|name| format!("hsad-{name}.1")).collect();
+    let mut expected: Vec<String> = commands
+        .iter()
+        .chain(&["bench", "man", "match", "rectify", "verify"])
+        .map(|name| format!("hsad-{name}.1"))
+        .collect();
     expected.push("hsad.1".into());
     expected.sort();
     assert_eq!(names(&out), expected);
