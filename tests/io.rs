@@ -10,6 +10,7 @@ use std::{io::Cursor, path::Path};
 use allocation::largest_allocation;
 use hsad::{
     Error,
+    dense::Dense,
     disparity::{DisparityMap, NONE},
     image::{Plane, Size},
     io::{Calibration, MAX_PIXELS, csv, disparity_png, homography, load, pfm, ply, png},
@@ -136,12 +137,16 @@ proptest! {
     }
 
     #[test]
-    fn ply_has_a_record_for_each_depth(depth in plane(prop_oneof![0.1..100.0_f32, Just(f32::INFINITY)])) {
-        let Size { width, height } = depth.size();
+    fn ply_has_a_record_for_each_point(disparity in plane(prop_oneof![-999..99_999_i32, Just(NONE)])) {
+        let Size { width, height } = disparity.size();
         let picture = Plane::from_fn((width, height), |x, y| [x as u8, y as u8, 1, 255]);
         let calibration = Calibration::centred(50.0, 0.1, 0.0, (width, height)).unwrap();
-        let points = ply::points(&depth, &picture, &calibration).unwrap();
-        prop_assert_eq!(points.len(), depth.data().iter().filter(|z| z.is_finite()).count());
+        let filter = ply::PointFilter::new(&calibration);
+        let near = disparity.data().iter().filter(|&&d| d >= 5 * 256).count();
+        let known = disparity.data().iter().filter(|&&d| d != NONE).count();
+        let dense = Dense { confidence: Plane::filled((width, height), 16), disparity };
+        let (points, left_out) = ply::points(&dense, &picture, &calibration, &filter).unwrap();
+        prop_assert_eq!((points.len(), left_out), (near, ply::LeftOut { unsure: 0, beyond: known - near }));
         let mut bytes = Vec::new();
         ply::write(&mut bytes, &points).unwrap();
         let end = b"end_header\n";

@@ -18,6 +18,7 @@ use hsad::{
 use serde_json::Value;
 
 use super::{
+    cloud::CloudOptions,
     job::Job,
     options::RunOptions,
     output::Output,
@@ -86,7 +87,7 @@ impl Demo {
         output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
         output.add("left.png", |out| out.write_all(LEFT))?;
         output.add("right.png", |out| out.write_all(RIGHT))?;
-        completed.add_maps(&mut output)?;
+        completed.add_maps(&mut output, &CloudOptions::default())?;
         completed.add_figures(&mut output)?;
         let mut report = completed.report();
         report["accuracy"] = accuracy.report();

@@ -14,6 +14,7 @@ use hsad::{
 };
 
 use super::{
+    cloud::WrittenCloud,
     doubts::{self, NotTrusted},
     options::RunOptions,
     terminal::Progress,
@@ -55,6 +56,8 @@ pub struct CompletedJob {
     pub warnings: Vec<String>,
     /// Why the map is not to be trusted; `None` for a map that is, and with `--force`.
     pub not_trusted: Option<NotTrusted>,
+    /// The point cloud, once it was written.
+    pub cloud: Option<WrittenCloud>,
 }
 
 /// What matching gave, and the rectified pair that was matched, if one was.
@@ -97,7 +100,7 @@ impl Job {
             self.calibration = calibration;
         }
         let (backend, total) = (cached.backend, start.elapsed());
-        Ok(CompletedJob { job: self, backend, outcome, rectified, back, total, warnings, not_trusted })
+        Ok(CompletedJob { job: self, backend, outcome, rectified, back, total, warnings, not_trusted, cloud: None })
     }
 
     fn matched(&self, backend: &Backend, progress: &Progress) -> Result<Matched> {

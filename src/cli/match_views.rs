@@ -6,7 +6,8 @@ use clap::Args;
 use hsad::io::load::{LoadedPair, load_pair};
 
 use super::{
-    depth::DepthOptions,
+    cloud::CloudOptions,
+    depth::{Cameras, DepthOptions},
     job::Job,
     options::{FigureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
@@ -30,9 +31,10 @@ const NAMES: Names = Names {
 ///
 /// Writes disparity.pfm (32-bit float, in pixels, +inf for no disparity), disparity.png (16 bit, 256
 /// times the disparity, 0 for no disparity), disparity-color.png, confidence.png and report.json;
-/// with a calibration also depth.pfm (in metres) and cloud.ply. A left pixel (x, y) with disparity d
-/// corresponds to the right pixel (x - d, y). Without --disparities the range is found from a
-/// coarse map of the pair and from matching interest points.
+/// with a calibration also depth.pfm (in metres) and cloud.ply, which has the measured pixels whose
+/// depth is known to a tenth. A left pixel (x, y) with disparity d corresponds to the right pixel
+/// (x - d, y). Without --disparities the range is found from a coarse map of the pair and from
+/// matching interest points.
 ///
 /// A pair that is not rectified is rectified first, by the calibration or from its matches (see hsad
 /// rectify); disparities are then those of rectified-left.png and rectified-right.png, which are written
@@ -44,6 +46,7 @@ const NAMES: Names = Names {
   hsad match left.png right.png -o out --disparities 128 --window 7
   hsad match left.png right.png -o out --focal 1400 --baseline 0.12
   hsad match im0.png im1.png -o out --calib calib.txt --device cpu
+  hsad match im0.png im1.png -o out --calib calib.txt --max-depth 30 --min-confidence 128
   hsad match left.png right.png -o out --preset paper --figures
   hsad match left.png right.png -o out --calib rig.yml --map-back
   hsad match left.png right.png -o out --rectify never
@@ -79,6 +82,8 @@ pub struct Match {
     #[command(flatten)]
     depth: DepthOptions,
     #[command(flatten)]
+    cloud: CloudOptions,
+    #[command(flatten)]
     unseen: UnseenOptions,
 }
 
@@ -91,6 +96,7 @@ impl Match {
             load_pair(&self.left, &self.right, &self.unseen.unseen())?;
         let sizes = [left.size(), right.size()];
         let cameras = self.depth.cameras([&self.left, &self.right], sizes)?;
+        self.cloud.check(!matches!(cameras, Cameras::Unknown))?;
         let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
         warnings.extend(notes);
         // Told before the match, since they may be the reason why it fails.
@@ -106,7 +112,7 @@ impl Match {
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        completed.add_maps(&mut output)?;
+        completed.add_maps(&mut output, &self.cloud)?;
         if let Some(pair) = &completed.rectified {
             rectification::add_files(pair, &NAMES, &mut output)?;
         }

@@ -1,6 +1,7 @@
 //! The subcommands of `hsad`, one file each, and their shared modules.
 
 mod bench;
+mod cloud;
 mod completions;
 mod demo;
 mod depth;

@@ -6,18 +6,25 @@ use hsad::{
     disparity::{DisparityMap, NONE, fixed_point},
     features::Feature,
     image::Plane,
-    io::{Calibration, Picture, calibration::depth_map, color, disparity_png, figure, pfm, ply, png},
+    io::{
+        Calibration, Picture,
+        calibration::depth_map,
+        color, disparity_png, figure, pfm,
+        ply::{self, LeftOut, Point, PointFilter},
+        png,
+    },
 };
 use serde_json::Value;
 
 use super::{
+    cloud::{CloudOptions, WrittenCloud},
     job::{CompletedJob, Job},
     output::Output,
 };
 
 impl CompletedJob {
-    /// Adds the disparity and confidence maps; with a calibration also depth and point cloud.
-    pub fn add_maps(&mut self, output: &mut Output) -> Result<()> {
+    /// Adds the disparity and confidence maps; with a calibration also depth and the point cloud that `cloud` asks for.
+    pub fn add_maps(&mut self, output: &mut Output, cloud: &CloudOptions) -> Result<()> {
         let dense = &self.outcome.dense;
         output.add("disparity.pfm", |out| pfm::write_disparities(out, &dense.disparity))?;
         let lost = output.add("disparity.png", |out| disparity_png::write(out, &dense.disparity))?.total();
@@ -35,37 +42,49 @@ impl CompletedJob {
         // Disparities of a pair without parallax are 0 but for noise, and so are the inverse depths.
         let has_depth = !self.outcome.no_parallax || self.job.config.force;
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
-            let (depth, points) = self.depth_and_points(calibration)?;
+            let filter = cloud.filter(&calibration)?;
+            let depth = self.depth(&calibration);
+            let (points, left_out) = self.points(calibration, &filter)?;
+            let cloud = WrittenCloud { points: points.len(), filter, left_out };
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
                 self.warnings.push(format!(
                     "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration",
                     calibration.doffs
                 ));
+            } else {
+                self.warnings.extend(cloud.warning());
             }
             output.add("depth.pfm", |out| pfm::write(out, &depth))?;
             output.add("cloud.ply", |out| ply::write(out, &points))?;
+            self.cloud = Some(cloud);
         }
         Ok(())
     }
 
-    /// The depth of each pixel of the map, and the points in coordinates of the reference view's camera as it stood; in metres.
-    fn depth_and_points(&self, calibration: Calibration) -> Result<(Plane<f32>, Vec<ply::Point>)> {
+    /// The depth of each pixel of the map, in metres; +inf where there is none.
+    fn depth(&self, calibration: &Calibration) -> Plane<f32> {
         let (map, reference) = (&self.outcome.dense.disparity, self.job.config.reference);
+        let taken_back = self.rectified.as_ref().zip(self.back.as_ref());
+        match taken_back.and_then(|(pair, back)| pair.points_in_metres(map, reference, Some(back))) {
+            Some(positions) => positions.map(|&[.., z]| if z > 0.0 { z } else { f32::INFINITY }),
+            None => depth_map(map, calibration),
+        }
+    }
+
+    /// The points that `filter` keeps, in coordinates of the reference view's camera as it stood, in metres.
+    fn points(&self, calibration: Calibration, filter: &PointFilter) -> Result<(Vec<Point>, LeftOut)> {
+        let (dense, reference) = (&self.outcome.dense, self.job.config.reference);
         let (picture, calibration) = match reference {
             View::Left => (&self.job.left, calibration),
             View::Right => (&self.job.right, calibration.seen_from_right()),
         };
-        let pair = self.rectified.as_ref();
-        let Some(positions) = pair.and_then(|pair| pair.points_in_metres(map, reference, self.back.as_ref())) else {
-            let depth = depth_map(map, &calibration);
-            let points = ply::points(&depth, picture, &calibration)?;
-            return Ok((depth, points));
-        };
-        let depth = match &self.back {
-            Some(_) => positions.map(|&[.., z]| if z > 0.0 { z } else { f32::INFINITY }),
-            None => depth_map(map, &calibration),
-        };
-        Ok((depth, ply::colored(&positions, picture)?))
+        if let Some(pair) = &self.rectified {
+            let (kept, left_out) = filter.apply(dense, &calibration);
+            if let Some(positions) = pair.points_in_metres(&kept, reference, self.back.as_ref()) {
+                return Ok((ply::colored(&positions, picture)?, left_out));
+            }
+        }
+        ply::points(dense, picture, &calibration, filter)
     }
 
     /// Adds the paper's figures 4 and 5: interest points in both views, and matches between them.

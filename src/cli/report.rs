@@ -3,14 +3,14 @@
 use hsad::{config::Config, io::load::Stretch, report};
 use serde_json::{Value, json};
 
-use super::job::CompletedJob;
+use super::{cloud::WrittenCloud, job::CompletedJob};
 
 pub use hsad::report::{device, searched};
 
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted } = self;
+        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, cloud } = self;
         let stretched = |Stretch { low, high }| json!({ "low": report::number(low), "high": report::number(high) });
         let mut value = json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -21,6 +21,7 @@ impl CompletedJob {
             "stretch": job.stretch.map(stretched),
             "device": device(backend),
             "calibration": job.calibration.as_ref().map(report::calibration),
+            "cloud": cloud.as_ref().map(WrittenCloud::report),
             "rectified": rectified.as_ref().map(report::rectified),
             "mapped_back": back.is_some(),
             "not_trusted": not_trusted.as_ref().map(|doubt| &doubt.reason),

@@ -56,6 +56,9 @@ impl CompletedJob {
             "coverage",
             format!("{} of {width}x{height} pixels{}", percent(share), parts(share, &outcome.dense)),
         );
+        if let Some(cloud) = &self.cloud {
+            line(&mut text, "cloud", cloud.summary());
+        }
         line(&mut text, "time", format!("{:.2} s ({})", total.as_secs_f64(), steps.join(", ")));
         text
     }

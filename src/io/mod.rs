@@ -35,6 +35,7 @@ pub mod ply;
 mod ply_reader;
 #[cfg(feature = "files")]
 pub mod png;
+mod point_filter;
 #[cfg(feature = "pictures")]
 mod raw;
 #[cfg(feature = "pictures")]

@@ -8,9 +8,13 @@ use std::io::{self, Write};
 pub use super::ply_reader::{decode, read};
 use super::{Calibration, Picture};
 use crate::{
+    calibration::depth_map,
+    dense::Dense,
     error::{Result, check},
     image::{Plane, Size},
 };
+
+pub use super::point_filter::{LeftOut, PointFilter};
 
 /// A coloured point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +25,20 @@ pub struct Point {
     pub color: [u8; 3],
 }
 
-/// The points of a depth map in metres, coloured by its picture, in raster order. Pixels without a finite depth are
-/// left out.
+/// The points of a map that `filter` keeps, in metres, coloured by the map's picture, in raster order; and how many it leaves out.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if depth map and picture differ in size.
-pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
-    check_size("the depth map", depth.size(), picture)?;
+/// [`crate::Error::Parameter`] if map and picture differ in size, or as [`PointFilter::validate`].
+pub fn points(
+    dense: &Dense,
+    picture: &Picture,
+    calibration: &Calibration,
+    filter: &PointFilter,
+) -> Result<(Vec<Point>, LeftOut)> {
+    check_size("the map", dense.disparity.size(), picture)?;
+    filter.validate()?;
+    let (kept, left_out) = filter.apply(dense, calibration);
+    let depth = depth_map(&kept, calibration);
     let Calibration { focal, cx, cy, .. } = *calibration;
     let mut points = Vec::new();
     for y in 0..depth.height() {
@@ -39,7 +50,7 @@ pub fn points(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) 
             }
         }
     }
-    Ok(points)
+    Ok((points, left_out))
 }
 
 /// The points of a picture's pixels, in metres, in raster order. Points that are not finite are left out.
@@ -83,20 +94,22 @@ pub fn write(out: &mut impl Write, points: &[Point]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disparity::NONE;
 
     #[test]
     fn points_by_hand() {
-        let depth = Plane::new((2, 2), vec![f32::INFINITY, 4.0, 2.0, f32::NAN]).unwrap();
+        let disparity = Plane::new((2, 2), vec![NONE, 2 * 256, 4 * 256, 256]).unwrap();
+        let dense = Dense { disparity, confidence: Plane::filled((2, 2), 99) };
         let picture = Picture::from_fn((2, 2), |x, y| [x as u8, y as u8, 7, 255]);
         let calibration = Calibration { focal: 8.0, baseline: 1.0, doffs: 0.0, cx: 0.0, cy: 0.5, size: None };
-        assert_eq!(
-            points(&depth, &picture, &calibration).unwrap(),
-            [
-                // (1 - 0) * 4 / 8, (0 - 0.5) * 4 / 8
-                Point { position: [0.5, -0.25, 4.0], color: [1, 0, 7] },
-                Point { position: [0.0, 0.125, 2.0], color: [0, 1, 7] },
-            ]
-        );
+        let filter = PointFilter { max_depth: 4.0, min_confidence: 99 };
+        let expected = vec![
+            // (1 - 0) * 4 / 8, (0 - 0.5) * 4 / 8
+            Point { position: [0.5, -0.25, 4.0], color: [1, 0, 7] },
+            Point { position: [0.0, 0.125, 2.0], color: [0, 1, 7] },
+        ];
+        let left_out = LeftOut { unsure: 0, beyond: 1 };
+        assert_eq!(points(&dense, &picture, &calibration, &filter).unwrap(), (expected, left_out));
     }
 
     #[test]
@@ -110,8 +123,10 @@ mod tests {
     #[test]
     fn sizes_must_agree() {
         let calibration = Calibration::centred(1.0, 1.0, 0.0, (2, 1)).unwrap();
-        let error = points(&Plane::filled((2, 1), 1.0), &Picture::filled((1, 2), [0; 4]), &calibration).unwrap_err();
-        assert_eq!(error.to_string(), "the depth map is 2x1, but its picture is 1x2: both need one size");
+        let dense = Dense { disparity: Plane::filled((2, 1), 256), confidence: Plane::filled((2, 1), 99) };
+        let filter = PointFilter::new(&calibration);
+        let error = points(&dense, &Picture::filled((1, 2), [0; 4]), &calibration, &filter).unwrap_err();
+        assert_eq!(error.to_string(), "the map is 2x1, but its picture is 1x2: both need one size");
     }
 
     #[test]

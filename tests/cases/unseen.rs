@@ -12,7 +12,7 @@ use crate::{
     texture::texture,
 };
 
-const CALIBRATION: [&str; 4] = ["--focal", "400", "--baseline", "0.1"];
+const CALIBRATION: [&str; 8] = ["--focal", "400", "--baseline", "0.1", "--max-depth", "inf", "--min-confidence", "0"];
 
 /// Which pixels of the left (0) and of the right view (1) show the scene: 255, or 0.
 type Seen = fn(u32, u32, u32) -> bool;

@@ -6,7 +6,7 @@ use std::{
 };
 
 use assert_cmd::Command;
-use hsad::{image::Plane, io::png};
+use hsad::{glam::DVec3, image::Plane, io::png};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -100,4 +100,13 @@ pub fn fails(mut command: Command, code: i32, expected: &str) {
     assert!(stderr.starts_with("error: ") && stderr.ends_with('\n'), "{stderr:?}");
     assert_eq!(stderr.lines().count(), 1, "{stderr}");
     assert!(stderr.contains(expected), "'{expected}' is not in: {stderr}");
+}
+
+/// Positions of the points of `cloud.ply` of a folder, in metres.
+pub fn cloud(out: &Path) -> Vec<DVec3> {
+    let bytes = fs::read(out.join("cloud.ply")).unwrap();
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+    let number = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().unwrap()));
+    bytes[start..].chunks_exact(15).map(|p| DVec3::new(number(&p[..4]), number(&p[4..8]), number(&p[8..12]))).collect()
 }

@@ -6,6 +6,7 @@ mod bad_input;
 mod bench;
 mod calibrated;
 mod calibrations;
+mod clouds;
 mod common;
 mod completions;
 mod deep_pictures;
@@ -76,6 +77,8 @@ fn usage_errors_are_two() {
         &["--focal", "700"],
         &["--calib", "c", "--focal", "700", "--baseline", "0.1"],
         &["--preset", "best"],
+        &["--filled", "--min-confidence", "99"],
+        &["--min-confidence", "256"],
     ] {
         hsad().args(out).args(args).assert().code(2).stderr(contains("error: "));
     }

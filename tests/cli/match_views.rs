@@ -325,9 +325,6 @@ fn depth_is_metric() {
         let expected = if d == NONE { f32::INFINITY } else { 30.0 / (d as f32 / 256.0 + 5.0) };
         assert!(z == expected || (z - expected).abs() < 1e-5, "{d}: {z}, not {expected}");
     }
-    let header = String::from_utf8_lossy(&fs::read(by_file.join("cloud.ply")).unwrap()[..200]).into_owned();
-    let points = depth.data().iter().filter(|z| z.is_finite()).count();
-    assert!(header.contains(&format!("element vertex {points}\n")), "{header}");
     assert_eq!(report(&by_file)["calibration"]["baseline_m"], 0.1);
 }
 

@@ -1,0 +1,68 @@
+//! `cloud.ply` of `hsad match`: which pixels become points.
+
+use hsad::io::{load, pfm};
+use predicates::str::contains;
+use serde_json::json;
+
+use crate::common::{cloud, fails, folder, match_on_cpu, report, views};
+
+#[test]
+fn the_cloud_has_measured_points_of_known_depth() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    // The disparities of the scene are 9.1 to 57.5 px: some are nearly infinity.
+    let run = |name: &str, args: &[&str]| {
+        let out = temporary.path().join(name);
+        let mut command = match_on_cpu(&left, &right, &out);
+        command.args(["--disparities", "72", "--focal", "300", "--baseline", "0.1", "--doffs", "-9"]).args(args);
+        command.assert().success().stdout(contains("cloud "));
+        let depth = pfm::read(&out.join("depth.pfm")).unwrap();
+        let confidence = load::load(&out.join("confidence.png")).unwrap().luma();
+        let pixels = depth.into_data().into_iter().zip(confidence.into_data());
+        (cloud(&out), report(&out)["cloud"].clone(), pixels.collect::<Vec<_>>())
+    };
+    let check = |name: &str, args: &[&str], max_depth: f32, min_confidence: u8| {
+        let (points, told, pixels) = run(name, args);
+        let depths = pixels.iter().filter(|&&(z, confidence)| z <= max_depth && confidence >= min_confidence);
+        let depths: Vec<f64> = depths.map(|&(z, _)| z.into()).collect();
+        assert!(points.iter().map(|point| point.z).eq(depths), "{name}: {told}");
+        let sure = pixels.iter().filter(|&&(_, confidence)| confidence >= min_confidence).count();
+        assert_eq!((&told["points"], &told["min_confidence"]), (&json!(points.len()), &json!(min_confidence)));
+        assert_eq!(told["left_out"]["beyond_max_depth"], json!(sure - points.len()));
+        assert_eq!(told["left_out"]["below_min_confidence"], json!(pixels.len() - sure));
+        (points.len(), told["max_depth_m"].as_f64())
+    };
+    // Half a pixel is a tenth of 5 px, and 300 px * 0.1 m / 5 px is 6 m.
+    let (points, max_depth) = check("usual", &[], 6.0, 16);
+    assert!((max_depth.unwrap() - 6.0).abs() < 1e-9 && points > 10_000, "{points}");
+    let (filled, _) = check("filled", &["--filled"], 6.0, 1);
+    let (sure, _) = check("sure", &["--min-confidence", "200"], 6.0, 200);
+    let (near, nearest) = check("near", &["--max-depth", "1"], 1.0, 16);
+    let (all, farthest) = check("all", &["--max-depth", "inf"], f32::MAX, 16);
+    assert!(near < points && sure < points && points < filled && points < all, "{near} {sure} {points} {filled} {all}");
+    assert_eq!((nearest, farthest), (Some(1.0), None));
+    let told = contains("lie beyond 0.600 m and are not in cloud.ply: --max-depth keeps them");
+    let mut command = match_on_cpu(&left, &right, &temporary.path().join("none"));
+    command.args(["--disparities", "72", "--focal", "300", "--baseline", "0.1", "--max-depth", "0.6"]);
+    command.assert().success().stderr(told);
+}
+
+#[test]
+fn options_of_a_cloud_that_is_not_written_are_refused() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let out = temporary.path().join("out");
+    let refused = |args: &[&str], expected: &str| {
+        let mut command = match_on_cpu(&left, &right, &out);
+        command.args(args);
+        fails(command, 2, expected);
+        assert!(!out.exists());
+    };
+    for args in [&["--max-depth", "30"][..], &["--min-confidence", "99"], &["--filled"]] {
+        refused(
+            args,
+            "without a calibration there is no point cloud: name one with --calib, or give --focal and --baseline",
+        );
+    }
+    for depth in ["0", "-1", "nan"] {
+        refused(&["--focal", "300", "--baseline", "0.1", "--max-depth", depth], "it must be above 0 metres");
+    }
+}
