@@ -9,7 +9,9 @@ use hsad::{
     io::{
         Calibration, Picture,
         calibration::depth_map,
-        color, disparity_png, figure, pfm,
+        color,
+        disparity_png::{self, Encoding},
+        figure, pfm,
         ply::{self, LeftOut, Point, PointFilter},
         png,
     },
@@ -27,11 +29,14 @@ impl CompletedJob {
     pub fn add_maps(&mut self, output: &mut Output, cloud: &CloudOptions) -> Result<()> {
         let dense = &self.outcome.dense;
         output.add("disparity.pfm", |out| pfm::write_disparities(out, &dense.disparity))?;
-        let lost = output.add("disparity.png", |out| disparity_png::write(out, &dense.disparity))?.total();
-        if lost > 0 {
+        output.add("disparity.png", |out| disparity_png::write(out, &dense.disparity))?;
+        let encoding = Encoding::of(&dense.disparity);
+        if encoding != Encoding::KITTI {
             self.warnings.push(format!(
-                "{lost} disparities lie outside the 0 to 255.996 px of a 16-bit PNG and are 0 (none) in disparity.png; \
-                 disparity.pfm has them all"
+                "disparities lie outside the 0 to 255.996 px of a 16-bit PNG: in disparity.png a disparity is its value times {} px, \
+                 plus {} px (disparity_png in report.json); disparity.pfm has it as it is",
+                encoding.px_per_value(),
+                encoding.offset
             ));
         }
         let range = color::disparity_range(&dense.disparity).unwrap_or((0, 0));

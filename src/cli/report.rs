@@ -1,6 +1,11 @@
 //! `report.json`: parameters, figures and times of a run, for programs.
 
-use hsad::{config::Config, io::load::Stretch, report};
+use hsad::{
+    config::Config,
+    disparity::DisparityMap,
+    io::{disparity_png::Encoding, load::Stretch},
+    report,
+};
 use serde_json::{Value, json};
 
 use super::{cloud::WrittenCloud, job::CompletedJob};
@@ -25,6 +30,7 @@ impl CompletedJob {
             "rectified": rectified.as_ref().map(report::rectified),
             "mapped_back": back.is_some(),
             "not_trusted": not_trusted.as_ref().map(|doubt| &doubt.reason),
+            "disparity_png": disparity_png(&outcome.dense.disparity),
             "warnings": warnings,
         });
         for (name, figure) in report::outcome(&job.config, outcome) {
@@ -41,4 +47,10 @@ pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
     let mut parameters = report::parameters(config);
     parameters["strongest"] = json!(strongest);
     parameters
+}
+
+/// How the values of `disparity.png` become disparities: times the one, plus the other.
+fn disparity_png(map: &DisparityMap) -> Value {
+    let encoding = Encoding::of(map);
+    json!({ "px_per_value": encoding.px_per_value(), "offset_px": encoding.offset })
 }

@@ -35,6 +35,8 @@ pub mod ply;
 mod ply_reader;
 #[cfg(feature = "files")]
 pub mod png;
+#[cfg(feature = "files")]
+mod png_text;
 mod point_filter;
 #[cfg(feature = "pictures")]
 mod raw;

@@ -4,9 +4,9 @@ use std::{fs, path::Path};
 
 use hsad::{
     Options,
-    disparity::{NONE, coverage},
+    disparity::{NONE, coverage, in_pixels},
     image::{Plane, Size},
-    io::{disparity_png, load, pfm},
+    io::{disparities, disparity_png, load, pfm},
     options::Kind,
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
@@ -70,6 +70,7 @@ fn writes_maps_that_agree_and_a_report() {
     assert!(["luma", "features", "seeding", "dense", "total"].iter().all(|step| report["seconds"][step].is_f64()));
     assert_eq!(report["files"].as_array().unwrap().len(), files.len());
     assert_eq!((&report["calibration"], &report["warnings"]), (&json!(null), &json!([])));
+    assert_eq!(report["disparity_png"], json!({ "px_per_value": 1.0 / 256.0, "offset_px": 0 }));
 }
 
 #[test]
@@ -406,13 +407,23 @@ fn a_map_that_is_not_to_be_trusted_ends_with_four() {
 }
 
 #[test]
-fn disparities_that_a_png_cannot_hold_are_told() {
+fn a_png_holds_negative_disparities_by_an_offset() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let out = temporary.path();
-    let lost = contains("lie outside the 0 to 255.996 px of a 16-bit PNG");
-    match_on_cpu(&right, &left, out).assert().success().stderr(lost.and(contains("disparity.pfm has them all")));
-    let warnings = report(out)["warnings"].to_string();
-    assert!(warnings.contains("disparity.pfm has them all"), "{warnings}");
+    let told =
+        contains("lie outside the 0 to 255.996 px of a 16-bit PNG").and(contains("disparity.pfm has it as it is"));
+    match_on_cpu(&right, &left, out).assert().success().stderr(told);
+    let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
+    assert_eq!(disparity_png::read(&out.join("disparity.png")).unwrap(), map);
+    assert_eq!(disparities::read(&out.join("disparity.png")).unwrap(), in_pixels(&map));
+    // What another program makes of the file and the report.
+    let told = report(out)["disparity_png"].clone();
+    let [scale, offset] = ["px_per_value", "offset_px"].map(|name| told[name].as_f64().unwrap());
+    assert!(offset <= -50.0, "{told}");
+    let values = image::open(out.join("disparity.png")).unwrap().into_luma16().into_raw();
+    for (&value, &d) in values.iter().zip(map.data()) {
+        assert!(if d == NONE { value == 0 } else { f64::from(value) * scale + offset == f64::from(d) / 256.0 });
+    }
 }
 
 #[test]
