@@ -1,6 +1,9 @@
-//! `hsad features`: the interest points of one picture.
+//! `hsad features`: the interest points of one picture, or the matches of those of two.
 
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 use hsad::{
@@ -8,30 +11,41 @@ use hsad::{
     gpu::block_on,
     image::reduced,
     io::{figure, load, png},
+    matching::MatchConfig,
     pipeline::reduction,
-    seeding::enlarged_feature,
+    seeding::{RawMatches, SeedingConfig, enlarged_feature},
 };
 
 use super::{
-    options::{FeatureOptions, RunOptions},
+    matches::MatchTable,
+    options::{FeatureOptions, RunOptions, with_default},
     output::Output,
     terminal::{self, Progress},
 };
 
-/// Find the interest points of one picture
+/// Find the interest points of one picture, or match those of two
 ///
 /// Prints one CSV line per point: column and row of the centre (pixel centres are whole numbers),
 /// scale in pixels, orientation in radians, response, and 1 for a dark blob on light ground or 0 for
 /// a light blob on dark ground.
+///
+/// With a second picture prints one line per match instead, found in any row: position, scale and
+/// orientation in both pictures, distance of the descriptors, its ratio to that of the best rival,
+/// confidence (1 less the ratio), and 1 where the match agrees with the rows along which most matches
+/// correspond, or 0.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad features photo.jpg > features.csv
   hsad features photo.jpg -o out            features.csv and keypoints.png
-  hsad features photo.jpg --oriented --descriptors --threshold 0.001")]
+  hsad features photo.jpg --oriented --descriptors --threshold 0.001
+  hsad features left.jpg right.jpg > matches.csv
+  hsad features left.jpg right.jpg -o out   matches.csv and matches.png")]
 pub struct Features {
     /// Picture file: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP
     image: PathBuf,
-    /// Write features.csv and keypoints.png to this folder instead of printing the table
+    /// Second picture, whose interest points are matched to those of the first
+    second: Option<PathBuf>,
+    /// Write features.csv and keypoints.png, or matches.csv and matches.png, to this folder instead of printing the table
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Detect points at the picture's full size. By default a picture of more than 2 megapixels is
@@ -39,8 +53,11 @@ pub struct Features {
     #[arg(long)]
     full_size: bool,
     /// Add the 64 descriptor values of each point as columns d0 to d63
-    #[arg(long)]
+    #[arg(long, conflicts_with = "second")]
     descriptors: bool,
+    #[arg(long, value_name = "R", requires = "second", help = with_default("Ratio test: largest ratio of the distances of the \
+        best and the second best descriptor, above 0, at most 1", MatchConfig::default().ratio))]
+    ratio: Option<f32>,
     #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
@@ -48,8 +65,15 @@ pub struct Features {
 }
 
 impl Features {
-    /// Detects the interest points and prints or writes them.
+    /// Detects the interest points, matches those of two pictures, and prints or writes the table.
     pub fn run(self) -> anyhow::Result<()> {
+        match &self.second {
+            Some(second) => self.run_for_two([&self.image, second]),
+            None => self.run_for_one(),
+        }
+    }
+
+    fn run_for_one(&self) -> anyhow::Result<()> {
         let config = self.features.over(FeatureConfig::default())?;
         config.validate()?;
         let mut output = self.output.as_deref().map(Output::open).transpose()?;
@@ -76,14 +100,66 @@ impl Features {
         let size = if factor == 1 { String::new() } else { format!(" at 1/{factor} of its size") };
         let strongest = if features.len() < found { format!(", the strongest of {found},") } else { String::new() };
         let found = format!("{} interest points{strongest}{size}, found by {}", features.len(), cached.backend.name());
+        self.tell(output.as_ref(), &csv, &found)
+    }
+
+    fn run_for_two(&self, images: [&Path; 2]) -> anyhow::Result<()> {
+        let config = self.features.over(FeatureConfig::default())?;
+        config.validate()?;
+        let mut seeding = SeedingConfig::default();
+        seeding.matching.ratio = self.ratio.unwrap_or(seeding.matching.ratio);
+        seeding.matching.validate()?;
+        let mut output = self.output.as_deref().map(Output::open).transpose()?;
+        let [left, right] = [load::load(images[0])?, load::load(images[1])?];
+        let cached = self.run.open()?;
+        let progress = Progress::new(self.run.quiet);
+        progress.begin("finding interest points");
+        let factor = if self.full_size { 1 } else { reduction(left.size()).max(reduction(right.size())) };
+        let lumas = [&left, &right].map(|picture| reduced(&picture.luma(), factor));
+        let detect = |luma| block_on(cached.backend.features(luma, &config)).map(|detected| detected.features);
+        let features = [detect(&lumas[0])?, detect(&lumas[1])?];
+        cached.save();
+        progress.begin("matching interest points");
+        let RawMatches { matches, rectification, .. } =
+            RawMatches::new((&features[0], &features[1]), lumas[0].size(), &seeding)?;
+        let features: [Vec<_>; 2] =
+            features.map(|view| view.into_iter().map(|point| enlarged_feature(point, factor)).collect());
+        let table = MatchTable {
+            features: features.each_ref().map(Vec::as_slice),
+            matches: &matches,
+            rows: rectification.enlarged(factor).rows,
+            max_dy: f64::from(seeding.max_dy) * f64::from(factor),
+        };
+
+        let csv = table.csv();
+        if let Some(output) = &mut output {
+            progress.begin("writing");
+            let figure = figure::matches(&left, &right, &table.positions());
+            output.add("matches.csv", |out| out.write_all(csv.as_bytes()))?;
+            output.add("matches.png", |out| png::write_rgb8(out, &figure))?;
+            output.finish()?;
+        }
+        drop(progress);
+        let [of_left, of_right] = features.each_ref().map(Vec::len);
+        let found = format!(
+            "{} matches, {} of them in corresponding rows, of {of_left} and {of_right} interest points, found by {}",
+            matches.len(),
+            table.agreeing(),
+            cached.backend.name()
+        );
+        self.tell(output.as_ref(), &csv, &found)
+    }
+
+    /// Prints the table, or where its file is, and what was found.
+    fn tell(&self, output: Option<&Output>, csv: &str, found: &str) -> anyhow::Result<()> {
         match output {
             Some(_) if self.run.quiet => {}
             Some(output) => terminal::print(&format!("{found}; see {}\n", output.folder().display()))?,
             None => {
-                terminal::print(&csv)?;
+                terminal::print(csv)?;
                 if !self.run.quiet {
                     // The note goes to stderr: on stdout it would be a line of the table.
-                    terminal::note(&found);
+                    terminal::note(found);
                 }
             }
         }

@@ -66,6 +66,10 @@ pub struct Match {
     /// Also draw interest points (keypoints.png) and matches (matches.png)
     #[arg(long)]
     figures: bool,
+    /// Also write the matches of the interest points (matches.csv), found in any row: positions, scales and orientations in
+    /// both views, distance and ratio of the descriptors, confidence, and 1 where rows agree
+    #[arg(long)]
+    matches: bool,
     /// Whether and how to rectify the pair before it is matched
     #[arg(long, value_enum, default_value = "auto")]
     rectify: Rectify,
@@ -118,6 +122,9 @@ impl Match {
         }
         if self.figures {
             completed.add_figures(&mut output)?;
+        }
+        if self.matches {
+            completed.add_matches(&mut output)?;
         }
         products::add_report(&mut output, completed.report())?;
         output.finish()?;

@@ -12,6 +12,7 @@ mod features;
 mod job;
 mod man;
 mod match_views;
+mod matches;
 mod options;
 pub mod out_of_memory;
 pub mod output;

@@ -1,5 +1,7 @@
 //! The output files of a matched pair: maps, depth, point cloud, figures and report.
 
+use std::io::Write;
+
 use hsad::{
     Result,
     dense::View,
@@ -15,12 +17,14 @@ use hsad::{
         ply::{self, LeftOut, Point, PointFilter},
         png,
     },
+    pipeline::reduction,
 };
 use serde_json::Value;
 
 use super::{
     cloud::{CloudOptions, WrittenCloud},
     job::{CompletedJob, Job},
+    matches::MatchTable,
     output::Output,
 };
 
@@ -113,6 +117,19 @@ impl CompletedJob {
         let pairs: Vec<_> = seeds.map(|seed| ([seed.x, seed.y], [seed.right_x(), seed.right_y()])).collect();
         let matches = figure::matches(left, right, &pairs);
         output.add("matches.png", |out| png::write_rgb8(out, &matches))
+    }
+
+    /// Adds the table of all matches of interest points, in the pictures that were matched.
+    pub fn add_matches(&self, output: &mut Output) -> Result<()> {
+        let Self { job, outcome, rectified, .. } = self;
+        let left = rectified.as_ref().map_or(&job.left, |pair| &pair.pictures[0]);
+        let table = MatchTable {
+            features: outcome.features.each_ref().map(Vec::as_slice),
+            matches: &outcome.seeding.matches,
+            rows: outcome.seeding.rectification.rows,
+            max_dy: f64::from(job.config.seeding.max_dy) * f64::from(reduction(left.size())),
+        };
+        output.add("matches.csv", |out| out.write_all(table.csv().as_bytes()))
     }
 }
 

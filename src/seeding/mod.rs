@@ -74,6 +74,8 @@ pub struct Seeding {
     pub agreement: f32,
     /// The seeds that their neighbours support, the most confident first.
     pub seeds: Vec<Seed>,
+    /// All matches of the features, found in any row, the most confident first.
+    pub matches: Vec<Match>,
 }
 
 impl Seeding {
@@ -101,19 +103,22 @@ impl Seeding {
 
 /// Matches of the features of two views in any row, and what they tell of the rows.
 #[derive(Clone, Debug)]
-pub(crate) struct RawMatches {
-    matches: Vec<Match>,
+pub struct RawMatches {
+    /// The matches, the most confident first.
+    pub matches: Vec<Match>,
     /// The matches at the positions of the features.
     seeds: Vec<Seed>,
+    /// Whether rows correspond.
     pub rectification: Rectification,
 }
 
 impl RawMatches {
-    /// Matches the `features` of two views of `size`: of more than [`ANYWHERE`] the strongest, spread over the view.
+    /// Matches the features of two views of `size`, in pixels: of more than 8192 the strongest, spread over the view.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the configuration is not valid.
-    pub fn new((left, right): (&[Feature], &[Feature]), size: Size, config: &SeedingConfig) -> Result<Self> {
+    pub fn new((left, right): (&[Feature], &[Feature]), size: impl Into<Size>, config: &SeedingConfig) -> Result<Self> {
+        let size = size.into();
         let anywhere = MatchConfig { max_dy: None, ..config.matching.clone() };
         let [kept_left, kept_right] = [left, right].map(|features| kept(features, size));
         let of = |features: &[Feature], kept: &[usize]| -> Vec<Feature> {
@@ -133,7 +138,7 @@ impl RawMatches {
     ///
     /// # Errors
     /// [`Error::Parameter`] if the configuration is not valid.
-    pub fn seeding(
+    pub(crate) fn seeding(
         self,
         views: (&Luma, &Luma),
         seen: Option<&Mask>,
@@ -157,7 +162,7 @@ impl RawMatches {
         let coarse = range::coarse_map(views, seen, &supported, equalised)?;
         let range = range::disparity_range(views.0.width(), &supported, seeds.len(), &coarse);
         let agreement = range.map_or(0.0, |found| agreement(&raw, found.range, &rows, config.max_dy));
-        Ok(Seeding { range, coarse, rectification, brightness, agreement, seeds: supported })
+        Ok(Seeding { range, coarse, rectification, brightness, agreement, seeds: supported, matches })
     }
 }
 

@@ -24,6 +24,7 @@ mod interruption;
 mod limits;
 mod man;
 mod match_views;
+mod matches;
 mod mosaics;
 #[path = "../pictures/mod.rs"]
 mod pictures;
