@@ -50,7 +50,9 @@ impl NotTrusted {
 pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
     if left == right {
-        warnings.push("both views are the same picture, which shows no depth".into());
+        warnings.push("both views are the same picture, which shows no depth; a file with both views is named once, and unless it is an MPO \
+             --side-by-side or --top-bottom tells their order"
+                .into());
     }
     warnings.extend(mosaics(outcome.mosaics));
     warnings.extend(repetition(outcome.repetition));

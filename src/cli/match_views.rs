@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hsad::io::load::{LoadedPair, load_pair};
+use hsad::io::load::LoadedPair;
 
 use super::{
     cloud::CloudOptions,
@@ -15,6 +15,7 @@ use super::{
     rectification::{self, Names},
     summary,
     terminal::{self, Progress},
+    view_files::ViewOptions,
     way::{Rectify, Resolved},
 };
 
@@ -53,13 +54,13 @@ const NAMES: Names = Names {
   hsad match left.png right.png -o out --method kamencay
   hsad match left.png right.png -o out --mask round.png round.png
   hsad match left.tif right.tif -o out --nodata -9999
+  hsad match DSCF0001.MPO -o out
+  hsad match both.jps -o out --side-by-side right-left
 
 Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified and cannot be, 4 written but not to be trusted (--force goes on all the same)"))]
 pub struct Match {
-    /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
-    left: PathBuf,
-    /// Right view, of the same size
-    right: PathBuf,
+    #[command(flatten)]
+    views: ViewOptions,
     /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -96,10 +97,9 @@ impl Match {
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
         let mut output = Output::open(&self.output)?;
-        let LoadedPair { left, right, stretch, mut warnings } =
-            load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        let LoadedPair { left, right, stretch, mut warnings } = self.views.load(&self.unseen.unseen())?;
         let sizes = [left.size(), right.size()];
-        let cameras = self.depth.cameras([&self.left, &self.right], sizes)?;
+        let cameras = self.depth.cameras(self.views.paths(), sizes)?;
         self.cloud.check(!matches!(cameras, Cameras::Unknown))?;
         let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
         warnings.extend(notes);
@@ -109,7 +109,7 @@ impl Match {
             warnings.iter().for_each(terminal::warning);
         }
 
-        let names = [&self.left, &self.right].map(|path| path.display().to_string());
+        let names = self.views.paths().map(|path| path.display().to_string());
         let job = Job { names, left, right, stretch, config, way, map_back: self.map_back, strongest, calibration };
         let mut completed = job.run(&self.run)?;
         completed.warnings.splice(0..0, warnings);

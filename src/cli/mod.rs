@@ -25,6 +25,7 @@ mod summary;
 pub mod terminal;
 mod threads;
 mod verify;
+mod view_files;
 mod way;
 mod wording;
 

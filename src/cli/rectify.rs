@@ -4,7 +4,7 @@ use std::{path::PathBuf, time::Instant};
 
 use clap::Args;
 use hsad::{
-    io::load::{LoadedPair, load_pair},
+    io::load::LoadedPair,
     pipeline::{self, RectifiedPair},
     rectify::Residual,
 };
@@ -18,6 +18,7 @@ use super::{
     rectification::{self, Names},
     report, summary,
     terminal::{self, Progress},
+    view_files::ViewOptions,
 };
 
 const NAMES: Names = Names {
@@ -49,10 +50,8 @@ const LEAST: usize = 20;
 
 Exit codes: 0 done, 1 failed, 2 usage, 3 cannot be rectified")]
 pub struct Rectify {
-    /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats
-    left: PathBuf,
-    /// Right view, of any size
-    right: PathBuf,
+    #[command(flatten)]
+    views: ViewOptions,
     /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -68,9 +67,9 @@ impl Rectify {
     /// Rectifies the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
         let mut output = Output::open(&self.output)?;
-        let LoadedPair { left, right, mut warnings, .. } = load_pair(&self.left, &self.right, &self.unseen.unseen())?;
+        let LoadedPair { left, right, mut warnings, .. } = self.views.load(&self.unseen.unseen())?;
         let sizes = [left.size(), right.size()];
-        let file = self.calibration.read([&self.left, &self.right], sizes)?;
+        let file = self.calibration.read(self.views.paths(), sizes)?;
         if let Some(file) = &file {
             file.check_taken(sizes)?;
             warnings.extend(file.loaded.notes.iter().cloned());
@@ -91,8 +90,8 @@ impl Rectify {
         rectification::add_files(&pair, &NAMES, &mut output)?;
         let report = json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "left": self.left.display().to_string(),
-            "right": self.right.display().to_string(),
+            "left": self.views.paths()[0].display().to_string(),
+            "right": self.views.paths()[1].display().to_string(),
             "device": report::device(backend),
             "rectified": hsad::report::rectified(&pair),
             "seconds": { "total": seconds },

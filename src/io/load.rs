@@ -14,6 +14,8 @@
 //! Both views of a pair have one stretch ([`load_pair`]). A pair of 8 and 16 bits is accepted, and only the latter view
 //! stretched; floats and integers of up to 16 bits do not go together, since nothing tells how their units compare.
 //!
+//! A file may have both views ([`load_both`]): an MPO of a 3D camera, or one picture with a view in each half.
+//!
 //! CMYK is refused, since its conversion to 8 bits would be a guess, and so are PFM of three channels. Only the first
 //! frame or page of a file is read.
 
@@ -24,12 +26,13 @@ use ::image::metadata::Orientation;
 use super::{
     Picture, codec,
     decoded::Decoded,
-    malformed,
+    malformed, mpo,
     samples::{Kind, Samples},
 };
 use crate::error::Result;
 
 pub use super::{
+    halves::Halves,
     raw::{RawPicture, RawSamples},
     stretch::Stretch,
     unseen::Unseen,
@@ -62,7 +65,7 @@ pub fn load(path: &Path) -> Result<Picture> {
 /// [`crate::Error::Format`] if the bytes are no picture of a supported format, are damaged or cut off, hold more than
 /// [`super::MAX_PIXELS`], or no pixel that was seen.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
-    let samples = samples(bytes, path)?;
+    let samples = seen(codec::decode(bytes, path)?, path)?;
     Ok(picture(&samples, Stretch::of(&[&samples])))
 }
 
@@ -75,13 +78,52 @@ pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
 /// data that leaves no pixel, one view of floats and one of integers, and views of different sizes and
 /// EXIF orientations.
 pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPair> {
+    let decode = |path: &Path| codec::decode(&codec::read_bytes(path)?, path);
+    pair([decode(left)?, decode(right)?], [left, right], unseen)
+}
+
+/// Loads both views from one file, as [`load_pair`] does from two: from the halves of its picture, or, without `halves`, from a
+/// multi-picture file (MPO), as cameras with two lenses write.
+///
+/// # Errors
+/// As [`load_pair`]; also [`crate::Error::Format`] for a picture that is no multi-picture file, and one too small to hold two views.
+pub fn load_both(path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result<LoadedPair> {
+    let bytes = codec::read_bytes(path)?;
+    let views = match halves {
+        Some(halves) => {
+            let both = codec::decode(&bytes, path)?;
+            halves.split(&both).ok_or_else(|| malformed(path, "the picture is too small to hold two views"))?
+        }
+        None => {
+            let [left, right] = mpo::views(&bytes).map_err(|reason| malformed(path, reason))?.ok_or_else(|| {
+                let reason = "it holds one picture and no list of several, as an MPO has: name the right view, too, or tell where both \
+                              views lie in it (--side-by-side, --top-bottom)";
+                malformed(path, reason)
+            })?;
+            let views = [codec::decode(left, path)?, codec::decode(right, path)?];
+            let [left, right] = views.each_ref().map(|view| (view.image.width(), view.image.height()));
+            if left != right {
+                let reason = format!(
+                    "its pictures are {}x{} and {}x{}: they are no views of one pair",
+                    left.0, left.1, right.0, right.1
+                );
+                return Err(malformed(path, reason));
+            }
+            views
+        }
+    };
+    pair(views, [path; 2], unseen)
+}
+
+fn pair(views: [Decoded; 2], [left, right]: [&Path; 2], unseen: &Unseen) -> Result<LoadedPair> {
     let [left_mask, right_mask] = unseen.masks.each_ref().map(Option::as_deref);
-    let load = |path: &Path, mask| -> Result<Samples> {
-        let mut view = samples(&codec::read_bytes(path)?, path)?;
+    let shown = |view, path: &Path, mask| -> Result<Samples> {
+        let mut view = seen(view, path)?;
         unseen.hide(&mut view, mask, path)?;
         Ok(view)
     };
-    LoadedPair::of([&load(left, left_mask)?, &load(right, right_mask)?], [left, right])
+    let [left_view, right_view] = views;
+    LoadedPair::of([&shown(left_view, left, left_mask)?, &shown(right_view, right, right_mask)?], [left, right])
 }
 
 /// A picture in memory as RGBA of 8 bits.
@@ -110,10 +152,6 @@ impl LoadedPair {
         let [left, right] = views.map(|view| picture(view, stretch));
         Ok(Self { left, right, stretch, warnings })
     }
-}
-
-fn samples(bytes: &[u8], path: &Path) -> Result<Samples> {
-    seen(codec::decode(bytes, path)?, path)
 }
 
 /// The samples of a picture, of which something must have been seen.

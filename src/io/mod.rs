@@ -24,11 +24,15 @@ pub mod disparity_png;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod figure;
+#[cfg(feature = "pictures")]
+mod halves;
 pub mod homography;
 #[cfg(feature = "pictures")]
 mod jpeg;
 #[cfg(feature = "pictures")]
 pub mod load;
+#[cfg(feature = "pictures")]
+mod mpo;
 pub mod pfm;
 pub mod picture;
 pub mod ply;

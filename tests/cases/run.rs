@@ -27,9 +27,14 @@ pub struct Run {
 impl Run {
     /// `hsad match LEFT RIGHT -o FOLDER ARGS`.
     pub fn of(left: &Path, right: &Path, args: &[&str]) -> Self {
+        Self::of_files(&[left, right], args)
+    }
+
+    /// `hsad match FILES -o FOLDER ARGS`.
+    pub fn of_files(files: &[&Path], args: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("hsad");
-        command.env_remove("RUST_LOG").arg("match").arg(left).arg(right).arg("-o").arg(folder.path()).args(args);
+        command.env_remove("RUST_LOG").arg("match").args(files).arg("-o").arg(folder.path()).args(args);
         let output = command.output().expect("the program starts");
         let told = String::from_utf8(output.stderr).expect("UTF-8");
         Self { code: output.status.code().expect("an exit code"), told, folder }

@@ -26,6 +26,7 @@ mod man;
 mod match_views;
 mod matches;
 mod mosaics;
+mod one_file;
 #[path = "../pictures/mod.rs"]
 mod pictures;
 mod pipeline_cache;
@@ -78,6 +79,7 @@ fn usage_errors_are_two() {
         &["--focal", "700"],
         &["--calib", "c", "--focal", "700", "--baseline", "0.1"],
         &["--preset", "best"],
+        &["--side-by-side", "left-right"],
         &["--filled", "--min-confidence", "99"],
         &["--min-confidence", "256"],
     ] {

@@ -1,0 +1,58 @@
+//! The files of a pair: one per view, or one with both.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use hsad::{
+    Result,
+    io::load::{Halves, LoadedPair, Unseen, load_both, load_pair},
+};
+
+/// The files of a pair.
+#[derive(Args)]
+pub struct ViewOptions {
+    /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats; or, without RIGHT, a file with both
+    /// views: MPO of 3D cameras, or any picture with --side-by-side or --top-bottom
+    left: PathBuf,
+    /// Right view
+    right: Option<PathBuf>,
+    /// LEFT has both views beside each other, in this order: left-right for parallel viewing, right-left for crossed eyes, as in
+    /// most JPS files
+    #[arg(long, value_enum, value_name = "ORDER", conflicts_with_all = ["right", "top_bottom"])]
+    side_by_side: Option<Order>,
+    /// LEFT has both views above each other, the first of the order on top
+    #[arg(long, value_enum, value_name = "ORDER", conflicts_with = "right")]
+    top_bottom: Option<Order>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Order {
+    LeftRight,
+    RightLeft,
+}
+
+impl ViewOptions {
+    /// The files of the left and of the right view, which may be one.
+    pub fn paths(&self) -> [&Path; 2] {
+        [&self.left, self.right.as_ref().unwrap_or(&self.left)]
+    }
+
+    /// Loads both views.
+    ///
+    /// # Errors
+    /// As [`load_pair`] and [`load_both`].
+    pub fn load(&self, unseen: &Unseen) -> Result<LoadedPair> {
+        if let Some(right) = &self.right {
+            return load_pair(&self.left, right, unseen);
+        }
+        let beside = self.side_by_side.map(|order| match order {
+            Order::LeftRight => Halves::LeftRight,
+            Order::RightLeft => Halves::RightLeft,
+        });
+        let above = self.top_bottom.map(|order| match order {
+            Order::LeftRight => Halves::LeftOnTop,
+            Order::RightLeft => Halves::RightOnTop,
+        });
+        load_both(&self.left, beside.or(above), unseen)
+    }
+}
