@@ -15,7 +15,7 @@ const DEPTH_ERROR: f64 = 0.1;
 /// Which pixels of a map become points of a cloud: those that are near enough for their depth to be known, and sure enough.
 ///
 /// A disparity that is off by `e` pixels puts a point at depth `Z` off by `Z^2 e / (f B)`, for a focal length of `f` pixels and a
-/// baseline of `B` metres (Gallup, Frahm, Mordohai and Pollefeys, 'Variable Baseline/Resolution Stereo', CVPR 2008, equation 1):
+/// baseline of `B` metres (Gallup, Frahm, Mordohai and Pollefeys, 'Variable Baseline/Resolution Stereo', CVPR 2008):
 /// a disparity near 0 puts it kilometres away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointFilter {
