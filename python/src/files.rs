@@ -7,7 +7,8 @@ use hsad::{
     image::Plane,
     io::{
         atomic::write_whole,
-        disparities as disparity_files, disparity_png,
+        disparities as disparity_files,
+        disparity_png::{self, Encoding},
         load::{self, LoadedPair, Unseen},
         pfm,
         ply::{self, Point},
@@ -184,26 +185,31 @@ pub fn read_kitti<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Array2<'py, f
 ///
 /// Returns
 /// -------
-/// int
-///     Number of disparities that the format cannot hold, below 0 or from 256 px on: they become 'none', with a warning. A PFM holds
-///     all. A disparity of exactly 0 becomes 1/256 px.
+/// bool
+///     Whether any reader of KITTI's files reads it. Disparities below 0 or from 256 px on are held by an offset, and in larger
+///     steps where they span more than 254 px, which the file says in a text that :func:`read_kitti` follows; a warning tells.
+///     In KITTI's own encoding a disparity of exactly 0 becomes 1/256 px.
 ///
 /// Raises
 /// ------
 /// OSError
 ///     The file cannot be written.
 #[pyfunction]
-pub fn write_kitti(py: Python<'_>, path: PathBuf, disparity: &Bound<'_, PyAny>) -> PyResult<usize> {
+pub fn write_kitti(py: Python<'_>, path: PathBuf, disparity: &Bound<'_, PyAny>) -> PyResult<bool> {
     let map = disparities(disparity, "disparity")?;
-    let lost = write_whole(&path, |out| disparity_png::write(out, &map)).raise()?.total();
-    if lost > 0 {
+    write_whole(&path, |out| disparity_png::write(out, &map)).raise()?;
+    let encoding = Encoding::of(&map);
+    let is_kittis = encoding == Encoding::KITTI;
+    if !is_kittis {
         let warning = format!(
-            "{lost} disparities lie outside the 0 to 255.996 px of a 16-bit PNG and are 0 (none) in {}; a PFM has them all",
-            path.display()
+            "disparities lie outside the 0 to 255.996 px of a 16-bit PNG: in {} a disparity is its value times {} px, plus {} px",
+            path.display(),
+            encoding.px_per_value(),
+            encoding.offset
         );
         py.import("warnings")?.call_method1("warn", (warning,))?;
     }
-    Ok(lost)
+    Ok(is_kittis)
 }
 
 /// Reads the points of a PLY file.

@@ -86,7 +86,7 @@ pub fn points<'py>(
 ) -> PyResult<(Array2<'py, f32>, Array2<'py, u8>)> {
     let depth = plane(depth, "depth")?;
     let picture = picture_of(Frame::new(picture, "the picture")?.raw()?).raise()?;
-    cloud(py, &ply::points(&depth, &picture, calibration.rectified()?).raise()?)
+    cloud(py, &ply::of_depth(&depth, &picture, calibration.rectified()?).raise()?)
 }
 
 /// Points and colours as arrays of shape (n, 3).

@@ -38,7 +38,15 @@ pub fn points(
     check_size("the map", dense.disparity.size(), picture)?;
     filter.validate()?;
     let (kept, left_out) = filter.apply(dense, calibration);
-    let depth = depth_map(&kept, calibration);
+    Ok((of_depth(&depth_map(&kept, calibration), picture, calibration)?, left_out))
+}
+
+/// The points of a depth map in metres, coloured by its picture, in raster order. Pixels without a finite depth have no point.
+///
+/// # Errors
+/// [`crate::Error::Parameter`] if depth map and picture differ in size.
+pub fn of_depth(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
+    check_size("the depth map", depth.size(), picture)?;
     let Calibration { focal, cx, cy, .. } = *calibration;
     let mut points = Vec::new();
     for y in 0..depth.height() {
@@ -50,7 +58,7 @@ pub fn points(
             }
         }
     }
-    Ok((points, left_out))
+    Ok(points)
 }
 
 /// The points of a picture's pixels, in metres, in raster order. Points that are not finite are left out.
