@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::{
     Args,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -20,6 +20,7 @@ use hsad::{
     image::Luma,
     io::atomic,
     luma::pack,
+    verify::MAX_SIDE,
 };
 use serde_json::{Value, json};
 
@@ -120,12 +121,20 @@ impl Bench {
         Ok(())
     }
 
-    fn cases(&self) -> hsad::Result<Vec<Case>> {
+    fn cases(&self) -> anyhow::Result<Vec<Case>> {
         fn or<T: Copy>(given: &[T], default: &[T]) -> Vec<T> {
             if given.is_empty() { default } else { given }.to_vec()
         }
         let mut cases = Vec::new();
         for &size in &or(&self.size, &[Size::new(640, 480)]) {
+            if !(1..=MAX_SIDE).contains(&size.width) || !(1..=MAX_SIDE).contains(&size.height) {
+                return Err(hsad::Error::Parameter {
+                    name: "--size",
+                    value: size.to_string(),
+                    expected: format!("each side must be 1 to {MAX_SIDE} px"),
+                }
+                .into());
+            }
             for &disparities in &or(&self.disparities, &[64]) {
                 let range = DisparityRange::new(0, disparities)?;
                 for &preset in &or(&self.preset, &[Preset::Fast, Preset::Balanced, Preset::Quality]) {
@@ -281,7 +290,7 @@ struct Earlier(BTreeMap<String, f64>);
 
 impl Earlier {
     fn read(file: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+        let text = fs::read_to_string(file).map_err(|error| anyhow!("{}: {error}", file.display()))?;
         let unknown = || anyhow!("{}: no figures of hsad bench --json", file.display());
         let report: Value = serde_json::from_str(&text).map_err(|_| unknown())?;
         let case = |case: &Value| {

@@ -35,6 +35,13 @@ fn what_cannot_be_measured_is_told() {
     let file = temporary.path().join("text.json");
     fs::write(&file, "{}").unwrap();
     hsad().args(SMALL).arg("--compare").arg(&file).assert().code(1).stderr(contains("no figures of hsad bench --json"));
+    hsad()
+        .args(SMALL)
+        .args(["--compare", "absent.json"])
+        .assert()
+        .code(1)
+        .stderr(contains("absent.json: No such file"));
+    hsad().args(["bench", "--size", "99999x1"]).assert().code(2).stdout("").stderr(contains("1 to 4096 px"));
     hsad().args(["bench", "--runs", "0"]).assert().code(2).stderr(contains("1..=10000"));
     hsad().args(["bench", "--disparities", "0"]).assert().code(2);
     hsad().args(["bench", "--device", "cpu"]).assert().code(1).stderr(contains("the CPU twins are no GPU"));
