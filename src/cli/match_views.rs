@@ -96,8 +96,9 @@ impl Match {
     /// Matches the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
-        let mut output = Output::open(&self.output)?;
-        let LoadedPair { left, right, stretch, mut warnings } = self.views.load(&self.unseen.unseen())?;
+        let unseen = self.unseen.unseen();
+        let mut output = Output::open(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        let LoadedPair { left, right, stretch, mut warnings } = self.views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
         let cameras = self.depth.cameras(self.views.paths(), sizes)?;
         self.cloud.check(!matches!(cameras, Cameras::Unknown))?;

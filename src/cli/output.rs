@@ -137,6 +137,8 @@ pub struct Output {
     created: Vec<PathBuf>,
     staged: Vec<Staged>,
     names: Vec<&'static str>,
+    /// Files that no output may replace, without links.
+    spared: Vec<PathBuf>,
 }
 
 impl Output {
@@ -156,22 +158,35 @@ impl Output {
         let created: Vec<_> = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         self::created().extend(created.iter().cloned());
         // From here on a failure removes the created folders: `output` is dropped.
-        let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new() };
+        let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new(), spared: Vec::new() };
         fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
         temporary_in(folder).map_err(|error| failed("no file can be written in this folder", error))?;
         Ok(output)
     }
 
+    /// Spares the files that are read: no output replaces them.
+    #[must_use]
+    pub fn sparing<'p>(mut self, inputs: impl IntoIterator<Item = &'p Path>) -> Self {
+        // What does not exist is told when it is read.
+        self.spared.extend(inputs.into_iter().filter_map(|input| input.canonicalize().ok()));
+        self
+    }
+
     /// Writes a file that appears only with [`Self::finish`].
     ///
     /// # Errors
-    /// [`Error::Io`] with its path.
+    /// [`Error::Io`] with its path; also if it would replace a file that is spared.
     pub fn add<T>(
         &mut self,
         name: &'static str,
         write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>,
     ) -> Result<T> {
-        let (staged, written) = Staged::write(&self.folder.join(name), write)?;
+        let path = self.folder.join(name);
+        if path.canonicalize().is_ok_and(|path| self.spared.contains(&path)) {
+            let reason = "a result of this name would replace a file that was read: name another folder (-o)";
+            return Err(Error::Io { path, source: io::Error::new(io::ErrorKind::AlreadyExists, reason) });
+        }
+        let (staged, written) = Staged::write(&path, write)?;
         self.staged.push(staged);
         self.names.push(name);
         Ok(written)

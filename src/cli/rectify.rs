@@ -66,8 +66,9 @@ pub struct Rectify {
 impl Rectify {
     /// Rectifies the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
-        let mut output = Output::open(&self.output)?;
-        let LoadedPair { left, right, mut warnings, .. } = self.views.load(&self.unseen.unseen())?;
+        let unseen = self.unseen.unseen();
+        let mut output = Output::open(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        let LoadedPair { left, right, mut warnings, .. } = self.views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
         let file = self.calibration.read(self.views.paths(), sizes)?;
         if let Some(file) = &file {

@@ -17,6 +17,11 @@ pub struct Unseen {
 }
 
 impl Unseen {
+    /// The files of the masks.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.masks.iter().filter_map(Option::as_deref)
+    }
+
     /// Makes pixels of a view, the one in `path`, unseen.
     ///
     /// # Errors

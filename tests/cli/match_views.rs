@@ -373,6 +373,25 @@ fn pictures_without_depth_give_results_without_measured_disparities() {
     }
 }
 
+/// A photograph is not replaced by a result of its name, nor a mask, through a link either.
+#[test]
+fn what_was_read_is_not_replaced() {
+    let folder = folder();
+    let names = ["left.png", "right.png", "confidence.png"];
+    let files = names.map(|name| folder.path().join(name));
+    for (file, source) in files.iter().zip(["left.png", "right.png", "left.png"]) {
+        fs::copy(scene("planes", source), file).unwrap();
+    }
+    let before = files.each_ref().map(|file| fs::read(file).unwrap());
+    let told = || contains("would replace a file that was read: name another folder (-o)");
+    let out = folder.path().join(".");
+    match_on_cpu(&files[2], &files[1], &out).assert().code(1).stderr(told());
+    match_on_cpu(&files[0], &files[1], &out).arg("--mask").arg(&files[2]).assert().code(1).stderr(told());
+    hsad().arg("rectify").args(&files[..2]).arg("-o").arg(&out).assert().code(1).stderr(told());
+    assert_eq!(files.each_ref().map(|file| fs::read(file).unwrap()), before);
+    assert_eq!(crate::common::names(folder.path()), ["confidence.png", "left.png", "right.png"]);
+}
+
 #[test]
 fn the_same_picture_twice_has_no_depth() {
     let (temporary, [left, _]) = (folder(), views("planes"));
