@@ -54,11 +54,10 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
     }
     add("", kernels::SoftRank::stage(kernels::ROWS_HARDWARE));
     add("", kernels::Agreement::stage(kernels::AgreementTile::HARDWARE));
-    // The stages without a shape of their own for software drivers.
+    // All other stages have one shape. Those of these names are above in the shape of GPUs, or are for CPUs alone.
     let shaped = [
         "agreement",
         "block_match",
-        "box_mean",
         "census",
         "cell_cost",
         "cell_path",
