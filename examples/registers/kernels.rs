@@ -3,6 +3,7 @@
 use hsad::{
     config::Preset,
     dense::{Aggregation, DenseParameters, SemiGlobal, View},
+    gpu::{Exchange, Windows},
     internals::{self, Stage, dense as kernels},
 };
 
@@ -29,10 +30,12 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
             uniqueness: parameters.uniqueness,
         };
         let paths = paths.directions().len() as u32;
-        add(variant, kernels::Census::stage(costs.cost.weak_spread, kernels::Windows::Tiles));
+        add(variant, kernels::Census::stage(costs.cost.weak_spread, Windows::Tiles));
         add(variant, kernels::LaneCost::stage(&costs.cost, View::Left));
-        add(variant, kernels::LanePath::stage(&penalties));
-        add(variant, kernels::LaneSelect::stage(selection(paths)));
+        for exchange in Exchange::ALL {
+            add(&format!("{variant} {exchange}"), kernels::LanePath::stage(&penalties, 64, exchange));
+        }
+        add(variant, kernels::LaneSelect::stage(selection(paths), 64));
         add(variant, kernels::CellCost::stage(&costs.cost, View::Left, kernels::PIXELS_HARDWARE));
         add(variant, kernels::CellPath::stage(&penalties));
         add(variant, kernels::CellSelect::stage(selection(paths)));
@@ -84,7 +87,7 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
 
 fn add_refinement(add: &mut impl FnMut(&str, Stage), variant: &str, parameters: &DenseParameters) {
     let Some(refinement) = &parameters.refinement else { return };
-    let windows = kernels::Windows::Tiles;
+    let windows = Windows::Tiles;
     add(variant, kernels::Support::stage(refinement.support, refinement.majority, windows));
     for median in refinement.before().chain(refinement.after()) {
         add(&format!("{median:?}"), kernels::WeightedMedian::stage(median, windows));

@@ -1,14 +1,18 @@
 // Semi-global matching, several paths at once, for devices with many threads: the path costs along all lines of several
 // directions. See shared/line.wgsl for the path costs; the result is the same.
 //
-// Consecutive threads, `lanes` of them, share a line and hold the path costs of the last pixel, 16 disparities each. What
-// a pixel needs of its neighbouring disparities, and the least path cost, go through workgroup memory, which two
-// consecutive pixels use in turn, so that a pixel has one barrier.
+// Consecutive threads, `lanes` of them, share a line and hold the path costs of the last pixel, 16 disparities each. They
+// exchange what a pixel needs of its neighbouring disparities, and the least path cost: see shared/exchange_memory.wgsl and
+// shared/exchange_subgroups.wgsl, one of which the module imports.
+//
+// A line is a chain of pixels, each of which needs the one before; only its matching costs and lumas are known beforehand.
+// They are loaded AHEAD pixels early, so that the chain does not wait for memory.
 
 #import path_step
 
 // Constants:
 //   WORKGROUP   threads per workgroup
+//   AHEAD       pixels of a line that are loaded early, an even number
 
 struct Params {
     width: u32,
@@ -37,15 +41,6 @@ struct Params {
 // Volumes of path costs, packed as the matching costs, one after the other.
 @group(0) @binding(3) var<storage, read_write> paths: array<vec4<u32>>;
 
-// Path costs of a thread's first and last disparity, and its least path cost.
-struct Shared {
-    first: u32,
-    last: u32,
-    least: u32,
-}
-
-var<workgroup> exchanged: array<Shared, 2 * WORKGROUP>;
-
 // Path costs of 16 disparities.
 alias Costs = array<vec4<u32>, 4>;
 
@@ -54,8 +49,44 @@ fn least_of(path: Costs) -> u32 {
     return min(min(least.x, least.y), min(least.z, least.w));
 }
 
+// A pixel of a line.
+struct Place {
+    x: i32,
+    y: i32,
+    // Whether a line starts at the pixel: all path costs before the first pixel are 0.
+    starts: bool,
+}
+
+// The pixel after `place`. A diagonal line that leaves the picture at one side starts anew at the other side.
+fn next_place(place: Place, dx: i32, dy: i32) -> Place {
+    let x = place.x + dx;
+    let starts = dx != 0 && dy != 0 && (x < 0 || x >= i32(params.width));
+    return Place(x - select(0, dx * i32(params.width), starts), place.y + dy, starts);
+}
+
+// What is known of a pixel beforehand.
+struct Loaded {
+    // Index of the thread's vector in a volume.
+    index: u32,
+    luma: u32,
+    // The thread's matching costs, packed.
+    costs: vec4<u32>,
+    starts: bool,
+}
+
+// Loads a pixel; behind the end of a line, any pixel.
+fn loaded(place: Place, lane: u32) -> Loaded {
+    let x = clamp(place.x, 0, i32(params.width) - 1);
+    let y = clamp(place.y, 0, i32(params.rows) - 1);
+    let pixel = u32(y) * params.width + u32(x);
+    let index = pixel * params.quads + min(lane, params.quads - 1u);
+    let luma = reference[params.first_row * params.width + pixel].x & 255u;
+    return Loaded(index, luma, costs[index], place.starts);
+}
+
 @compute @workgroup_size(WORKGROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+fn main(@builtin(workgroup_id) group: vec3<u32>, builtins: Builtins) {
+    let thread = index_of(builtins);
     let path_number = group.y;
     let dx = i32((params.steps_x >> (2u * path_number)) & 3u) - 1;
     let dy = i32((params.steps_y >> (2u * path_number)) & 3u) - 1;
@@ -65,28 +96,25 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let length = select(params.rows, params.width, along_rows);
 
     let lane = thread % params.lanes;
-    let first_thread = thread - lane;
     let line = group.x * (WORKGROUP / params.lanes) + thread / params.lanes;
-    // Threads without a line or without disparities go along, since all meet at barriers.
-    let is_busy = line < lines && lane < params.quads;
+    let has_disparities = lane < params.quads;
+    // Threads without a line or without disparities go along, since all meet when they exchange.
+    let is_busy = line < lines && has_disparities;
 
-    var x = i32(min(line, lines - 1u));
-    var y = select(0, i32(params.rows) - 1, dy < 0);
+    var place = Place(i32(min(line, lines - 1u)), select(0, i32(params.rows) - 1, dy < 0), true);
     if along_rows {
-        y = x;
-        x = select(0, i32(params.width) - 1, dx < 0);
+        place = Place(select(0, i32(params.width) - 1, dx < 0), place.x, true);
     }
 
-    // The last pixel: its path costs, luma and least path cost. At the start of a line all are 0.
+    // The last pixel: its path costs and luma. At the start of a line all path costs are 0.
     var last: Costs;
     for (var t = 0; t < 4; t++) { // unroll
         last[t] = vec4<u32>(UNREACHABLE);
     }
     var last_luma = 0u;
-    var starts = true;
-    let came_from = x - dx;
+    let came_from = place.x - dx;
     if ((params.goes_on >> path_number) & 1u) != 0u && !along_rows && came_from >= 0 && came_from < i32(params.width) {
-        let pixel = (y - dy) * i32(params.width) + came_from;
+        let pixel = (place.y - dy) * i32(params.width) + came_from;
         last_luma = reference[u32(i32(params.first_row * params.width) + pixel)].x & 255u;
         if is_busy {
             let packed = paths[u32(i32(volume) + pixel * i32(params.quads)) + lane];
@@ -94,45 +122,39 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                 last[t] = unpack(packed[t]);
             }
         }
-        starts = false;
+        place.starts = false;
     }
-    exchanged[thread] = Shared(last[0].x, last[3].w, least_of(last));
-    workgroupBarrier();
 
-    for (var i = 0u; i < length; i++) {
-        // Threads at the ends of a line read any neighbour.
-        let read = (i & 1u) * WORKGROUP;
-        var before = exchanged[read + max(thread, 1u) - 1u].last;
-        var after = exchanged[read + min(thread + 1u, WORKGROUP - 1u)].first;
-        before = select(before, UNREACHABLE, lane == 0u);
-        after = select(after, UNREACHABLE, lane + 1u >= params.quads);
-        var least = exchanged[read + first_thread].least;
-        for (var k = 1u; k < params.quads; k++) {
-            least = min(least, exchanged[read + first_thread + k].least);
+    var next_pixels: array<Loaded, AHEAD>;
+    for (var k = 0; k < AHEAD; k++) { // unroll
+        next_pixels[k] = loaded(place, lane);
+        place = next_place(place, dx, dy);
+    }
+    for (var i = 0u; i < length; i += u32(AHEAD)) {
+        for (var k = 0; k < AHEAD; k++) { // unroll
+            if i + u32(k) < length {
+                let pixel = next_pixels[k];
+                next_pixels[k] = loaded(place, lane);
+                place = next_place(place, dx, dy);
+                let own = Edges(last[0].x, last[3].w, select(UNREACHABLE, least_of(last), has_disparities));
+                let others = exchanged_with(own, thread, lane, u32(k));
+                // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
+                let minimum = select(others.least, 0u, pixel.starts);
+                let jump = select(others.least + penalty(pixel.luma, last_luma), 0u, pixel.starts);
+                let before = vec4<u32>(select(others.before, UNREACHABLE, lane == 0u));
+                let after = vec4<u32>(select(others.after, UNREACHABLE, lane + 1u >= params.quads));
+                var next: Costs;
+                next[0] = advance(before, last[0], last[1], jump, unpack(pixel.costs.x)) - minimum;
+                next[1] = advance(last[0], last[1], last[2], jump, unpack(pixel.costs.y)) - minimum;
+                next[2] = advance(last[1], last[2], last[3], jump, unpack(pixel.costs.z)) - minimum;
+                next[3] = advance(last[2], last[3], after, jump, unpack(pixel.costs.w)) - minimum;
+                if is_busy {
+                    let packed = vec4<u32>(pack(next[0]), pack(next[1]), pack(next[2]), pack(next[3]));
+                    paths[volume + pixel.index] = packed;
+                }
+                last = next;
+                last_luma = pixel.luma;
+            }
         }
-
-        let pixel = u32(y) * params.width + u32(x);
-        let luma = reference[params.first_row * params.width + pixel].x & 255u;
-        // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
-        let minimum = select(least, 0u, starts);
-        let jump = select(least + penalty(luma, last_luma), 0u, starts);
-        let place = pixel * params.quads + min(lane, params.quads - 1u);
-        let packed = costs[place];
-        var next: Costs;
-        next[0] = advance(vec4<u32>(before), last[0], last[1], jump, unpack(packed.x)) - minimum;
-        next[1] = advance(last[0], last[1], last[2], jump, unpack(packed.y)) - minimum;
-        next[2] = advance(last[1], last[2], last[3], jump, unpack(packed.z)) - minimum;
-        next[3] = advance(last[2], last[3], vec4<u32>(after), jump, unpack(packed.w)) - minimum;
-        if is_busy {
-            paths[volume + place] = vec4<u32>(pack(next[0]), pack(next[1]), pack(next[2]), pack(next[3]));
-        }
-        last = next;
-        last_luma = luma;
-        x += dx;
-        y += dy;
-        starts = dx != 0 && dy != 0 && (x < 0 || x >= i32(params.width));
-        x -= select(0, dx * i32(params.width), starts);
-        exchanged[WORKGROUP - read + thread] = Shared(next[0].x, next[3].w, least_of(next));
-        workgroupBarrier();
     }
 }

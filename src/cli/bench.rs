@@ -88,7 +88,7 @@ impl Bench {
         }
         let table = !self.quiet && (self.json.is_none() || file.is_some());
         let print = |text: &str| if table { terminal::print(text) } else { Ok(()) };
-        print(&format!("{}semi-global matching by {}\n", described(&gpu), gpu.sgm_plan()))?;
+        print(&format!("{}semi-global matching by {}\n", described(&gpu), gpu.shapes().sgm))?;
 
         let scene = demo::views()?;
         let progress = Progress::new(self.quiet);
@@ -109,7 +109,7 @@ impl Bench {
                     "backend": info.backend.to_string(),
                     "driver": format!("{} {}", info.driver, info.driver_info),
                 },
-                "plan": gpu.sgm_plan().name(),
+                "plan": gpu.shapes().sgm.name(),
                 "runs": self.runs,
                 "cases": reports,
             });

@@ -5,9 +5,12 @@ use std::sync::Arc;
 use super::{
     device::{DeviceChoice, adapters, find},
     pipelines::Pipelines,
-    sgm_plan::SgmPlan,
+    shapes::{SgmPlan, Shapes},
 };
 use crate::error::{Error, Result};
+
+/// The name of lavapipe's driver.
+pub(super) const LAVAPIPE: &str = "llvmpipe";
 
 /// A device, its queue, and optionally the application's pipeline cache. Everything that computes on a device is
 /// created with a `Gpu`.
@@ -32,8 +35,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The pipeline cache for kernels, of the same device.
     pub cache: Option<wgpu::PipelineCache>,
-    /// How semi-global matching is shared out, if that is chosen.
-    sgm_plan: Option<SgmPlan>,
+    /// The kernels of the stages that have two.
+    shapes: Shapes,
     /// Compiled kernels, shared by clones.
     pub(super) pipelines: Arc<Pipelines>,
 }
@@ -42,13 +45,14 @@ impl Gpu {
     /// Wraps a device and its own queue. With the queue of another device nothing works, and wgpu reports that only to
     /// the device's handler of uncaptured errors.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        Self { device, queue, cache: None, sgm_plan: None, pipelines: Arc::default() }
+        let shapes = Shapes::of(&device.adapter_info());
+        Self { device, queue, cache: None, shapes, pipelines: Arc::default() }
     }
 
     /// Adds the application's pipeline cache. The kernels compiled so far are left to the clones without this cache.
     #[must_use]
     pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
-        Self { cache: Some(cache), sgm_plan: self.sgm_plan, ..Self::new(self.device, self.queue) }
+        Self { cache: Some(cache), shapes: self.shapes, ..Self::new(self.device, self.queue) }
     }
 
     /// Opens the chosen adapter, with its own limits for buffer sizes and the downlevel defaults for all others.
@@ -93,8 +97,10 @@ impl Gpu {
             max_texture_dimension_2d: limits.max_texture_dimension_2d,
             ..wgpu::Limits::downlevel_defaults()
         };
-        // Timestamps only measure kernels, and a pipeline cache only shortens their compilation; no kernel needs them.
-        let required_features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE);
+        // Timestamps only measure kernels, a pipeline cache only shortens their compilation, and what subgroups exchange goes
+        // through workgroup memory without them: no kernel needs these features.
+        let useful = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE | wgpu::Features::SUBGROUP;
+        let required_features = adapter.features() & useful;
         let descriptor =
             wgpu::DeviceDescriptor { label: Some("hsad"), required_features, required_limits, ..Default::default() };
         let (device, queue) = adapter
@@ -104,15 +110,22 @@ impl Gpu {
         Ok(Self::new(device, queue))
     }
 
-    /// Chooses how semi-global matching is shared out; else the class of the adapter decides.
+    /// Chooses the kernels of the stages that have two, for what is built with the result; else the class of the adapter decides.
     #[must_use]
-    pub fn with_sgm_plan(self, plan: SgmPlan) -> Self {
-        Self { sgm_plan: Some(plan), ..self }
+    pub fn with_shapes(self, shapes: Shapes) -> Self {
+        Self { shapes, ..self }
     }
 
-    /// How semi-global matching is shared out.
-    pub fn sgm_plan(&self) -> SgmPlan {
-        self.sgm_plan.unwrap_or_else(|| SgmPlan::of(&self.info()))
+    /// [`Self::with_shapes`] of semi-global matching alone.
+    #[must_use]
+    pub fn with_sgm_plan(self, sgm: SgmPlan) -> Self {
+        let shapes = Shapes { sgm, ..self.shapes };
+        self.with_shapes(shapes)
+    }
+
+    /// The kernels of the stages that have two.
+    pub fn shapes(&self) -> Shapes {
+        self.shapes
     }
 
     /// Describes the adapter of the device.
@@ -123,7 +136,7 @@ impl Gpu {
     /// Whether the driver is lavapipe, where loads are the bottleneck, registers spill into the L1 cache, and few
     /// threads with much state are faster than many. Other CPU drivers take minutes to compile such kernels.
     pub(crate) fn is_lavapipe(&self) -> bool {
-        self.info().driver == "llvmpipe"
+        self.info().driver == LAVAPIPE
     }
 
     /// Creates an encoder for the library's own submissions.

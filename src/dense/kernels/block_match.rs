@@ -11,7 +11,7 @@ use crate::{
     dense::config::{DenseConfig, DenseParameters, View},
     disparity::{DisparityRange, SCALE},
     error::Result,
-    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, WordTexture, shader_struct},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, Windows, WordTexture, shader_struct},
     image::Size,
 };
 
@@ -48,12 +48,12 @@ impl Tile {
     /// thread has a column of pixels. See `shaders/dense/tile_block_match.wgsl`.
     pub const HARDWARE: Self = Self { quads: 16, height: 4, across: 1, down: 1 };
 
-    /// The fastest tile on the device of `gpu` for windows of `side` pixels.
+    /// The tile of the shape chosen for `gpu`, for windows of `side` pixels.
     pub fn of(gpu: &Gpu, side: u32) -> Self {
-        match gpu.is_lavapipe() {
-            true if side <= LARGEST_HELD => Self::SMALL,
-            true => Self::LARGE,
-            false => Self::HARDWARE,
+        match gpu.shapes().block_match {
+            Windows::Rows if side <= LARGEST_HELD => Self::SMALL,
+            Windows::Rows => Self::LARGE,
+            Windows::Tiles => Self::HARDWARE,
         }
     }
 

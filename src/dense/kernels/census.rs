@@ -1,12 +1,9 @@
 //! The census transform, with the luma beside it, and the wide census transform. `shaders/dense/census.wgsl`
 //! and `tile_census.wgsl`.
 
-use super::{
-    pad::PadParams,
-    windows::{Text, Windows},
-};
+use super::{pad::PadParams, windows::Text};
 use crate::{
-    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, Windows, shader_struct},
     image::Size,
 };
 

@@ -8,8 +8,11 @@ use super::{
 };
 use crate::{
     dense::config::{Direction, Penalties},
-    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    gpu::{Binding, Dispatch, Exchange, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
+
+/// Pixels of a line that are loaded early.
+const AHEAD: i64 = 4;
 
 shader_struct! {
     struct Params {
@@ -37,13 +40,21 @@ pub struct LanePath {
 }
 
 impl LanePath {
-    /// Source, bindings and constants of the kernel.
-    pub fn stage(penalties: &Penalties) -> Stage {
-        let mut constants = vec![("WORKGROUP", Lanes::WORKGROUP.into())];
+    /// Source, bindings and constants of the kernel, with so many threads per workgroup.
+    pub fn stage(penalties: &Penalties, threads: u32, exchange: Exchange) -> Stage {
+        let mut constants = vec![("WORKGROUP", threads.into()), ("AHEAD", AHEAD)];
         constants.extend(penalty_constants(penalties));
+        let source = match exchange {
+            Exchange::Memory => {
+                concat!("#import exchange_memory\n", include_str!("../../../shaders/dense/lane_path.wgsl"))
+            }
+            Exchange::Subgroups => {
+                concat!("#import exchange_subgroups\n", include_str!("../../../shaders/dense/lane_path.wgsl"))
+            }
+        };
         Stage {
             name: "lane_path",
-            source: include_str!("../../../shaders/dense/lane_path.wgsl"),
+            source,
             bindings: &[Binding::Uniform(Params::SHAPE), Binding::Read, Binding::Read, Binding::Write],
             constants,
         }
@@ -51,7 +62,7 @@ impl LanePath {
 
     /// Compiles the kernel.
     pub fn new(gpu: &Gpu, penalties: &Penalties, lanes: Lanes) -> Self {
-        Self { kernel: Kernel::new(gpu, &Self::stage(penalties)), lanes }
+        Self { kernel: Kernel::new(gpu, &Self::stage(penalties, lanes.threads, lanes.exchange)), lanes }
     }
 
     /// Follows all lines of `paths` through `band`, one volume per path. Lines that continue find the path costs of the

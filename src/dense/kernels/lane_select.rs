@@ -34,13 +34,10 @@ pub struct LaneSelect {
 }
 
 impl LaneSelect {
-    /// Source, bindings and constants of the kernel; all paths of `selection` are stored.
-    pub fn stage(selection: Selection) -> Stage {
-        let mut constants = vec![
-            ("WORKGROUP", Lanes::WORKGROUP.into()),
-            ("PATHS", selection.stored.into()),
-            ("KEYS", selection.keys.into()),
-        ];
+    /// Source, bindings and constants of the kernel, with so many threads per workgroup; all paths of `selection` are stored.
+    pub fn stage(selection: Selection, threads: u32) -> Stage {
+        let mut constants =
+            vec![("WORKGROUP", threads.into()), ("PATHS", selection.stored.into()), ("KEYS", selection.keys.into())];
         constants.extend(selection_constants(selection.interpolation, selection.kind, SUM_INDEX_BITS));
         Stage {
             name: "lane_select",
@@ -52,7 +49,7 @@ impl LaneSelect {
 
     /// Compiles the kernel.
     pub fn new(gpu: &Gpu, lanes: Lanes, selection: Selection) -> Self {
-        let kernel = Kernel::new(gpu, &Self::stage(selection));
+        let kernel = Kernel::new(gpu, &Self::stage(selection, lanes.threads));
         Self { kernel, lanes, uniqueness: selection.uniqueness }
     }
 

@@ -81,12 +81,11 @@ pub use tangent::{Tangents, fit};
 pub use unseen::{Loss, Unseen};
 pub use volume_band::VolumeBand;
 pub use weighted_median::WeightedMedian;
-pub use windows::Windows;
 
 use super::config::{
     Aggregation, Compared, Cost, DenseParameters, Difference, Interpolation, Penalties, Refinement, Search, View,
 };
-use crate::gpu::Stage;
+use crate::gpu::{Exchange, Stage, Windows};
 
 /// Every stage of dense matching with each set of constants that changes its code, for checks that need no GPU: block
 /// matching for every window, both views and both results, and stages with tiles, rows per thread or windows of their own both
@@ -126,13 +125,11 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.extend([Path::stage(&penalties, 4), CellPath::stage(&penalties)]);
-    stages.push(LanePath::stage(&penalties));
+    stages.extend(Exchange::ALL.map(|exchange| LanePath::stage(&penalties, 64, exchange)));
     for interpolation in Interpolation::ALL {
-        stages.extend(
-            [(ResultKind::Matches, true), (ResultKind::Winners, false)].map(|(kind, keys)| {
-                LaneSelect::stage(Selection { stored: 4, interpolation, kind, keys, uniqueness: 0 })
-            }),
-        );
+        stages.extend([(ResultKind::Matches, true), (ResultKind::Winners, false)].map(|(kind, keys)| {
+            LaneSelect::stage(Selection { stored: 4, interpolation, kind, keys, uniqueness: 0 }, 64)
+        }));
     }
     stages.extend([true, false].map(|keys| {
         let interpolation = Interpolation::Equiangular;

@@ -3,12 +3,12 @@
 
 use super::{
     map_buffer::{MapBuffer, MapLayout},
-    windows::{Text, Windows},
+    windows::Text,
 };
 use crate::{
     dense::config::FILLED,
     disparity::{NONE, SCALE},
-    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, Windows, shader_struct},
 };
 
 /// Radius of the window, (side - 1) / 2, in pixels.

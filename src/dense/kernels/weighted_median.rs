@@ -1,10 +1,10 @@
 //! The weighted median of a map. `shaders/dense/weighted_median.wgsl` and `tile_weighted_median.wgsl`.
 
-use super::windows::{Text, Windows};
+use super::windows::Text;
 use crate::{
     dense::config::Median,
     disparity::NONE,
-    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
+    gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, Windows, shader_struct},
     image::Size,
 };
 

@@ -1,27 +1,7 @@
-//! Where the threads of a kernel keep the windows of their pixels.
+//! The texts of a kernel, one per place where threads keep the windows of their pixels: see [`crate::gpu::Windows`].
 
 use super::rows_per_thread::ROWS_SOFTWARE;
-use crate::gpu::{Binding, Gpu, Stage};
-
-/// Where the threads of a kernel keep the windows of their pixels. The result is the same, bit for bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Windows {
-    /// In registers: a thread walks down the rows of four columns. For lavapipe, which loads for one thread after the other,
-    /// from workgroup memory too.
-    Rows,
-    /// In workgroup memory: a workgroup loads a tile and its halo. For all other devices: the registers of GPUs are too few.
-    Tiles,
-}
-
-impl Windows {
-    /// Both ways.
-    pub const ALL: [Self; 2] = [Self::Rows, Self::Tiles];
-
-    /// The way of the device of `gpu`.
-    pub fn of(gpu: &Gpu) -> Self {
-        if gpu.is_lavapipe() { Self::Rows } else { Self::Tiles }
-    }
-}
+use crate::gpu::{Binding, Stage};
 
 /// The text of a kernel for one way to keep windows.
 pub(super) struct Text {
@@ -36,7 +16,7 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// A text for [`Windows::Rows`].
+    /// A text for [`crate::gpu::Windows::Rows`].
     pub(super) fn rows(name: &'static str, source: &'static str, mut constants: Vec<(&'static str, i64)>) -> Self {
         constants.push(("ROWS", ROWS_SOFTWARE.into()));
         Self { name, source, workgroup: [16, 4], pixels: [4, ROWS_SOFTWARE], constants }

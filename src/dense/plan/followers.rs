@@ -26,7 +26,7 @@ impl Following {
     /// For `costs` over `range` on the device of `gpu`, and the directions of the stored paths.
     pub(super) fn new(gpu: &Gpu, costs: &CostAggregation, range: DisparityRange) -> (Self, &'static [Direction]) {
         let band = VolumeBand { width: 1, first_row: 0, rows: 1, range };
-        let lanes = if gpu.sgm_plan() == SgmPlan::Lanes { Lanes::of(&band) } else { None };
+        let lanes = if gpu.shapes().sgm == SgmPlan::Lanes { Lanes::of(gpu, &band) } else { None };
         // Without any path the selection reads the costs.
         match (lanes, costs.directions()) {
             (Some(lanes), directions @ [_, ..]) => (Self::Lanes(lanes), directions),

@@ -11,7 +11,7 @@ use crate::{
         config::{DenseParameters, Filters, Median, View},
         kernels::{
             AGREEMENT_REACH, Agreement, ComparedViews, Loss, MapBuffer, MapLayout, Residual, SUPPORT_RADIUS, Support,
-            Tangents, Unseen, WeightedMedian, Windows,
+            Tangents, Unseen, WeightedMedian,
         },
         uploaded::UploadedPair,
         word_copy::{CopyTarget, WordCopy},
@@ -86,7 +86,7 @@ impl Medians {
         let mut kernels: Vec<(Median, WeightedMedian)> = Vec::new();
         for &median in filters.before.iter().chain(&filters.after) {
             if kernels.iter().all(|(known, _)| *known != median) {
-                kernels.push((median, WeightedMedian::new(gpu, median, Windows::of(gpu))));
+                kernels.push((median, WeightedMedian::new(gpu, median, gpu.shapes().weighted_median)));
             }
         }
         Self(kernels)
@@ -120,7 +120,7 @@ impl<'a> Refining<'a> {
     ) -> Result<Self> {
         Ok(Self {
             residual: Residual::new(gpu),
-            support: Support::new(gpu, filters.support, filters.majority, Windows::of(gpu)),
+            support: Support::new(gpu, filters.support, filters.majority, gpu.shapes().support),
             filling: colours.map(|colours| Filling::new(gpu, plan, colours, largest)).transpose()?,
             medians: Medians::new(gpu, filters),
             residuals: plan.buffer("residuals", u64::from(largest.width.div_ceil(4)) * u64::from(largest.rows))?,

@@ -4,7 +4,7 @@ use super::Plan;
 use crate::{
     dense::{
         config::{Cost, View},
-        kernels::{Census, Pad, Windows},
+        kernels::{Census, Pad},
     },
     error::Result,
     gpu::Gpu,
@@ -38,7 +38,7 @@ impl Transform {
             size,
             pictures: [(left.clone(), plan.brightness(View::Left)), (right.clone(), plan.brightness(View::Right))],
             pad: Pad::new(gpu),
-            transform: Census::new(gpu, cost.weak_spread, Windows::of(gpu)),
+            transform: Census::new(gpu, cost.weak_spread, gpu.shapes().census),
             padded: plan.buffer("padded rows", u64::from(padding.rows) * u64::from(padding.stride))?,
             census: [plan.buffer("census, left", transformed)?, plan.buffer("census, right", transformed)?],
         })

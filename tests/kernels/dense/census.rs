@@ -1,8 +1,8 @@
 //! The census transforms.
 
 use hsad::{
+    gpu::Windows,
     image::{Luma, Size},
-    internals::dense::Windows,
     verify::{Values, trials::CensusTrial},
 };
 

@@ -2,6 +2,7 @@
 
 use hsad::{
     dense::Penalties,
+    gpu::{Exchange, Shapes},
     image::{Plane, Size},
     internals::dense::Direction,
     verify::trials::LanePathTrial,
@@ -11,31 +12,54 @@ use crate::common::*;
 
 const PENALTIES: Penalties = Penalties { p1: 16, p2: 120, least_p2: 24, p2_scale: 8 };
 
-fn trial(width: u32, height: u32, count: u32, band_rows: u32) -> LanePathTrial {
+fn trial(width: u32, height: u32, count: u32, band_rows: u32, exchange: Exchange) -> LanePathTrial {
     let costs = picture((width * count, height), 77).data().iter().map(|&value| value / 2).collect();
     let reference = picture((width, height), 71).map(|&value| u32::from(value) | 0xabcd_ef00);
-    LanePathTrial { reference, costs, directions: Direction::ALL.to_vec(), penalties: PENALTIES, band_rows }
+    let directions = Direction::ALL.to_vec();
+    LanePathTrial { reference, costs, directions, penalties: PENALTIES, band_rows, lane_threads: 64, exchange }
 }
 
 #[test]
 fn the_twin_goes_the_same_way() {
     for Size { width, height } in SIZES {
-        assert_twin(&format!("{width}x{height}"), &trial(width, height, 48, height));
+        for exchange in Exchange::ALL {
+            assert_twin(&format!("{width}x{height} {exchange}"), &trial(width, height, 48, height, exchange));
+        }
     }
 }
 
-/// One thread per line, as many as a workgroup has, and numbers that are no power of two.
+/// One thread per line, as many as a workgroup can have, and numbers that are no power of two.
 #[test]
 fn any_number_of_disparities_is_shared_out() {
-    for count in [16, 32, 64, 80, 256, 272, 528, 1024] {
-        assert_twin(&format!("{count} disparities"), &trial(13, 11, count, 11));
+    for count in [16, 32, 64, 80, 256, 272, 528, 1024, 4096] {
+        for exchange in Exchange::ALL {
+            assert_twin(&format!("{count} disparities {exchange}"), &trial(13, 11, count, 11, exchange));
+        }
+    }
+}
+
+#[test]
+fn workgroups_of_any_size_go_the_same_way() {
+    for lane_threads in Shapes::LANE_THREADS {
+        for exchange in Exchange::ALL {
+            let trial = LanePathTrial { lane_threads, ..trial(37, 20, 32, 20, exchange) };
+            assert_twin(&format!("{lane_threads} threads {exchange}"), &trial);
+        }
+    }
+}
+
+/// Lines that are shorter than what is loaded early, and a pixel longer.
+#[test]
+fn lines_of_any_length_end() {
+    for length in 1..=9 {
+        assert_twin(&format!("{length} pixels"), &trial(length, length, 32, length, Exchange::Memory));
     }
 }
 
 #[test]
 fn bands_leave_no_trace() {
     for band_rows in [1, 7] {
-        assert_twin(&format!("in bands of {band_rows}"), &trial(37, 20, 32, band_rows));
+        assert_twin(&format!("in bands of {band_rows}"), &trial(37, 20, 32, band_rows, Exchange::Subgroups));
     }
 }
 
@@ -50,6 +74,8 @@ fn by_hand() {
         directions: vec![Direction { dx: 1, dy: 0 }],
         penalties: PENALTIES,
         band_rows: 1,
+        lane_threads: 64,
+        exchange: Exchange::Memory,
     };
     let second = [&[120; 14][..], &[16, 0, 16, 67], &[120; 14]].concat();
     assert_eq!(leaves(&trial), [[&costs[..32], &second].concat().into()]);

@@ -21,6 +21,7 @@ fn the_twin_selects_the_same() {
                     range: DisparityRange::new(-3, count).unwrap(),
                     interpolation,
                     uniqueness,
+                    lane_threads: 64,
                 };
                 assert_twin(&format!("{size}, {count} disparities, {paths} paths, {interpolation:?}"), &trial);
             }
@@ -40,6 +41,7 @@ fn by_hand() {
         range: DisparityRange::new(0, 32).unwrap(),
         interpolation: Interpolation::Parabola,
         uniqueness: 0,
+        lane_threads: 64,
     };
     let (confidence, key) = (1 + 254 * 60 / 80_u32, 20_u32 << 16 | 15);
     assert_eq!(leaves(&trial), [vec![15 * SCALE + 96].into(), vec![confidence].into(), vec![key].into()]);

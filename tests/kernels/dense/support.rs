@@ -3,8 +3,8 @@
 use hsad::{
     dense::Dense,
     disparity::{DisparityMap, NONE},
+    gpu::Windows,
     image::{Plane, Size},
-    internals::dense::Windows,
     luma::{pack, unpack},
     verify::{Values, trials::SupportTrial},
 };

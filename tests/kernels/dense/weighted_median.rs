@@ -3,8 +3,8 @@
 use hsad::{
     dense::Median,
     disparity::{DisparityMap, NONE},
+    gpu::Windows,
     image::{Plane, Size},
-    internals::dense::Windows,
     verify::{Values, trials::MedianTrial},
 };
 

@@ -5,10 +5,11 @@ use crate::{
     cpu::dense::{Transforms, box_mean, census, cost, pad, wide_census},
     dense::{
         Brightness, Cost, Difference, View,
-        kernels::{BoxMean, Census, CostVolume, LaneCost, PIXELS_HARDWARE, PIXELS_SOFTWARE, VolumeBand, Windows},
+        kernels::{BoxMean, Census, CostVolume, LaneCost, PIXELS_HARDWARE, PIXELS_SOFTWARE, VolumeBand},
     },
     disparity::DisparityRange,
     error::Result,
+    gpu::Windows,
     image::{Luma, Plane, Size},
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };

@@ -17,6 +17,7 @@ use crate::{
     },
     disparity::DisparityRange,
     error::Result,
+    gpu::{Exchange, Gpu, Shapes},
     image::{Plane, Size},
     luma::pack,
     verify::{
@@ -30,8 +31,10 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("lane_select", |size, dice| Box::new(LaneSelectTrial::draw(size, dice))),
 ];
 
-fn lanes_of(band: &VolumeBand) -> Lanes {
-    Lanes::of(band).expect("threads for the disparities of a trial")
+/// The threads that share the disparities of `band`.
+fn lanes(gpu: &Gpu, band: &VolumeBand, lane_threads: u32, exchange: Exchange) -> Lanes {
+    let gpu = gpu.clone().with_shapes(Shapes { lane_threads, exchange, ..gpu.shapes() });
+    Lanes::of(&gpu, band).expect("threads for the disparities of a trial")
 }
 
 /// Costs for several paths.
@@ -47,6 +50,10 @@ pub struct LanePathTrial {
     pub penalties: Penalties,
     /// Rows per band; each band continues the paths of the previous one. In several bands one path is followed at a time.
     pub band_rows: u32,
+    /// See [`Shapes::lane_threads`].
+    pub lane_threads: u32,
+    /// By what threads exchange path costs, if the device can.
+    pub exchange: Exchange,
 }
 
 impl LanePathTrial {
@@ -56,7 +63,9 @@ impl LanePathTrial {
         let band_rows = if dice.coin() { size.height } else { 1 + dice.below(size.height) };
         let high_bits = dice.word() << 8;
         let reference = dice.picture(size).map(|&value| u32::from(value) | high_bits);
-        Self { reference, costs: costs(size, count, dice.word()), directions, penalties, band_rows }
+        let costs = costs(size, count, dice.word());
+        let (lane_threads, exchange) = (dice.pick(&Shapes::LANE_THREADS), dice.pick(&Exchange::ALL));
+        Self { reference, costs, directions, penalties, band_rows, lane_threads, exchange }
     }
 
     /// The volumes of `directions` in the band of `rows` rows from `first_row`, whose lines continue from `carried`, and the halo
@@ -71,7 +80,8 @@ impl LanePathTrial {
         let Size { width, height } = self.reference.size();
         let count = self.costs.len() as u32 / (width * height);
         let band = VolumeBand { width, first_row, rows, range: DisparityRange { min: 0, count } };
-        let kernel = LanePath::new(bench.gpu, &self.penalties, lanes_of(&band));
+        let lanes = lanes(bench.gpu, &band, self.lane_threads, self.exchange);
+        let kernel = LanePath::new(bench.gpu, &self.penalties, lanes);
         let row = band.row_words() as usize;
         let volume_words = row * (rows as usize + 2);
         let mut volumes = vec![u32::MAX; volume_words * directions.len()];
@@ -95,7 +105,8 @@ impl LanePathTrial {
 
 impl Trial for LanePathTrial {
     fn parameters(&self) -> String {
-        format!("{:?} {:?} in bands of {} rows", self.directions, self.penalties, self.band_rows)
+        let Self { directions, penalties, band_rows, lane_threads, exchange, .. } = self;
+        format!("{directions:?} {penalties:?} in bands of {band_rows} rows, {lane_threads} threads, {exchange}")
     }
 
     fn input(&self) -> Vec<Array> {
@@ -149,6 +160,8 @@ pub struct LaneSelectTrial {
     pub interpolation: Interpolation,
     /// See [`crate::dense::DenseParameters::uniqueness`].
     pub uniqueness: u32,
+    /// See [`Shapes::lane_threads`].
+    pub lane_threads: u32,
 }
 
 impl LaneSelectTrial {
@@ -157,7 +170,8 @@ impl LaneSelectTrial {
         let (interpolation, uniqueness) = (dice.interpolation(), dice.pick(&[0, 1, 10, 100]));
         let volume = |seed| smooth_noise((size.width * DisparityRange::padded(count), size.height), seed).into_data();
         let range = DisparityRange { min: dice.between(-9, 9), count };
-        Self { size, paths: (0..paths).map(|_| volume(dice.word())).collect(), range, interpolation, uniqueness }
+        let paths = (0..paths).map(|_| volume(dice.word())).collect();
+        Self { size, paths, range, interpolation, uniqueness, lane_threads: dice.pick(&Shapes::LANE_THREADS) }
     }
 
     fn arrays(disparities: Vec<i32>, confidences: Vec<u32>, keys: Vec<u32>) -> Vec<Array> {
@@ -171,8 +185,9 @@ impl LaneSelectTrial {
 
 impl Trial for LaneSelectTrial {
     fn parameters(&self) -> String {
-        let Self { paths, range, interpolation, uniqueness, .. } = self;
-        format!("{} paths {range:?} {interpolation:?} uniqueness {uniqueness}", paths.len())
+        let Self { paths, range, interpolation, uniqueness, lane_threads, .. } = self;
+        let paths = paths.len();
+        format!("{paths} paths {range:?} {interpolation:?} uniqueness {uniqueness}, {lane_threads} threads")
     }
 
     fn input(&self) -> Vec<Array> {
@@ -191,7 +206,8 @@ impl Trial for LaneSelectTrial {
             keys: true,
             uniqueness: self.uniqueness,
         };
-        let kernel = LaneSelect::new(bench.gpu, lanes_of(&band), selection);
+        let lanes = lanes(bench.gpu, &band, self.lane_threads, Exchange::Memory);
+        let kernel = LaneSelect::new(bench.gpu, lanes, selection);
         // The kernel expects zeros.
         let matches = bench.upload(&vec![0_u32; (layout.words() as u32 + layout.pixels()) as usize])?;
         let paths = bench.upload(&words(&self.paths.concat()))?;
