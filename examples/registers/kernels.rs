@@ -33,7 +33,10 @@ pub fn kernels_of_gpus(windows: &[u32]) -> Vec<(String, Stage)> {
         add(variant, kernels::Census::stage(costs.cost.weak_spread, Windows::Tiles));
         add(variant, kernels::LaneCost::stage(&costs.cost, View::Left));
         for exchange in Exchange::ALL {
-            add(&format!("{variant} {exchange}"), kernels::LanePath::stage(&penalties, 64, exchange));
+            for words in [1, 2, 4] {
+                let name = format!("{variant} {exchange} {}", 4 * words);
+                add(&name, kernels::LanePath::stage(&penalties, words, 64, exchange));
+            }
         }
         add(variant, kernels::LaneSelect::stage(selection(paths), 64));
         add(variant, kernels::CellCost::stage(&costs.cost, View::Left, kernels::PIXELS_HARDWARE));

@@ -6,7 +6,10 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use hsad::{Backend, DeviceChoice, Error, gpu};
+use hsad::{
+    Backend, DeviceChoice, Error,
+    gpu::{self, ShapesFile, cache_folder},
+};
 use pyo3::{import_exception, prelude::*};
 
 use crate::errors::Raise;
@@ -62,7 +65,7 @@ fn open(device: &str) -> hsad::Result<(Arc<Backend>, Option<String>)> {
         Err(error @ (Error::NoAdapter | Error::Unsupported(_))) if choice == DeviceChoice::Best => {
             (Backend::Cpu, Some(format!("the CPU does the work: {error}")))
         }
-        opened => (opened?, None),
+        opened => (tuned(opened?)?, None),
     };
     let backend = Arc::new(backend);
     backends.insert(device.into(), backend.clone());
@@ -87,4 +90,11 @@ pub fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
     let adapters = py.detach(|| gpu::block_on(gpu::list_adapters()));
     let named = adapters.iter().map(|info| format!("{} ({})", info.name, info.backend));
     Ok(named.chain(["cpu".into()]).collect())
+}
+
+/// The backend with the shapes of kernels that `hsad tune` has found for the device, if it has.
+fn tuned(backend: Backend) -> hsad::Result<Backend> {
+    let (Backend::Gpu(gpu), Some(folder)) = (&backend, cache_folder()) else { return Ok(backend) };
+    let kept = ShapesFile::of(gpu, &folder).read()?;
+    Ok(kept.map_or(backend, |shapes| Backend::Gpu(gpu.clone().with_shapes(shapes))))
 }

@@ -1,9 +1,10 @@
 // Semi-global matching, several paths at once, for devices with many threads: the path costs along all lines of several
 // directions. See shared/line.wgsl for the path costs; the result is the same.
 //
-// Consecutive threads, `lanes` of them, share a line and hold the path costs of the last pixel, 16 disparities each. They
-// exchange what a pixel needs of its neighbouring disparities, and the least path cost: see shared/exchange_memory.wgsl and
-// shared/exchange_subgroups.wgsl, one of which the module imports.
+// Consecutive threads, `lanes` of them, share a line and hold the path costs of the last pixel, four disparities per word. They
+// exchange what a pixel needs of its neighbouring disparities, and the least path cost. The module imports one of
+// shared/exchange_memory.wgsl and shared/exchange_subgroups.wgsl, and one of shared/lane_words_1.wgsl, lane_words_2.wgsl and
+// lane_words_4.wgsl.
 //
 // A line is a chain of pixels, each of which needs the one before; only its matching costs and lumas are known beforehand.
 // They are loaded AHEAD pixels early, so that the chain does not wait for memory.
@@ -13,18 +14,18 @@
 // Constants:
 //   WORKGROUP   threads per workgroup
 //   AHEAD       pixels of a line that are loaded early, an even number
+//   LANE_WORDS  words per thread
 
 struct Params {
     width: u32,
     // Rows of the band, and the row of the census transforms where the band begins.
     rows: u32,
     first_row: u32,
-    // Index in `paths`, in vectors, where the band begins in the volume of the first path, and vectors from one volume to
-    // the next.
+    // Index in `paths` where the band begins in the volume of the first path, and elements from one volume to the next.
     volumes_start: u32,
-    volume_quads: u32,
-    // Vectors per pixel of a volume, and threads per line: the power of two that is not less.
-    quads: u32,
+    volume_length: u32,
+    // Elements per pixel of a volume, and threads per line: the power of two that is not less.
+    elements: u32,
     lanes: u32,
     // Steps to the next pixel of a line, -1, 0 or 1 each, plus 1: two bits per path.
     steps_x: u32,
@@ -36,16 +37,19 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 // From census.wgsl: the luma of a pixel is the lowest byte of its first u32.
 @group(0) @binding(1) var<storage, read> reference: array<vec2<u32>>;
-// Matching costs: `quads` vectors per pixel, four disparities packed per u32, 8 bits each.
-@group(0) @binding(2) var<storage, read> costs: array<vec4<u32>>;
+// Matching costs: `elements` per pixel, four disparities packed per u32, 8 bits each.
+@group(0) @binding(2) var<storage, read> costs: array<Words>;
 // Volumes of path costs, packed as the matching costs, one after the other.
-@group(0) @binding(3) var<storage, read_write> paths: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read_write> paths: array<Words>;
 
-// Path costs of 16 disparities.
-alias Costs = array<vec4<u32>, 4>;
+// Path costs of a thread, four disparities per vector, between a vector of the thread before and one of the thread after.
+alias Costs = array<vec4<u32>, LANE_WORDS + 2>;
 
 fn least_of(path: Costs) -> u32 {
-    let least = min(min(path[0], path[1]), min(path[2], path[3]));
+    var least = path[1];
+    for (var t = 0; t < LANE_WORDS; t++) { // unroll
+        least = min(least, path[t + 1]);
+    }
     return min(min(least.x, least.y), min(least.z, least.w));
 }
 
@@ -66,11 +70,11 @@ fn next_place(place: Place, dx: i32, dy: i32) -> Place {
 
 // What is known of a pixel beforehand.
 struct Loaded {
-    // Index of the thread's vector in a volume.
+    // Index of the thread's element in a volume.
     index: u32,
     luma: u32,
     // The thread's matching costs, packed.
-    costs: vec4<u32>,
+    costs: Words,
     starts: bool,
 }
 
@@ -79,7 +83,7 @@ fn loaded(place: Place, lane: u32) -> Loaded {
     let x = clamp(place.x, 0, i32(params.width) - 1);
     let y = clamp(place.y, 0, i32(params.rows) - 1);
     let pixel = u32(y) * params.width + u32(x);
-    let index = pixel * params.quads + min(lane, params.quads - 1u);
+    let index = pixel * params.elements + min(lane, params.elements - 1u);
     let luma = reference[params.first_row * params.width + pixel].x & 255u;
     return Loaded(index, luma, costs[index], place.starts);
 }
@@ -90,14 +94,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, builtins: Builtins) {
     let path_number = group.y;
     let dx = i32((params.steps_x >> (2u * path_number)) & 3u) - 1;
     let dy = i32((params.steps_y >> (2u * path_number)) & 3u) - 1;
-    let volume = params.volumes_start + path_number * params.volume_quads;
+    let volume = params.volumes_start + path_number * params.volume_length;
     let along_rows = dy == 0;
     let lines = select(params.width, params.rows, along_rows);
     let length = select(params.rows, params.width, along_rows);
 
     let lane = thread % params.lanes;
     let line = group.x * (WORKGROUP / params.lanes) + thread / params.lanes;
-    let has_disparities = lane < params.quads;
+    let has_disparities = lane < params.elements;
     // Threads without a line or without disparities go along, since all meet when they exchange.
     let is_busy = line < lines && has_disparities;
 
@@ -107,9 +111,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, builtins: Builtins) {
     }
 
     // The last pixel: its path costs and luma. At the start of a line all path costs are 0.
-    var last: Costs;
-    for (var t = 0; t < 4; t++) { // unroll
-        last[t] = vec4<u32>(UNREACHABLE);
+    var path: Costs;
+    for (var t = 0; t < LANE_WORDS + 2; t++) { // unroll
+        path[t] = vec4<u32>(UNREACHABLE);
     }
     var last_luma = 0u;
     let came_from = place.x - dx;
@@ -117,9 +121,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, builtins: Builtins) {
         let pixel = (place.y - dy) * i32(params.width) + came_from;
         last_luma = reference[u32(i32(params.first_row * params.width) + pixel)].x & 255u;
         if is_busy {
-            let packed = paths[u32(i32(volume) + pixel * i32(params.quads)) + lane];
-            for (var t = 0; t < 4; t++) { // unroll
-                last[t] = unpack(packed[t]);
+            let packed = paths[u32(i32(volume) + pixel * i32(params.elements)) + lane];
+            for (var t = 0; t < LANE_WORDS; t++) { // unroll
+                path[t + 1] = unpack(word(packed, t));
             }
         }
         place.starts = false;
@@ -136,23 +140,23 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, builtins: Builtins) {
                 let pixel = next_pixels[k];
                 next_pixels[k] = loaded(place, lane);
                 place = next_place(place, dx, dy);
-                let own = Edges(last[0].x, last[3].w, select(UNREACHABLE, least_of(last), has_disparities));
-                let others = exchanged_with(own, thread, lane, u32(k));
+                let least = select(UNREACHABLE, least_of(path), has_disparities);
+                let others = exchanged_with(Edges(path[1].x, path[LANE_WORDS].w, least), thread, lane, u32(k));
+                path[0] = vec4<u32>(select(others.before, UNREACHABLE, lane == 0u));
+                path[LANE_WORDS + 1] = vec4<u32>(select(others.after, UNREACHABLE, lane + 1u >= params.elements));
                 // At the start of a line M and M + P2 are 0, as if all path costs before it were 0.
                 let minimum = select(others.least, 0u, pixel.starts);
                 let jump = select(others.least + penalty(pixel.luma, last_luma), 0u, pixel.starts);
-                let before = vec4<u32>(select(others.before, UNREACHABLE, lane == 0u));
-                let after = vec4<u32>(select(others.after, UNREACHABLE, lane + 1u >= params.quads));
-                var next: Costs;
-                next[0] = advance(before, last[0], last[1], jump, unpack(pixel.costs.x)) - minimum;
-                next[1] = advance(last[0], last[1], last[2], jump, unpack(pixel.costs.y)) - minimum;
-                next[2] = advance(last[1], last[2], last[3], jump, unpack(pixel.costs.z)) - minimum;
-                next[3] = advance(last[2], last[3], after, jump, unpack(pixel.costs.w)) - minimum;
-                if is_busy {
-                    let packed = vec4<u32>(pack(next[0]), pack(next[1]), pack(next[2]), pack(next[3]));
-                    paths[volume + pixel.index] = packed;
+                let last = path;
+                var packed: array<u32, LANE_WORDS>;
+                for (var t = 0; t < LANE_WORDS; t++) { // unroll
+                    let costs = unpack(word(pixel.costs, t));
+                    path[t + 1] = advance(last[t], last[t + 1], last[t + 2], jump, costs) - minimum;
+                    packed[t] = pack(path[t + 1]);
                 }
-                last = next;
+                if is_busy {
+                    paths[volume + pixel.index] = words_of(packed);
+                }
                 last_luma = pixel.luma;
             }
         }

@@ -1,7 +1,7 @@
 // What the threads that share a line need of each other, through workgroup memory: one barrier per exchange, since two
 // consecutive exchanges take one half of the memory each.
 //
-// The module has `params` with `quads`, the threads of a line that have disparities.
+// The module has `params` with `elements`, the threads of a line that have disparities.
 //
 // Constants:
 //   WORKGROUP   threads per workgroup
@@ -27,7 +27,7 @@ fn exchanged_with(own: Edges, thread: u32, lane: u32, turn: u32) -> Neighbours {
     let before = edges[half + max(thread, 1u) - 1u].last;
     let after = edges[half + min(thread + 1u, WORKGROUP - 1u)].first;
     var least = edges[half + thread - lane].least;
-    for (var k = 1u; k < params.quads; k++) {
+    for (var k = 1u; k < params.elements; k++) {
         least = min(least, edges[half + thread - lane + k].least);
     }
     return Neighbours(before, after, least);

@@ -1,6 +1,7 @@
 //! The subcommands of `hsad`, one file each, and their shared modules.
 
 mod bench;
+mod cache;
 mod cloud;
 mod completions;
 mod demo;
@@ -16,7 +17,6 @@ mod matches;
 mod options;
 pub mod out_of_memory;
 pub mod output;
-mod pipeline_cache;
 mod products;
 mod rectification;
 mod rectify;
@@ -24,6 +24,7 @@ mod report;
 mod summary;
 pub mod terminal;
 mod threads;
+mod tune;
 mod verify;
 mod view_files;
 mod way;
@@ -60,6 +61,7 @@ enum Command {
     Eval(eval::Eval),
     Verify(verify::Verify),
     Bench(bench::Bench),
+    Tune(tune::Tune),
     Completions(completions::Completions),
     Man(man::Manual),
 }
@@ -78,6 +80,7 @@ impl Cli {
             Command::Eval(command) => command.run(),
             Command::Verify(command) => command.run(),
             Command::Bench(command) => command.run(),
+            Command::Tune(command) => command.run(),
             Command::Completions(command) => command.run(),
             Command::Man(command) => command.run(),
         }

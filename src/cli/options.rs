@@ -19,7 +19,7 @@ use hsad::{
 };
 
 use super::{
-    pipeline_cache::CachedBackend,
+    cache::CachedBackend,
     terminal::{self, Progress},
     wording::in_words_of_options,
 };

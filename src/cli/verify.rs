@@ -23,6 +23,7 @@ use hsad::{
 use serde_json::{Value, json};
 
 use super::{
+    cache::tuned,
     output::{Output, check_writable, write_json},
     terminal::{self, Progress},
 };
@@ -97,7 +98,7 @@ impl Verify {
         let folder = Output::open(&self.output)?;
         let json_file = self.json.as_deref().filter(|file| *file != Path::new("-"));
         json_file.map(check_writable).transpose()?;
-        let mut gpu = Gpu::open(&self.device)?;
+        let mut gpu = tuned(Gpu::open(&self.device)?);
         if let Some(plan) = self.plan {
             gpu = gpu.with_sgm_plan(plan);
         }

@@ -7,17 +7,30 @@ use super::{Gpu, buffers::uniform_buffer, pipeline::Pipeline, pipelines::pipelin
 /// A resource that can be bound: a whole buffer, or a texture view.
 pub(crate) trait Bindable {
     fn resource(&self) -> wgpu::BindingResource<'_>;
+
+    /// Size of the resource in bytes; of a texture, without other mip levels.
+    fn bytes(&self) -> u64;
 }
 
 impl Bindable for wgpu::Buffer {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         self.as_entire_binding()
     }
+
+    fn bytes(&self) -> u64 {
+        self.size()
+    }
 }
 
 impl Bindable for wgpu::TextureView {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::TextureView(self)
+    }
+
+    fn bytes(&self) -> u64 {
+        let texture = self.texture();
+        let texel = texture.format().block_copy_size(None).unwrap_or(0);
+        u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texel)
     }
 }
 
@@ -67,7 +80,8 @@ impl Kernel {
             layout: &self.pipeline.layout,
             entries: &entries,
         });
-        Dispatch { kernel: self.clone(), bind_group, groups }
+        let bytes = bound.iter().map(|bound| bound.bytes()).sum();
+        Dispatch { kernel: self.clone(), bind_group, groups, bytes }
     }
 
     fn name(&self) -> &'static str {
@@ -81,6 +95,19 @@ pub struct Dispatch {
     kernel: Kernel,
     bind_group: wgpu::BindGroup,
     groups: Groups,
+    bytes: u64,
+}
+
+/// A dispatch in figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DispatchSize {
+    /// The kernel's name.
+    pub kernel: &'static str,
+    /// Threads; `None` where the device alone knows the number of workgroups.
+    pub threads: Option<u64>,
+    /// Bytes that are read and written at least, if nothing stays in caches: each bound resource once, but of a volume of path costs
+    /// what the dispatch follows, and matching costs once per path.
+    pub bytes: u64,
 }
 
 /// The number of workgroups of a dispatch, along x, y and z.
@@ -95,6 +122,21 @@ impl Dispatch {
     /// The kernel's name.
     pub(crate) fn name(&self) -> &'static str {
         self.kernel.name()
+    }
+
+    /// States the bytes that are read and written, where that is not each bound resource once.
+    pub(crate) fn moving(self, bytes: u64) -> Self {
+        Self { bytes, ..self }
+    }
+
+    /// The dispatch in figures.
+    pub(crate) fn size(&self) -> DispatchSize {
+        let workgroup = u64::from(self.kernel.pipeline.stage.workgroup());
+        let threads = match &self.groups {
+            Groups::Known(groups) => Some(groups.iter().map(|&side| u64::from(side)).product::<u64>() * workgroup),
+            Groups::Indirect(_) => None,
+        };
+        DispatchSize { kernel: self.name(), threads, bytes: self.bytes }
     }
 
     /// Records the dispatch, in a compute pass of its own.

@@ -6,7 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::Gpu;
+use super::{
+    Gpu,
+    adapter_file::{key_of, path_of},
+};
 use crate::{
     error::{Error, Result},
     fnv::fnv1a,
@@ -16,7 +19,7 @@ use crate::{
 /// The pipeline cache of a device, and the file that keeps it between runs of a program.
 ///
 /// Only Vulkan has such caches, and lavapipe leaves its one empty: it has a cache of its own. The caller chooses the
-/// folder, which should be the user's own, since drivers trust what they read:
+/// folder, which should be the user's own, since drivers trust what they read, as [`super::cache_folder`] is:
 ///
 /// ```no_run
 /// use hsad::{DeviceChoice, Gpu, gpu::PipelineFile};
@@ -31,7 +34,7 @@ use crate::{
 #[derive(Debug)]
 pub struct PipelineFile {
     path: PathBuf,
-    /// First line of the file: the adapter, its driver and the version of this library.
+    /// First line of the file.
     key: String,
     cache: wgpu::PipelineCache,
     /// Hash of the data in the file; `None`: there is no file, or another key's.
@@ -50,7 +53,7 @@ impl PipelineFile {
             return Ok(None);
         }
         let info = gpu.info();
-        let path = folder.join(format!("{:04x}-{:04x}.pipelines", info.vendor, info.device));
+        let path = path_of(&info, folder, "pipelines");
         let key = key_of(&info);
         let bytes = match fs::read(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -83,12 +86,6 @@ impl PipelineFile {
             file.write_all(&data)
         })
     }
-}
-
-fn key_of(info: &wgpu::AdapterInfo) -> String {
-    let wgpu::AdapterInfo { name, backend, driver, driver_info, .. } = info;
-    let version = env!("CARGO_PKG_VERSION");
-    format!("hsad {version}; {name}; {backend}; {driver}; {driver_info}").replace('\n', " ")
 }
 
 fn hash_of(data: &[u8]) -> u64 {

@@ -13,7 +13,7 @@ use crate::{
 pub enum SgmPlan {
     /// A thread per line of pixels, which holds all disparities of a pixel in registers: for CPUs.
     Lines,
-    /// A thread per 16 disparities, and all paths at once; the threads of a line exchange what they need of each other: for
+    /// A thread per few disparities, and all paths at once; the threads of a line exchange what they need of each other: for
     /// GPUs. Ranges of more than 4,096 disparities are matched by [`Self::Lines`].
     Lanes,
 }
@@ -52,7 +52,8 @@ names!(Windows, "the place of windows", { Rows => "rows", Tiles => "tiles" });
 /// ```
 /// use hsad::gpu::Shapes;
 ///
-/// let text = "sgm=lanes lane_threads=64 exchange=subgroups block_match=tiles census=tiles support=tiles weighted_median=tiles";
+/// let text = "sgm=lanes lane_disparities=8 lane_threads=64 exchange=subgroups block_match=tiles census=tiles support=tiles \
+///             weighted_median=tiles";
 /// assert_eq!(text.parse::<Shapes>()?.to_string(), text);
 /// # hsad::Result::Ok(())
 /// ```
@@ -60,6 +61,9 @@ names!(Windows, "the place of windows", { Rows => "rows", Tiles => "tiles" });
 pub struct Shapes {
     /// Costs, paths and selection of semi-global matching.
     pub sgm: SgmPlan,
+    /// Disparities per thread of the paths with [`SgmPlan::Lanes`], one of [`Self::LANE_DISPARITIES`]: fewer give more threads, of which
+    /// each has a shorter way to the next pixel, but more to exchange. At least as many as let a workgroup hold a line.
+    pub lane_disparities: u32,
     /// Threads per workgroup of the paths and the selection with [`SgmPlan::Lanes`], one of [`Self::LANE_THREADS`]; at least as
     /// many as share a line.
     pub lane_threads: u32,
@@ -76,6 +80,9 @@ pub struct Shapes {
 }
 
 impl Shapes {
+    /// Values of [`Self::lane_disparities`].
+    pub const LANE_DISPARITIES: [u32; 3] = [4, 8, 16];
+
     /// Values of [`Self::lane_threads`].
     pub const LANE_THREADS: [u32; 4] = [32, 64, 128, 256];
 
@@ -86,6 +93,7 @@ impl Shapes {
         let windows = if adapter.driver == super::handle::LAVAPIPE { Windows::Rows } else { Windows::Tiles };
         Self {
             sgm: if is_cpu { SgmPlan::Lines } else { SgmPlan::Lanes },
+            lane_disparities: 8,
             lane_threads: 64,
             exchange: Exchange::Subgroups,
             block_match: windows,
@@ -98,10 +106,11 @@ impl Shapes {
 
 impl fmt::Display for Shapes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { sgm, lane_threads, exchange, block_match, census, support, weighted_median } = self;
+        let Self { sgm, lane_disparities, lane_threads, exchange, block_match, census, support, weighted_median } =
+            self;
         write!(
             f,
-            "sgm={sgm} lane_threads={lane_threads} exchange={exchange} block_match={block_match} census={census} \
+            "sgm={sgm} lane_disparities={lane_disparities} lane_threads={lane_threads} exchange={exchange} block_match={block_match} census={census} \
              support={support} weighted_median={weighted_median}"
         )
     }
@@ -122,16 +131,20 @@ impl FromStr for Shapes {
             Some(Ok((found, value))) if found == name => Ok(value),
             _ => Err(unknown()),
         };
+        let number = |text: &str| text.parse::<u32>().map_err(|_| unknown());
         let shapes = Self {
             sgm: value("sgm")?.parse()?,
-            lane_threads: value("lane_threads")?.parse().map_err(|_| unknown())?,
+            lane_disparities: number(value("lane_disparities")?)?,
+            lane_threads: number(value("lane_threads")?)?,
             exchange: value("exchange")?.parse()?,
             block_match: value("block_match")?.parse()?,
             census: value("census")?.parse()?,
             support: value("support")?.parse()?,
             weighted_median: value("weighted_median")?.parse()?,
         };
-        let is_known = Self::LANE_THREADS.contains(&shapes.lane_threads) && values.next().is_none();
+        let is_known = Self::LANE_DISPARITIES.contains(&shapes.lane_disparities)
+            && Self::LANE_THREADS.contains(&shapes.lane_threads)
+            && values.next().is_none();
         is_known.then_some(shapes).ok_or_else(unknown)
     }
 }
@@ -142,7 +155,7 @@ mod tests {
 
     #[test]
     fn only_what_display_writes_is_read() {
-        let text = "sgm=lines lane_threads=128 exchange=memory block_match=rows census=tiles support=rows weighted_median=rows";
+        let text = "sgm=lines lane_disparities=4 lane_threads=128 exchange=memory block_match=rows census=tiles support=rows weighted_median=rows";
         assert_eq!(text.parse::<Shapes>().expect("shapes").to_string(), text);
         for wrong in
             ["", "sgm=lines", &text.replace("128", "100"), &text.replace("rows", "row"), &format!("{text} more=1")]

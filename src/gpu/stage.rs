@@ -42,6 +42,20 @@ impl Stage {
         text + &unrolled(&imported(self.source), &self.constants)
     }
 
+    /// Threads per workgroup.
+    ///
+    /// # Panics
+    /// If the shader names a side that is no constant: all shaders are ours, and a test covers them.
+    pub fn workgroup(&self) -> u32 {
+        let (_, sides) = self.source.split_once("@workgroup_size(").expect("a size of workgroups");
+        let (sides, _) = sides.split_once(')').expect("the end of the size");
+        let side = |side: &str| {
+            let constant = self.constants.iter().find(|(name, _)| *name == side).map(|&(_, value)| value as u32);
+            constant.or_else(|| side.parse().ok()).unwrap_or_else(|| panic!("{}: no constant {side}", self.name))
+        };
+        sides.split([',', '*']).map(|text| side(text.trim())).product()
+    }
+
     /// [`Self::wgsl`] for lavapipe: see `src/gpu/lavapipe/`.
     pub fn wgsl_for_lavapipe(&self) -> String {
         for_lavapipe(&self.wgsl())

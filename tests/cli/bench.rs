@@ -13,7 +13,8 @@ const SMALL: [&str; 9] = ["bench", "--preset", "balanced", "--size", "64x48", "-
 fn a_table_and_json_that_a_later_run_is_compared_with() {
     let temporary = folder();
     let file = temporary.path().join("figures.json");
-    let told = contains("balanced 64x48 32: first ").and(contains("  path  ")).and(contains("Mpd/s"));
+    let told =
+        contains("balanced 64x48 32: first ").and(contains("\n  path  ")).and(contains("Mpd/s")).and(contains("GB/s"));
     hsad().args(SMALL).args(["--plan", "lines", "--json"]).arg(&file).assert().success().stdout(told).stderr("");
     let report: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
     let case = &report["cases"][0];
@@ -21,11 +22,20 @@ fn a_table_and_json_that_a_later_run_is_compared_with() {
     let kernels = case["kernels"].as_array().unwrap();
     let named = |name: &str| kernels.iter().find(|kernel| kernel["name"] == name);
     assert_eq!(named("path").unwrap()["dispatches"], 2);
+    // The path along the rows has the fewest threads, one per row; costs and path costs are read or written once per path, and 8
+    // bytes per pixel.
+    let (threads, bytes) = (&named("path").unwrap()["threads"], &named("path").unwrap()["bytes"]);
+    assert_eq!((threads, bytes), (&48.into(), &(2 * 64 * 48 * (2 * 32 + 8)).into()));
+    assert!(named("path").unwrap()["of_copies"].as_f64().is_some_and(|share| share > 0.0));
+    assert!(
+        report["copied_bytes_per_s"].as_f64().unwrap() > 1e8
+            && report["integer_operations_per_s"].as_f64().unwrap() > 1e8
+    );
     // Millions of pixels times disparities per second, from the median in milliseconds.
     let rate = 64.0 * 48.0 * 32.0 / 1e3 / case["median_ms"].as_f64().unwrap();
     assert!((case["mpd_per_s"].as_f64().unwrap() / rate - 1.0).abs() < 1e-9);
 
-    let compared = contains("of the earlier median").and(contains("lane_path").and(contains("in 1")));
+    let compared = contains("of the earlier median").and(contains("  lane_path                    1 "));
     hsad().args(SMALL).args(["--plan", "lanes", "--compare"]).arg(&file).assert().success().stdout(compared);
 }
 

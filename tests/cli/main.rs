@@ -31,6 +31,7 @@ mod one_file;
 mod pictures;
 mod pipeline_cache;
 mod rectify;
+mod tune;
 mod verify;
 
 use common::hsad;

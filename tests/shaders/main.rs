@@ -34,10 +34,16 @@ fn valid(stage: &Stage) -> Validated {
 
 fn valid_text(text: &str) -> Validated {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let capabilities = if has_subgroups(text) { Capabilities::SUBGROUP } else { Capabilities::empty() };
+    let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|error| error.emit_to_string(text))?;
     Ok((module, info))
+}
+
+/// Whether a shader is for devices with subgroups alone.
+fn has_subgroups(text: &str) -> bool {
+    text.contains("@builtin(subgroup_")
 }
 
 /// All stages with their modules, shared by all tests, since large modules take seconds to parse.

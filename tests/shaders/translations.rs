@@ -19,7 +19,7 @@ use naga::{
     valid::ModuleInfo,
 };
 
-use crate::{checked, modules, on_all_processors, valid};
+use crate::{checked, has_subgroups, modules, on_all_processors, valid};
 
 /// A target language, and the translation of a module to its text or binary.
 struct Target {
@@ -32,11 +32,15 @@ struct Target {
 const TARGETS: [Target; 5] = [
     Target {
         name: "SPIR-V 1.0, for Vulkan",
-        translate: spirv,
+        translate: |module, info| spirv(module, info, (1, 0)),
         checker: Some(("spirv-val", &["--target-env", "vulkan1.1"], "spv")),
     },
     Target { name: "MSL 2.1, for Metal", translate: metal, checker: None },
-    Target { name: "HLSL of shader model 5.1, for DirectX 12", translate: directx, checker: None },
+    Target {
+        name: "HLSL of shader model 5.1, for DirectX 12",
+        translate: |module, info| directx(module, info, hlsl::ShaderModel::V5_1),
+        checker: None,
+    },
     Target {
         // With 4.30 naga selects between integers in a way that needs an extension.
         name: "GLSL 4.50, for OpenGL",
@@ -50,9 +54,25 @@ const TARGETS: [Target; 5] = [
     },
 ];
 
-fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
+/// Where wgpu has subgroups.
+const WITH_SUBGROUPS: [Target; 3] = [
+    Target {
+        name: "SPIR-V 1.3, for Vulkan",
+        translate: |module, info| spirv(module, info, (1, 3)),
+        checker: Some(("spirv-val", &["--target-env", "vulkan1.1"], "spv")),
+    },
+    Target { name: "MSL 2.1, for Metal", translate: metal, checker: None },
+    Target {
+        name: "HLSL of shader model 6.0, for DirectX 12",
+        translate: |module, info| directx(module, info, hlsl::ShaderModel::V6_0),
+        checker: None,
+    },
+];
+
+fn spirv(module: &Module, info: &ModuleInfo, lang_version: (u8, u8)) -> Result<Vec<u8>, String> {
     let entry = spv::PipelineOptions { shader_stage: ShaderStage::Compute, entry_point: "main".into() };
-    let words = spv::write_vec(module, info, &spv::Options::default(), Some(&entry)).map_err(|e| e.to_string())?;
+    let options = spv::Options { lang_version, ..Default::default() };
+    let words = spv::write_vec(module, info, &options, Some(&entry)).map_err(|e| e.to_string())?;
     Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
 }
 
@@ -65,8 +85,8 @@ fn metal(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
     Ok(text.into_bytes())
 }
 
-fn directx(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {
-    let (options, entry) = (hlsl::Options::default(), hlsl::PipelineOptions::default());
+fn directx(module: &Module, info: &ModuleInfo, shader_model: hlsl::ShaderModel) -> Result<Vec<u8>, String> {
+    let (options, entry) = (hlsl::Options { shader_model, ..Default::default() }, hlsl::PipelineOptions::default());
     let mut text = String::new();
     let written = hlsl::Writer::new(&mut text, &options, &entry).write(module, info, None);
     let written = written.map_err(|e| e.to_string())?;
@@ -118,7 +138,8 @@ fn every_shader_can_be_told_in_every_language() {
     let check = |(index, (stage, module)): (usize, &(Stage, _))| {
         let folder = folder.path().join(index.to_string());
         fs::create_dir(&folder).expect("a folder in a temporary folder");
-        for target in &TARGETS {
+        let targets = if has_subgroups(&stage.wgsl()) { &WITH_SUBGROUPS[..] } else { &TARGETS };
+        for target in targets {
             let objection = objection(checked(module), target, &folder);
             assert!(objection.is_none(), "{} in {}: {}", stage.name, target.name, objection.unwrap_or_default());
         }

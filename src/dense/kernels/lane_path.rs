@@ -11,6 +11,20 @@ use crate::{
     gpu::{Binding, Dispatch, Exchange, Gpu, Kernel, ShaderType, Stage, shader_struct},
 };
 
+/// The text with the parts of an exchange and of a number of words per thread.
+macro_rules! text {
+    ($exchange:literal, $words:literal) => {
+        concat!(
+            "#import ",
+            $exchange,
+            "\n#import ",
+            $words,
+            "\n",
+            include_str!("../../../shaders/dense/lane_path.wgsl")
+        )
+    };
+}
+
 /// Pixels of a line that are loaded early.
 const AHEAD: i64 = 4;
 
@@ -20,8 +34,8 @@ shader_struct! {
         rows: u32,
         first_row: u32,
         volumes_start: u32,
-        volume_quads: u32,
-        quads: u32,
+        volume_length: u32,
+        elements: u32,
         lanes: u32,
         steps_x: u32,
         steps_y: u32,
@@ -40,17 +54,17 @@ pub struct LanePath {
 }
 
 impl LanePath {
-    /// Source, bindings and constants of the kernel, with so many threads per workgroup.
-    pub fn stage(penalties: &Penalties, threads: u32, exchange: Exchange) -> Stage {
-        let mut constants = vec![("WORKGROUP", threads.into()), ("AHEAD", AHEAD)];
+    /// Source, bindings and constants of the kernel, with so many words per thread, 1, 2 or 4, and so many threads per workgroup.
+    pub fn stage(penalties: &Penalties, words: u32, threads: u32, exchange: Exchange) -> Stage {
+        let mut constants = vec![("WORKGROUP", threads.into()), ("AHEAD", AHEAD), ("LANE_WORDS", words.into())];
         constants.extend(penalty_constants(penalties));
-        let source = match exchange {
-            Exchange::Memory => {
-                concat!("#import exchange_memory\n", include_str!("../../../shaders/dense/lane_path.wgsl"))
-            }
-            Exchange::Subgroups => {
-                concat!("#import exchange_subgroups\n", include_str!("../../../shaders/dense/lane_path.wgsl"))
-            }
+        let source = match (exchange, words) {
+            (Exchange::Memory, 1) => text!("exchange_memory", "lane_words_1"),
+            (Exchange::Memory, 2) => text!("exchange_memory", "lane_words_2"),
+            (Exchange::Memory, _) => text!("exchange_memory", "lane_words_4"),
+            (Exchange::Subgroups, 1) => text!("exchange_subgroups", "lane_words_1"),
+            (Exchange::Subgroups, 2) => text!("exchange_subgroups", "lane_words_2"),
+            (Exchange::Subgroups, _) => text!("exchange_subgroups", "lane_words_4"),
         };
         Stage {
             name: "lane_path",
@@ -62,7 +76,7 @@ impl LanePath {
 
     /// Compiles the kernel.
     pub fn new(gpu: &Gpu, penalties: &Penalties, lanes: Lanes) -> Self {
-        Self { kernel: Kernel::new(gpu, &Self::stage(penalties, lanes.threads, lanes.exchange)), lanes }
+        Self { kernel: Kernel::new(gpu, &Self::stage(penalties, lanes.words, lanes.threads, lanes.exchange)), lanes }
     }
 
     /// Follows all lines of `paths` through `band`, one volume per path. Lines that continue find the path costs of the
@@ -81,9 +95,9 @@ impl LanePath {
             width: band.width,
             rows: band.rows,
             first_row: band.first_row,
-            volumes_start: start / 4,
-            volume_quads: volume_words / 4,
-            quads: self.lanes.quads,
+            volumes_start: start / self.lanes.words,
+            volume_length: volume_words / self.lanes.words,
+            elements: self.lanes.busy,
             lanes: self.lanes.lanes,
             steps_x: steps(|direction| direction.dx),
             steps_y: steps(|direction| direction.dy),
@@ -92,6 +106,7 @@ impl LanePath {
         let lines = |&(direction, _): &FollowedPath| if direction.dy == 0 { band.rows } else { band.width };
         let most_lines = paths.iter().map(lines).max().unwrap_or(0);
         let groups = [most_lines.div_ceil(self.lanes.per_workgroup()), paths.len() as u32, 1];
-        self.kernel.dispatch(&params, &[reference, costs, volumes], groups)
+        let dispatch = self.kernel.dispatch(&params, &[reference, costs, volumes], groups);
+        dispatch.moving(paths.len() as u64 * band.followed_bytes())
     }
 }

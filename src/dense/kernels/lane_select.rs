@@ -66,7 +66,7 @@ impl LaneSelect {
             width: band.width,
             volumes_start: start / 4,
             volume_quads: volume_words / 4,
-            quads: self.lanes.quads,
+            quads: self.lanes.busy,
             lanes: self.lanes.lanes,
             min_disparity: band.range.min,
             disparities: band.range.count,

@@ -125,7 +125,9 @@ pub fn stages() -> Vec<Stage> {
     stages.extend([3, 31].map(BoxMean::stage));
     let penalties = Penalties { p1: 1, p2: 2, least_p2: 1, p2_scale: 1 };
     stages.extend([Path::stage(&penalties, 4), CellPath::stage(&penalties)]);
-    stages.extend(Exchange::ALL.map(|exchange| LanePath::stage(&penalties, 64, exchange)));
+    for (words, threads) in [(1, 64), (2, 64), (4, 256)] {
+        stages.extend(Exchange::ALL.map(|exchange| LanePath::stage(&penalties, words, threads, exchange)));
+    }
     for interpolation in Interpolation::ALL {
         stages.extend([(ResultKind::Matches, true), (ResultKind::Winners, false)].map(|(kind, keys)| {
             LaneSelect::stage(Selection { stored: 4, interpolation, kind, keys, uniqueness: 0 }, 64)

@@ -101,6 +101,6 @@ impl Path {
         goes_on: bool,
     ) -> Dispatch {
         let params = Params::new(band, direction, start, goes_on);
-        self.0.dispatch(&params, &[reference, costs, paths], params.groups())
+        self.0.dispatch(&params, &[reference, costs, paths], params.groups()).moving(band.followed_bytes())
     }
 }

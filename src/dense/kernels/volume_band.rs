@@ -22,6 +22,12 @@ impl VolumeBand {
         DisparityRange::padded(self.range.count) / 4
     }
 
+    /// Bytes that a path reads and writes on its way: matching costs, path costs, and the transforms of the reference view.
+    pub(super) fn followed_bytes(&self) -> u64 {
+        let transforms = 8 * u64::from(self.width);
+        u64::from(self.rows) * (2 * 4 * u64::from(self.row_words()) + transforms)
+    }
+
     /// Words per row.
     pub fn row_words(&self) -> u32 {
         self.width * self.words()

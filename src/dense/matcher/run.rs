@@ -13,7 +13,7 @@ use crate::{
         readback::MapReadback,
     },
     error::Result,
-    gpu::{Dispatch, Readback, Stopwatch, guarded, warm_up},
+    gpu::{Dispatch, DispatchSize, Readback, Stopwatch, guarded, warm_up},
     luma::{Input, packed_bytes},
 };
 
@@ -72,6 +72,11 @@ impl Matcher {
         let stopwatch = guarded(&self.gpu, "timestamps", || Stopwatch::new(&self.gpu, kernels.len())).await?;
         let dense = self.run_timed(Some(&stopwatch)).await?;
         Ok((dense, kernels.into_iter().zip(stopwatch.read(&self.gpu.queue).await?).collect()))
+    }
+
+    /// The kernels in order of execution, as [`Self::profile`] times them, with their threads and bytes.
+    pub fn dispatches(&self) -> Vec<DispatchSize> {
+        self.plan.dispatches().map(Dispatch::size).collect()
     }
 
     /// Allocates staging buffers for the map of one frame; one readback per frame in flight.

@@ -18,18 +18,19 @@ use crate::{
 pub(super) enum Following {
     /// A thread per line; the selection follows the path of this direction itself.
     Lines(Direction),
-    /// Threads across disparities; all paths are stored.
-    Lanes(Lanes),
+    /// Threads across disparities, of a line and of a pixel; all paths are stored.
+    Lanes { line: Lanes, pixel: Lanes },
 }
 
 impl Following {
     /// For `costs` over `range` on the device of `gpu`, and the directions of the stored paths.
     pub(super) fn new(gpu: &Gpu, costs: &CostAggregation, range: DisparityRange) -> (Self, &'static [Direction]) {
         let band = VolumeBand { width: 1, first_row: 0, rows: 1, range };
-        let lanes = if gpu.shapes().sgm == SgmPlan::Lanes { Lanes::of(gpu, &band) } else { None };
+        let lanes = Lanes::of_line(gpu, &band).zip(Lanes::of_pixel(gpu, &band));
+        let lanes = lanes.filter(|_| gpu.shapes().sgm == SgmPlan::Lanes);
         // Without any path the selection reads the costs.
         match (lanes, costs.directions()) {
-            (Some(lanes), directions @ [_, ..]) => (Self::Lanes(lanes), directions),
+            (Some((line, pixel)), directions @ [_, ..]) => (Self::Lanes { line, pixel }, directions),
             _ => {
                 let (last, stored) = costs.last_and_stored();
                 (Self::Lines(last), stored)
@@ -48,7 +49,7 @@ impl CostKernel {
     pub(super) fn new(gpu: &Gpu, following: Following, cost: &Cost, view: View) -> Self {
         match following {
             Following::Lines(_) => Self::Lines(CostVolume::new(gpu, cost, view, pixels_per_thread(gpu))),
-            Following::Lanes(_) => Self::Lanes(LaneCost::new(gpu, cost, view)),
+            Following::Lanes { .. } => Self::Lanes(LaneCost::new(gpu, cost, view)),
         }
     }
 
@@ -72,7 +73,7 @@ impl PathKernel {
     pub(super) fn new(gpu: &Gpu, following: Following, penalties: &Penalties, words: u32, paths: usize) -> Self {
         match following {
             Following::Lines(_) => Self::Lines((paths > 0).then(|| Path::new(gpu, penalties, words))),
-            Following::Lanes(lanes) => Self::Lanes(LanePath::new(gpu, penalties, lanes)),
+            Following::Lanes { line, .. } => Self::Lanes(LanePath::new(gpu, penalties, line)),
         }
     }
 
@@ -115,7 +116,7 @@ impl SelectKernel {
     ) -> Self {
         match following {
             Following::Lines(last) => Self::Lines(Select::new(gpu, penalties, words, selection), last),
-            Following::Lanes(lanes) => Self::Lanes(LaneSelect::new(gpu, lanes, selection)),
+            Following::Lanes { pixel, .. } => Self::Lanes(LaneSelect::new(gpu, pixel, selection)),
         }
     }
 

@@ -16,7 +16,16 @@ fn trial(width: u32, height: u32, count: u32, band_rows: u32, exchange: Exchange
     let costs = picture((width * count, height), 77).data().iter().map(|&value| value / 2).collect();
     let reference = picture((width, height), 71).map(|&value| u32::from(value) | 0xabcd_ef00);
     let directions = Direction::ALL.to_vec();
-    LanePathTrial { reference, costs, directions, penalties: PENALTIES, band_rows, lane_threads: 64, exchange }
+    LanePathTrial {
+        reference,
+        costs,
+        directions,
+        penalties: PENALTIES,
+        band_rows,
+        lane_disparities: 16,
+        lane_threads: 64,
+        exchange,
+    }
 }
 
 #[test]
@@ -41,9 +50,11 @@ fn any_number_of_disparities_is_shared_out() {
 #[test]
 fn workgroups_of_any_size_go_the_same_way() {
     for lane_threads in Shapes::LANE_THREADS {
-        for exchange in Exchange::ALL {
-            let trial = LanePathTrial { lane_threads, ..trial(37, 20, 32, 20, exchange) };
-            assert_twin(&format!("{lane_threads} threads {exchange}"), &trial);
+        for lane_disparities in Shapes::LANE_DISPARITIES {
+            for exchange in Exchange::ALL {
+                let trial = LanePathTrial { lane_disparities, lane_threads, ..trial(37, 20, 32, 20, exchange) };
+                assert_twin(&format!("{lane_disparities} disparities, {lane_threads} threads {exchange}"), &trial);
+            }
         }
     }
 }
@@ -74,6 +85,7 @@ fn by_hand() {
         directions: vec![Direction { dx: 1, dy: 0 }],
         penalties: PENALTIES,
         band_rows: 1,
+        lane_disparities: 16,
         lane_threads: 64,
         exchange: Exchange::Memory,
     };

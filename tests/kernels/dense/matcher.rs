@@ -352,6 +352,7 @@ fn a_profile_has_a_time_for_each_kernel_and_the_same_map() {
     let (dense, times) = block_on(matcher.profile()).unwrap();
     assert_eq!(dense, matcher.run().unwrap());
     let names: Vec<_> = times.iter().map(|(name, _)| *name).collect();
+    assert_eq!(names, matcher.dispatches().iter().map(|dispatch| dispatch.kernel).collect::<Vec<_>>());
     let first = ["halve", "halve", "pad", "pad", "block_match", "block_match", "cell_ranges"];
     assert_eq!((&names[..7], names.last()), (&first[..], Some(&"block_match")));
     assert!(times.iter().all(|(_, time)| !time.is_zero()), "{times:?}");

@@ -17,7 +17,7 @@ use crate::{
     },
     disparity::DisparityRange,
     error::Result,
-    gpu::{Exchange, Gpu, Shapes},
+    gpu::{Exchange, Shapes},
     image::{Plane, Size},
     luma::pack,
     verify::{
@@ -31,11 +31,8 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("lane_select", |size, dice| Box::new(LaneSelectTrial::draw(size, dice))),
 ];
 
-/// The threads that share the disparities of `band`.
-fn lanes(gpu: &Gpu, band: &VolumeBand, lane_threads: u32, exchange: Exchange) -> Lanes {
-    let gpu = gpu.clone().with_shapes(Shapes { lane_threads, exchange, ..gpu.shapes() });
-    Lanes::of(&gpu, band).expect("threads for the disparities of a trial")
-}
+/// Why each trial has threads.
+const FEW: &str = "few disparities in a trial";
 
 /// Costs for several paths.
 #[derive(Clone, Debug)]
@@ -50,6 +47,8 @@ pub struct LanePathTrial {
     pub penalties: Penalties,
     /// Rows per band; each band continues the paths of the previous one. In several bands one path is followed at a time.
     pub band_rows: u32,
+    /// See [`Shapes::lane_disparities`].
+    pub lane_disparities: u32,
     /// See [`Shapes::lane_threads`].
     pub lane_threads: u32,
     /// By what threads exchange path costs, if the device can.
@@ -65,7 +64,8 @@ impl LanePathTrial {
         let reference = dice.picture(size).map(|&value| u32::from(value) | high_bits);
         let costs = costs(size, count, dice.word());
         let (lane_threads, exchange) = (dice.pick(&Shapes::LANE_THREADS), dice.pick(&Exchange::ALL));
-        Self { reference, costs, directions, penalties, band_rows, lane_threads, exchange }
+        let lane_disparities = dice.pick(&Shapes::LANE_DISPARITIES);
+        Self { reference, costs, directions, penalties, band_rows, lane_disparities, lane_threads, exchange }
     }
 
     /// The volumes of `directions` in the band of `rows` rows from `first_row`, whose lines continue from `carried`, and the halo
@@ -80,8 +80,10 @@ impl LanePathTrial {
         let Size { width, height } = self.reference.size();
         let count = self.costs.len() as u32 / (width * height);
         let band = VolumeBand { width, first_row, rows, range: DisparityRange { min: 0, count } };
-        let lanes = lanes(bench.gpu, &band, self.lane_threads, self.exchange);
-        let kernel = LanePath::new(bench.gpu, &self.penalties, lanes);
+        let Self { lane_disparities, lane_threads, exchange, .. } = *self;
+        let gpu = bench.gpu;
+        let gpu = gpu.clone().with_shapes(Shapes { lane_disparities, lane_threads, exchange, ..gpu.shapes() });
+        let kernel = LanePath::new(&gpu, &self.penalties, Lanes::of_line(&gpu, &band).expect(FEW));
         let row = band.row_words() as usize;
         let volume_words = row * (rows as usize + 2);
         let mut volumes = vec![u32::MAX; volume_words * directions.len()];
@@ -105,8 +107,11 @@ impl LanePathTrial {
 
 impl Trial for LanePathTrial {
     fn parameters(&self) -> String {
-        let Self { directions, penalties, band_rows, lane_threads, exchange, .. } = self;
-        format!("{directions:?} {penalties:?} in bands of {band_rows} rows, {lane_threads} threads, {exchange}")
+        let Self { directions, penalties, band_rows, lane_disparities, lane_threads, exchange, .. } = self;
+        format!(
+            "{directions:?} {penalties:?} in bands of {band_rows} rows, {lane_disparities} disparities per thread, {lane_threads} threads, \
+             {exchange}"
+        )
     }
 
     fn input(&self) -> Vec<Array> {
@@ -206,8 +211,9 @@ impl Trial for LaneSelectTrial {
             keys: true,
             uniqueness: self.uniqueness,
         };
-        let lanes = lanes(bench.gpu, &band, self.lane_threads, Exchange::Memory);
-        let kernel = LaneSelect::new(bench.gpu, lanes, selection);
+        let gpu = bench.gpu;
+        let gpu = gpu.clone().with_shapes(Shapes { lane_threads: self.lane_threads, ..gpu.shapes() });
+        let kernel = LaneSelect::new(&gpu, Lanes::of_pixel(&gpu, &band).expect(FEW), selection);
         // The kernel expects zeros.
         let matches = bench.upload(&vec![0_u32; (layout.words() as u32 + layout.pixels()) as usize])?;
         let paths = bench.upload(&words(&self.paths.concat()))?;

@@ -1,8 +1,9 @@
-//! The pipeline cache of the program: in the user's cache folder, as `hsad/<vendor>-<device>.pipelines`.
+//! What the program keeps in the user's cache folder per adapter: compiled kernels, and what `hsad tune` has measured.
 
-use std::path::PathBuf;
-
-use hsad::{Backend, gpu::PipelineFile};
+use hsad::{
+    Backend, Gpu,
+    gpu::{PipelineFile, ShapesFile, cache_folder},
+};
 
 /// An open backend, and the file of its pipeline cache, if the device has one.
 pub struct CachedBackend {
@@ -11,10 +12,12 @@ pub struct CachedBackend {
 }
 
 impl CachedBackend {
-    /// Gives a device the pipeline cache that earlier runs have left. A cache that cannot be read is a record in the log.
+    /// Gives a device the shapes of kernels and the pipeline cache that earlier runs have left. A file that cannot be read is a
+    /// record in the log.
     pub fn new(backend: Backend) -> Self {
         let Backend::Gpu(gpu) = backend else { return Self { backend, file: None } };
-        let file = folder().and_then(|folder| {
+        let gpu = tuned(gpu);
+        let file = cache_folder().and_then(|folder| {
             PipelineFile::open(&gpu, &folder).unwrap_or_else(|error| {
                 log::warn!("no pipeline cache: {error}");
                 None
@@ -35,11 +38,14 @@ impl CachedBackend {
     }
 }
 
-/// The folder of this program in the user's cache folder (XDG Base Directory Specification; `%LOCALAPPDATA%` on Windows).
-fn folder() -> Option<PathBuf> {
-    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let cache = absolute("XDG_CACHE_HOME").or_else(|| {
-        if cfg!(windows) { absolute("LOCALAPPDATA") } else { absolute("HOME").map(|home| home.join(".cache")) }
-    })?;
-    Some(cache.join("hsad"))
+/// The device with the shapes of kernels that `hsad tune` has found, if it has. A file that cannot be read is a record in the log.
+pub fn tuned(gpu: Gpu) -> Gpu {
+    let kept = cache_folder().map(|folder| ShapesFile::of(&gpu, &folder).read());
+    match kept.transpose() {
+        Ok(shapes) => shapes.flatten().into_iter().fold(gpu, Gpu::with_shapes),
+        Err(error) => {
+            log::warn!("the shapes of kernels are not those of hsad tune: {error}");
+            gpu
+        }
+    }
 }

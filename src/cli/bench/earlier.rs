@@ -1,0 +1,31 @@
+//! Figures of an earlier run.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use anyhow::anyhow;
+use serde_json::Value;
+
+/// Medians of an earlier run, by the names of the cases.
+pub struct Earlier(BTreeMap<String, f64>);
+
+impl Earlier {
+    /// Reads the JSON of `hsad bench`.
+    pub fn read(file: &Path) -> anyhow::Result<Self> {
+        let text = fs::read_to_string(file).map_err(|error| anyhow!("{}: {error}", file.display()))?;
+        let unknown = || anyhow!("{}: no figures of hsad bench --json", file.display());
+        let report: Value = serde_json::from_str(&text).map_err(|_| unknown())?;
+        let case = |case: &Value| {
+            let number = |name: &str| case[name].as_u64();
+            let (width, height) = (number("width")?, number("height")?);
+            let name = format!("{} {width}x{height} {}", case["preset"].as_str()?, number("disparities")?);
+            Some((name, case["median_ms"].as_f64().filter(|median| *median > 0.0)?))
+        };
+        let cases = report["cases"].as_array().ok_or_else(unknown)?;
+        cases.iter().map(|one| case(one).ok_or_else(unknown)).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// The median of the case of this name, in milliseconds.
+    pub fn median(&self, case: &str) -> Option<f64> {
+        self.0.get(case).copied()
+    }
+}
