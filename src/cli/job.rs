@@ -17,6 +17,7 @@ use super::{
     cloud::WrittenCloud,
     doubts::{self, NotTrusted},
     options::RunOptions,
+    rectification,
     terminal::Progress,
     way::Way,
 };
@@ -174,7 +175,8 @@ impl Job {
             }
             error => error,
         })?;
-        Ok(Matched { outcome, rectified: Some(pair), warnings: Vec::new() })
+        let warnings = rectification::doubt(&pair).into_iter().collect();
+        Ok(Matched { outcome, rectified: Some(pair), warnings })
     }
 
     /// Matches the pair as it is, or rectified from its matches if its rows do not correspond.
@@ -220,7 +222,9 @@ impl Job {
             }
             Ok(pair) => {
                 let mut matched = self.along_rows_of(pair, backend, progress)?;
-                matched.warnings.push(format!("{why}; disparities are those of the pair rectified from its matches"));
+                matched
+                    .warnings
+                    .insert(0, format!("{why}; disparities are those of the pair rectified from its matches"));
                 return Ok(matched);
             }
             Err(Error::NotRectifiable { reason }) => reason,

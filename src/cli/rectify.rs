@@ -87,6 +87,7 @@ impl Rectify {
         cached.save();
         let seconds = start.elapsed().as_secs_f64();
         warnings.extend(misfit(&pair));
+        warnings.extend(rectification::doubt(&pair));
         progress.begin("writing");
         rectification::add_files(&pair, &NAMES, &mut output)?;
         let report = json!({

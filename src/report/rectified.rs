@@ -53,6 +53,7 @@ fn uncalibrated(found: &Uncalibrated) -> Value {
         "k1": found.k1,
         "k1_unit_px": [found.mean_side(0), found.mean_side(1)],
         "shift_px": found.shift,
+        "disparity_constant_known": found.keeps_columns,
         "points": points,
         "inliers": inliers,
         "off_plane": off_plane,

@@ -13,6 +13,7 @@ mod rows;
 mod run;
 mod scene;
 mod shared;
+mod sizes;
 #[path = "../texture/mod.rs"]
 mod texture;
 mod trust;

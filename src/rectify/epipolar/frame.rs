@@ -53,6 +53,11 @@ impl Frame {
         DMat3::from_translation(self.centres[view]) * DMat3::from_scale(DVec2::splat(self.pixels))
     }
 
+    /// The centre of the right view from that of the left one, in units, where the top left pixels of both lie in one place.
+    pub fn offset(&self) -> DVec2 {
+        (self.centres[1] - self.centres[0]) / self.pixels
+    }
+
     /// Half of width and height of a view between the centres of its outermost pixels, in units.
     pub fn half(&self, view: usize) -> DVec2 {
         self.centres[view] / self.pixels

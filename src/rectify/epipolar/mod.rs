@@ -71,6 +71,11 @@ impl Model {
         }
     }
 
+    /// Whether columns of both views stay.
+    const fn keeps_columns(self) -> bool {
+        matches!(self, Self::Right(kind) if kind.keeps_columns())
+    }
+
     /// Number of parameters that points determine.
     const fn parameters(self) -> usize {
         match self {
@@ -96,6 +101,10 @@ pub struct Uncalibrated {
     pub size: Size,
     /// How far the columns of the right picture were moved to the right, in pixels, so that disparities are not far from 0.
     pub shift: f64,
+    /// Whether columns of both pictures, but for [`Self::shift`], are those of the views, without the distortion of the lens:
+    /// disparities are then those of the views as they were taken, less the shift. Otherwise they are known but for a constant, since
+    /// matches do not tell the columns of one view against those of the other.
+    pub keeps_columns: bool,
     /// How shapes change around the matched points.
     pub distortion: Distortion,
     /// Row errors of matched points that the fit did not use.
@@ -139,20 +148,15 @@ impl Uncalibrated {
             }
         };
 
-        let (model, maps) = chosen(&found, &inliers, &frame);
-        let maps = [maps[0], columns(&maps, &inliers, &frame) * maps[1]];
-        let in_pixels = DMat3::from_translation(frame.pixel(0, DVec2::ZERO))
-            * DMat3::from_scale(frame.pixel(0, DVec2::ONE) - frame.pixel(0, DVec2::ZERO));
-        let maps = maps.map(|map| in_pixels * map);
-        let residual = row_errors(&maps, &lens.straight(&unused, &frame), &frame);
-        Self::bounded(evidence, model, maps, lens, &inliers, residual, frame)
+        let chosen = Chosen::new(&found, &inliers, &frame);
+        let residual = row_errors(&chosen.maps, &lens.straight(&unused, &frame), &frame);
+        Self::bounded(evidence, &chosen, lens, &inliers, residual, frame)
     }
 
-    /// The rectification by `maps` from units to pixels, if it leaves the views recognisable and their rows equal.
+    /// The rectification by the chosen maps, if it leaves the views recognisable and their rows equal.
     fn bounded(
         evidence: Evidence,
-        model: Model,
-        maps: [DMat3; 2],
+        &Chosen { model, maps, keeps_columns }: &Chosen,
         lens: Lens,
         inliers: &[Correspondence],
         residual: Residual,
@@ -176,7 +180,7 @@ impl Uncalibrated {
         });
         let shift = layout.origins[0].x - layout.origins[1].x;
         let (k1, size) = (lens.k1, layout.size);
-        Ok(Self { evidence, model, k1, homographies, size, shift, distortion, residual, frame })
+        Ok(Self { evidence, model, k1, homographies, size, shift, keeps_columns, distortion, residual, frame })
     }
 
     /// The pixel of a rectified picture that shows a pixel of a view, 0 for the left one; `None` beyond the horizon.
@@ -245,19 +249,37 @@ fn columns(maps: &[DMat3; 2], inliers: &[Correspondence], frame: &Frame) -> DMat
     }
 }
 
+/// What is done to the views, and how.
+struct Chosen {
+    model: Model,
+    /// Maps from units of both views to pixels of the rectified plane.
+    maps: [DMat3; 2],
+    keeps_columns: bool,
+}
+
+impl Chosen {
+    fn new(found: &Fundamental, inliers: &[Correspondence], frame: &Frame) -> Self {
+        let (model, maps) = cheapest(found, inliers, frame);
+        let upright = columns(&maps, inliers, frame);
+        let keeps_columns = model.keeps_columns() && upright == DMat3::IDENTITY;
+        let in_pixels = frame.map_to_pixels(0);
+        Self { model, maps: [in_pixels * maps[0], in_pixels * upright * maps[1]], keeps_columns }
+    }
+}
+
 /// The model of least cost, and homographies of both views from units to units.
-fn chosen(found: &Fundamental, inliers: &[Correspondence], frame: &Frame) -> (Model, [DMat3; 2]) {
+fn cheapest(found: &Fundamental, inliers: &[Correspondence], frame: &Frame) -> (Model, [DMat3; 2]) {
     let criterion = |found: &Fundamental, model: Model| {
         found.cost(inliers, frame.unit) + model.parameters() as f64 * libm::log(inliers.len() as f64)
     };
-    let as_is = (RowKind::AsIs, rows::AS_IS);
+    let as_is = (RowKind::AsIs, rows::as_is(frame));
     let best = std::iter::once(as_is)
         .chain(rows::fits(inliers, frame.unit))
         .map(|(kind, fit)| (criterion(&rows::fundamental(fit), Model::Right(kind)), kind, fit))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     match best {
         Some((cost, kind, fit)) if cost <= criterion(found, Model::Both) => {
-            (Model::Right(kind), [DMat3::IDENTITY, rows::homography(fit)])
+            (Model::Right(kind), [DMat3::IDENTITY, rows::homography(kind, fit, frame)])
         }
         _ => (Model::Both, Cameras::fitted(inliers, frame).homographies(inliers, frame)),
     }

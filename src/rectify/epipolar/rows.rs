@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    frame::PRECISION,
+    frame::{Frame, PRECISION},
     fundamental::Fundamental,
     minimise::{Errors, SINGULAR, minimise},
 };
@@ -16,17 +16,22 @@ const WIDTHS: [f64; 5] = [30.0, 10.0, 3.0, 1.0, PRECISION];
 /// The parameters `p0` to `p4` of a left row, `y = (p0 x + p1 y + p2) / (1 + p3 x + p4 y)`, in units of a frame.
 pub(super) type Parameters = [f64; 5];
 
-/// Rows as they are.
-pub(super) const AS_IS: Parameters = [0.0, 1.0, 0.0, 0.0, 0.0];
+/// Rows as they are in the pictures, whose centres need not lie in one row.
+pub(super) fn as_is(frame: &Frame) -> Parameters {
+    [0.0, 1.0, frame.offset().y, 0.0, 0.0]
+}
 
 /// The fundamental matrix of views whose left rows are epipolar lines.
 pub(super) fn fundamental([p0, p1, p2, p3, p4]: Parameters) -> Fundamental {
     Fundamental(DMat3::from_cols(DVec3::ZERO, DVec3::new(p3, p4, 1.0), -DVec3::new(p0, p1, p2)))
 }
 
-/// The homography of the right view that brings its rows to the left ones. Columns follow from a turn and a scale alone at the
-/// centre of the view, so that the surroundings of the centre are not sheared.
-pub(super) fn homography([p0, p1, p2, p3, p4]: Parameters) -> DMat3 {
+/// The homography of the right view that brings its rows to the left ones. Columns that need no turn stay those of the picture; others
+/// follow from a turn and a scale alone at the centre of the view, so that the surroundings of the centre are not sheared.
+pub(super) fn homography(kind: RowKind, [p0, p1, p2, p3, p4]: Parameters, frame: &Frame) -> DMat3 {
+    if kind.keeps_columns() {
+        return DMat3::from_translation(DVec2::new(frame.offset().x, p2));
+    }
     let (by_x, by_y) = (p0 - p2 * p3, p1 - p2 * p4);
     DMat3::from_cols(DVec3::new(by_y, p0, p3), DVec3::new(-by_x, p1, p4), DVec3::new(0.0, p2, 1.0))
 }

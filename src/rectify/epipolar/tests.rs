@@ -168,7 +168,25 @@ fn columns_that_lean_or_are_stretched_are_set_upright() {
             (point.0.x - right.x - point.1).abs()
         });
         assert!(largest.fold(0.0, f64::max) < 5.0, "{across} {down}");
+        assert_eq!(found.keeps_columns, across == 0.0 && down == 0.0);
     }
+}
+
+#[test]
+fn columns_of_a_cropped_view_stay() {
+    let points = SIDE_BY_SIDE.matched();
+    for (left, top, right, below) in [(0.0, 0.0, 10, 5), (10.0, 5.0, 0, 0), (0.0, 5.0, 10, 0), (10.0, 0.0, 0, 5)] {
+        let cut = |point: &Correspondence| Correspondence { right: point.right - DVec2::new(left, top), ..*point };
+        let cropped: Vec<Correspondence> = points.iter().map(cut).collect();
+        let size = Size::new(800 - right - left as u32, 600 - below - top as u32);
+        let found = Uncalibrated::new(&cropped, [SIZE, size], 1).unwrap();
+        let kind = if top == 0.0 { RowKind::AsIs } else { RowKind::Shift };
+        assert_eq!((found.model, found.keeps_columns, found.shift), (Model::Right(kind), true, 0.0));
+        let (pixel, moved) = (DVec2::new(123.0, 45.0), found.rectified(1, DVec2::new(123.0, 45.0)).unwrap());
+        assert!((moved.x - pixel.x).abs() < 1e-9 && (moved.y - pixel.y - top).abs() < 0.1, "{moved}");
+    }
+    assert!(!Rig::turned([0.0, 0.0, 5.0]).rectified().0.keeps_columns);
+    assert!(!Rig { place: DVec3::new(0.0, 0.2, 0.0), ..SIDE_BY_SIDE }.rectified().0.keeps_columns, "both views");
 }
 
 #[test]
