@@ -24,7 +24,7 @@ pub fn matched(backend: &Backend, scene: &Scene, config: &Config) -> Result<Matc
     };
     match run(false) {
         Ok(outcome) => {
-            let is_trusted = outcome.trust >= TRUSTED && !outcome.no_parallax;
+            let is_trusted = outcome.trust >= TRUSTED;
             Ok(Matched { outcome, exit_code: if is_trusted { 0 } else { 4 } })
         }
         Err(Error::NotRectified { .. }) => Ok(Matched { outcome: run(true)?, exit_code: 3 }),

@@ -4,15 +4,22 @@ use hsad::{
     Error,
     config::Config,
     disparity::DisparityRange,
-    glam::DVec2,
-    io::Picture,
+    io::{Calibration, Picture},
     matching::Seed,
-    pipeline::{self, Outcome, RangeSource, TRUSTED},
-    rectify::{Correspondence, RowKind, epipolar::turned_on_the_spot},
+    pipeline::{Mirrored, NoDepth, Outcome, RangeSource, TRUSTED},
+    rectify::RowKind,
     seeding::Verdict,
 };
 
 use super::wording::in_options;
+
+/// Number of seeds below which they tell nothing of the range.
+const FEW: usize = 20;
+
+/// Disparity of points behind the cameras, in pixels, with a margin for what is far away.
+const BEYOND: f64 = 1.0;
+/// Largest constant of the disparities that a turn of the right camera to the side may leave, in pixels.
+const ASIDE: f64 = 2.0;
 
 /// A map that is likely to be wrong in large parts, or that shows no depth. The files are written all the same.
 #[derive(Debug, thiserror::Error)]
@@ -23,18 +30,17 @@ pub struct NotTrusted {
 }
 
 impl NotTrusted {
-    /// `None` for a map that can be trusted.
-    pub fn new(outcome: &Outcome) -> Option<Self> {
-        if outcome.no_parallax {
-            let reason = "the views show no parallax, as pictures from one place do: no depth follows from them";
-            return Some(Self { reason: reason.into() });
+    /// `None` for a map that can be trusted. `calibration` is that of the disparities.
+    pub fn new(outcome: &Outcome, calibration: Option<&Calibration>) -> Option<Self> {
+        if let Some(why) = outcome.no_depth {
+            return Some(Self { reason: without_depth(why).into() });
         }
         if outcome.trust >= TRUSTED {
-            return None;
+            return calibration.and_then(|calibration| behind(outcome, calibration)).map(|reason| Self { reason });
         }
         let reason = if outcome.seeding.rectification.verdict == Verdict::Unknown {
             "nothing tells whether the rows of the views correspond"
-        } else if outcome.seeding.seeds.len() < 20 {
+        } else if outcome.seeding.seeds.len() < FEW {
             "hardly any interest point was found in both views"
         } else if outcome.repetition > 4 {
             "disparities come in steps of many pixels"
@@ -42,6 +48,62 @@ impl NotTrusted {
             "the views correspond in too little of the picture"
         };
         Some(Self { reason: format!("the map is not to be trusted (trust {:.2} of 1): {reason}", outcome.trust) })
+    }
+}
+
+/// Why depth does not follow from a map whose surfaces lie behind the cameras by the calibration, if most do.
+fn behind(outcome: &Outcome, calibration: &Calibration) -> Option<String> {
+    let seeds = &outcome.seeding.seeds;
+    let beyond = |seed: &&Seed| f64::from(seed.disparity) + calibration.doffs < -BEYOND;
+    let count = seeds.iter().filter(beyond).count();
+    (seeds.len() >= FEW && 4 * count > 3 * seeds.len()).then(|| {
+        format!(
+            "{count} of {} matched points lie behind the cameras by the calibration, at disparities below {:.0} px: exchange left and \
+             right, or correct doffs",
+            seeds.len(),
+            0.0 - calibration.doffs
+        )
+    })
+}
+
+/// A warning if the rows of a pair whose calibration is given for rectified pictures are those of a camera that looks to the side: then
+/// disparities have a constant that rows tell but roughly, and depth does not follow.
+pub fn looks_to_the_side(outcome: &Outcome, calibration: &Calibration) -> Option<String> {
+    let found = &outcome.seeding.rectification;
+    let off = calibration.focal * calibration.focal * found.rows.parameters()[3];
+    // The distortion of a lens looks like a turn, too.
+    let is_turned = found.rows.kind() == RowKind::Projective && !found.is_distorted();
+    (is_turned && off.abs() > ASIDE).then(|| {
+        format!(
+            "the pictures are not those of a rectified pair: by its rows the right camera looks {:.1} degrees to the side, so that \
+             disparities are off by about {:.0} px and no depth follows; rectify the pair by the calibration of the cameras as they \
+             stand, or take it as rectified with --no-align",
+            (off / calibration.focal).abs().atan().to_degrees(),
+            off.abs()
+        )
+    })
+}
+
+/// The reason for which a pair fails of which one view is a mirror image.
+pub fn mirrored(sides: Mirrored) -> String {
+    format!("one view is a mirror image of the other, {sides} exchanged: mirror one of the views back")
+}
+
+/// Why disparities tell no depth, in words.
+fn without_depth(why: NoDepth) -> &'static str {
+    match why {
+        NoDepth::NoParallax => "the views show no parallax, as pictures from one place do: no depth follows from them",
+        NoDepth::Turned => {
+            "the camera turned on the spot, and disparities tell no depth: take the second picture from another place"
+        }
+        NoDepth::Plane => {
+            "the views show a plane, which does not tell how the cameras stand, and disparities tell no depth: take a scene with \
+             depth, or rectify the pair by a calibration"
+        }
+        NoDepth::Flat => {
+            "the views show a plane, or the camera turned on the spot, and disparities tell no depth: take both pictures of a scene \
+             with depth, from two places"
+        }
     }
 }
 
@@ -65,7 +127,6 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         let reason = "no pixel has a partner further away than the picture is wide";
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }
-    warnings.extend(turn(outcome));
     warnings.extend(distortion(outcome));
     warnings.extend(outside(config, outcome));
     warnings.extend(at_end(config, outcome));
@@ -113,24 +174,6 @@ pub fn span(range: DisparityRange) -> String {
     format!("{} to {} px", range.min, range.last())
 }
 
-/// A warning if the matches are what a camera sees that turned on the spot: then rows are those of a perspective.
-fn turn(outcome: &Outcome) -> Option<String> {
-    let rows = &outcome.seeding.rectification.rows;
-    if rows.kind() != RowKind::Projective {
-        return None;
-    }
-    let point = |seed: &Seed| {
-        let [x, y, right] = [seed.x, seed.y, seed.right_x()].map(f64::from);
-        Correspondence { left: DVec2::new(x, y), right: DVec2::new(right, rows.right_row(right, y)) }
-    };
-    let points: Vec<Correspondence> = outcome.seeding.seeds.iter().map(point).collect();
-    let size = outcome.dense.disparity.size();
-    turned_on_the_spot(&points, [size; 2], pipeline::reduction(size)).then(|| {
-        "the camera turned on the spot, and disparities tell no depth: take the second picture from another place"
-            .into()
-    })
-}
-
 /// A warning if rows differ as the rows of a distorted lens do.
 fn distortion(outcome: &Outcome) -> Option<String> {
     let rows = &outcome.seeding.rectification;
@@ -144,8 +187,11 @@ fn distortion(outcome: &Outcome) -> Option<String> {
 }
 
 /// A warning if most matches lie outside the searched range, or have negative disparities: the range is wrong, or the
-/// views are exchanged.
+/// views are exchanged. Where disparities tell no depth, neither do their signs.
 fn outside(config: &Config, outcome: &Outcome) -> Option<String> {
+    if outcome.no_depth.is_some() || outcome.seeding.seeds.len() < FEW {
+        return None;
+    }
     let disparities: Vec<f32> = outcome.seeding.seeds.iter().map(|seed| seed.disparity).collect();
     let share = |wanted: &dyn Fn(f32) -> bool| {
         disparities.iter().filter(|&&disparity| wanted(disparity)).count() as f32 / disparities.len() as f32

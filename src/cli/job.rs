@@ -9,7 +9,7 @@ use hsad::{
     dense::View,
     gpu::block_on,
     io::{Calibration, Picture, load::Stretch},
-    pipeline::{self, Outcome, RectifiedPair, TakenPair, WayBack},
+    pipeline::{self, Mirrored, Outcome, RectifiedPair, TakenPair, WayBack},
     seeding::Verdict,
 };
 
@@ -74,12 +74,26 @@ impl Job {
         let start = Instant::now();
         let cached = options.open()?;
         let progress = Progress::new(options.quiet);
-        let Matched { mut outcome, rectified, mut warnings } = self.matched(&cached.backend, &progress)?;
+        let matched = self.matched(&cached.backend, &progress);
+        let mirrored = self.mirrored(&matched, &cached.backend, &progress)?;
+        let Matched { mut outcome, rectified, mut warnings } = match (matched, mirrored) {
+            (Err(_), Some(sides)) => {
+                return Err(Error::NotRectifiable { reason: doubts::mirrored(sides) }.into());
+            }
+            (matched, _) => matched?,
+        };
         cached.save();
         let given = [&self.left, &self.right];
         let [left, right] = rectified.as_ref().map_or(given, |pair| pair.pictures.each_ref());
-        warnings.extend(doubts::warnings((left, right), &self.config, &outcome));
-        let mut not_trusted = NotTrusted::new(&outcome);
+        let mut calibration = match &rectified {
+            Some(pair) => pair.rectification.calibration().copied(),
+            None => self.calibration,
+        };
+        let mut not_trusted = NotTrusted::new(&outcome, calibration.as_ref());
+        match (mirrored, &mut not_trusted) {
+            (Some(sides), Some(doubt)) => doubt.reason = doubts::mirrored(sides),
+            _ => warnings.extend(doubts::warnings((left, right), &self.config, &outcome)),
+        }
         if self.config.force {
             warnings.extend(not_trusted.take().map(|doubt| doubt.reason));
         }
@@ -92,16 +106,40 @@ impl Job {
             } else {
                 [self.left, self.right] = pair.pictures.clone();
             }
-            let calibration = pair.rectification.calibration().copied();
             if calibration.is_none() && self.calibration.is_some() {
                 warnings.push(
                     "no depth and no point cloud: a pair rectified without calibration has no known baseline".into(),
                 );
             }
-            self.calibration = calibration;
+        } else if let Some(doubt) =
+            calibration.and_then(|calibration| doubts::looks_to_the_side(&outcome, &calibration))
+        {
+            warnings.push(doubt);
+            calibration = None;
         }
+        self.calibration = calibration;
         let (backend, total) = (cached.backend, start.elapsed());
         Ok(CompletedJob { job: self, backend, outcome, rectified, back, total, warnings, not_trusted, cloud: None })
+    }
+
+    /// How one view mirrors the other, which is found out where the pair was refused or its map is not to be trusted.
+    fn mirrored(
+        &self,
+        matched: &Result<Matched>,
+        backend: &Backend,
+        progress: &Progress,
+    ) -> Result<Option<Mirrored>, Error> {
+        let is_doubtful = match matched {
+            Ok(Matched { outcome, .. }) => outcome.trust < pipeline::TRUSTED && outcome.no_depth.is_none(),
+            Err(error) => {
+                matches!(error.downcast_ref::<Error>(), Some(Error::NotRectified { .. } | Error::NotRectifiable { .. }))
+            }
+        };
+        if !is_doubtful {
+            return Ok(None);
+        }
+        progress.begin("looking for a mirror image");
+        pipeline::mirrored(backend, (&self.left, &self.right))
     }
 
     fn matched(&self, backend: &Backend, progress: &Progress) -> Result<Matched> {
@@ -170,7 +208,9 @@ impl Job {
         let outcome = outcome.map_err(|error| match error {
             Error::NotRectified { diagnosis } if pair.rectification.calibration().is_some() => {
                 let diagnosis =
-                    format!("the calibration does not fit the pictures, after the rectification {diagnosis}");
+                    format!(
+                        "the calibration does not fit the pictures, or left and right are mixed up: after the rectification {diagnosis}"
+                    );
                 Error::NotRectified { diagnosis }
             }
             error => error,
@@ -289,7 +329,7 @@ impl Job {
 
 /// Whether most surfaces of a map share a slant, as where the columns of the right view lean.
 fn has_leaning_columns(outcome: &Outcome) -> bool {
-    outcome.seeding.rectification.lean != 0.0
+    outcome.seeding.rectification.lean != 0.0 && outcome.no_depth.is_none()
 }
 
 /// The outcome of a pair that was matched as it was taken.

@@ -48,8 +48,7 @@ impl CompletedJob {
         output.add("disparity-color.png", |out| png::write_rgb8(out, &colors))?;
         output.add("confidence.png", |out| png::write_grey8(out, &dense.confidence))?;
 
-        // Disparities of a pair without parallax are 0 but for noise, and so are the inverse depths.
-        let has_depth = !self.outcome.no_parallax || self.job.config.force;
+        let has_depth = self.outcome.no_depth.is_none() || self.job.config.force;
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
             let filter = cloud.filter(&calibration)?;
             let depth = self.depth(&calibration);

@@ -4,6 +4,7 @@ use std::{path::PathBuf, time::Instant};
 
 use clap::Args;
 use hsad::{
+    Error,
     io::load::LoadedPair,
     pipeline::{self, RectifiedPair},
     rectify::Residual,
@@ -12,6 +13,7 @@ use serde_json::json;
 
 use super::{
     depth::CalibrationOptions,
+    doubts,
     options::{RunOptions, UnseenOptions},
     output::Output,
     products,
@@ -82,12 +84,19 @@ impl Rectify {
         progress.begin("rectifying");
         let pair = match &file {
             Some(file) => pipeline::rectify_by(backend, (&left, &right), &file.loaded.stereo)?,
-            None => pipeline::rectify(backend, (&left, &right))?,
+            None => pipeline::rectify(backend, (&left, &right)).or_else(|error| {
+                let mirrored = match error {
+                    Error::NotRectifiable { .. } => pipeline::mirrored(backend, (&left, &right))?,
+                    _ => None,
+                };
+                Err(mirrored.map_or(error, |sides| Error::NotRectifiable { reason: doubts::mirrored(sides) }))
+            })?,
         };
         cached.save();
         let seconds = start.elapsed().as_secs_f64();
         warnings.extend(misfit(&pair));
         warnings.extend(rectification::doubt(&pair));
+        warnings.extend(exchanged(&pair));
         progress.begin("writing");
         rectification::add_files(&pair, &NAMES, &mut output)?;
         let report = json!({
@@ -108,6 +117,20 @@ impl Rectify {
         }
         Ok(())
     }
+}
+
+/// A warning if most matches of a pair rectified from them have negative disparities.
+fn exchanged(pair: &RectifiedPair) -> Option<String> {
+    let place = |view, pixel| pair.rectification.rectified_of(view, pixel);
+    let disparities: Vec<f64> =
+        pair.points.iter().filter_map(|point| Some(place(0, point.left)?.x - place(1, point.right)?.x)).collect();
+    let negative = disparities.iter().filter(|&&disparity| disparity < 0.0).count();
+    (disparities.len() >= LEAST && 4 * negative > 3 * disparities.len()).then(|| {
+        format!(
+            "{negative} of {} matches have negative disparities: if left and right are mixed up, exchange them",
+            disparities.len()
+        )
+    })
 }
 
 /// A warning if the rows of most matches do not correspond after all.

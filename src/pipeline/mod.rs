@@ -3,6 +3,8 @@
 mod back;
 mod confidence;
 mod metric;
+mod mirror;
+mod no_depth;
 mod range;
 mod rectified;
 mod reduction;
@@ -14,6 +16,10 @@ mod upright;
 mod views;
 
 pub use back::WayBack;
+#[cfg(not(target_arch = "wasm32"))]
+pub use mirror::mirrored;
+pub use mirror::{Mirrored, mirrored_async};
+pub use no_depth::NoDepth;
 pub use range::RangeSource;
 #[cfg(not(target_arch = "wasm32"))]
 pub use rectified::rectify_by;
@@ -97,10 +103,11 @@ pub struct Outcome {
     /// Disparities and confidences of the reference view; confidence 0 also where a disparity lies at an end of the range or the view is
     /// constant around the pixel, less where the view has little detail, and below 192 where [`Self::trust`] is below [`TRUSTED`].
     pub dense: Dense,
-    /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts.
+    /// Trust in the map, 0 to 1; a map with less than [`TRUSTED`] is likely to be wrong in large parts. 0 where there is
+    /// [`Self::no_depth`].
     pub trust: f32,
-    /// Whether the views show no parallax: disparities are 0 but for noise, and no depth follows from them.
-    pub no_parallax: bool,
+    /// Why disparities tell no depth, if they do not.
+    pub no_depth: Option<NoDepth>,
     /// Duration of each step, with the compilation of its kernels and the wait for its results.
     pub times: Vec<(Step, Duration)>,
 }
@@ -263,8 +270,12 @@ async fn run_on(
     let (left, right) = views.pair.views();
     let own = if config.reference == View::Left { left } else { right };
     let dense = without_constant(dense, own);
-    let trust = trust(&dense, config, &seeding) * of_steps(repetition);
-    let no_parallax = shows_no_parallax(&dense);
+    let no_depth = match given.rectified.and_then(|pair| pair.rectification.calibration()) {
+        _ if shows_no_parallax(&dense) => Some(NoDepth::NoParallax),
+        Some(_) => None,
+        None => NoDepth::of(&seeding.seeds, &seeding.rectification.rows, size, factor),
+    };
+    let trust = if no_depth.is_some() { 0.0 } else { trust(&dense, config, &seeding) * of_steps(repetition) };
     let dense = match config.method {
         Method::Hsad(_) => by_detail(dense, own),
         // Its confidences tell how alike the views look, and not how many neighbours agree.
@@ -275,7 +286,7 @@ async fn run_on(
     Ok(Some(Outcome {
         features,
         points_found,
-        no_parallax,
+        no_depth,
         trust,
         seeding,
         range,

@@ -11,7 +11,7 @@ use crate::{
     backend::Backend,
     calibration::StereoCalibration,
     dense::View,
-    error::Result,
+    error::{Error, Result},
     features::FeatureConfig,
     image::{self, Luma, Plane, Size},
     io::Picture,
@@ -23,6 +23,11 @@ use crate::{
 /// Largest number of interest points of a view that are matched, the strongest, spread over the view: the time to match points grows
 /// with the square of their number, and rows become no more precise with 8000 points.
 const MOST_POINTS: u32 = 4000;
+/// Largest row difference of a right match, smallest magnitude of the disparity of a point behind the cameras, in pixels of the detection,
+/// and smallest number of such points that tell.
+const MOST_OFF: f64 = 3.0;
+const BEYOND: f64 = 1.0;
+const LEAST_BEHIND: usize = 20;
 /// Precision of the rows of a match, in pixels of the detection: the width of the Cauchy loss.
 const PRECISION: f64 = 0.3;
 
@@ -107,6 +112,7 @@ pub async fn rectify_by_async(
     let mut matches = match_upright(backend, [&small[0].luma, &small[1].luma], &config, None).await?;
     matches.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
     let level: Vec<Correspondence> = matches.iter().map(|point| enlarged(point, factor)).collect();
+    check_in_front(&level, factor)?;
     let errors = level.iter().map(|point| point.left.y - point.right.y);
     let residual = Residual::new(level.len(), errors, factor.into());
     let taken = |Correspondence { left, right }: &Correspondence| {
@@ -115,6 +121,24 @@ pub async fn rectify_by_async(
     let points = level.iter().filter_map(taken).collect();
     let [_, right] = views;
     Ok(RectifiedPair { rectification, pictures, points, residual, luma, right })
+}
+
+/// Refuses a pair of whose matched points, in a pair rectified by a calibration and reduced by `factor`, most lie behind the cameras.
+fn check_in_front(points: &[Correspondence], factor: u32) -> Result<()> {
+    let limit = |pixels: f64| pixels * f64::from(factor);
+    let in_rows = |point: &&Correspondence| (point.left.y - point.right.y).abs() <= limit(MOST_OFF);
+    let disparities: Vec<f64> = points.iter().filter(in_rows).map(|point| point.left.x - point.right.x).collect();
+    let behind = disparities.iter().filter(|&&disparity| disparity < -limit(BEYOND)).count();
+    if behind < LEAST_BEHIND || 4 * behind < 3 * disparities.len() {
+        return Ok(());
+    }
+    Err(Error::NotRectifiable {
+        reason: format!(
+            "by the calibration {behind} of {} matched points lie behind the cameras, at negative disparities: the translation has the \
+             wrong sign, or left and right are mixed up; exchange the pictures, or change the sign of the translation",
+            disparities.len()
+        ),
+    })
 }
 
 /// The rectified pictures and their luma; a left view that stays is not resampled.

@@ -29,9 +29,9 @@ impl RectifiedPair {
         let disparity = Plane::from_fn(disparity.size(), restored);
         let range = self.taken_range(&there, upright.range)?;
         let times = [&as_taken.times[..], &upright.times[..]].concat();
-        let (trust, at_ends, no_parallax) = (upright.trust, upright.at_ends, as_taken.no_parallax);
+        let (trust, at_ends) = (upright.trust, upright.at_ends);
         let dense = Dense { disparity, confidence: confidence.clone() };
-        Some(Outcome { dense, range, trust, at_ends, no_parallax, times, ..as_taken.clone() })
+        Some(Outcome { dense, range, trust, at_ends, times, ..as_taken.clone() })
     }
 
     /// The disparity in the views as they were taken of a left pixel that has `disparity` in the rectified pair, whose right rows were

@@ -20,7 +20,7 @@ use crate::{
     image::Plane,
     io::Calibration,
     kamencay::KamencayParameters,
-    pipeline::{Outcome, RangeSource},
+    pipeline::{NoDepth, Outcome, RangeSource},
     seeding::{BrightnessRelation, Rectification, Verdict},
 };
 
@@ -49,7 +49,7 @@ pub fn outcome(config: &Config, outcome: &Outcome) -> Map<String, Value> {
         },
         "unseen": unseen(&outcome.masks),
         "trust": number(outcome.trust),
-        "no_parallax": outcome.no_parallax,
+        "no_depth": outcome.no_depth.map(NoDepth::name),
         "coverage": coverage(&outcome.dense.disparity),
         "measured": outcome.dense.measured(),
         "filled": outcome.dense.filled(),

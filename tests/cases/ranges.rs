@@ -73,6 +73,9 @@ fn exchanged_views_are_told() {
     let run = pair.matched(&[]).ends(0, &["warning: ", words]);
     run.holds(&pair.truth, 90).judges(&pair.truth).errs_below(0.1, &pair.truth);
     pair.matched(&["--min-disparity", "0"]).ends(1, &["error: the disparity range could not be found", words]);
+    // By a calibration they lie behind the cameras.
+    let run = pair.matched(&["--focal", "378", "--baseline", "0.1", "-q"]);
+    run.ends(4, &["matched points lie behind the cameras by the calibration", "exchange left and right"]);
 }
 
 /// Near objects: the left 200 columns of the left view beside the right 200 of the right view, which lie 140 px further

@@ -1,6 +1,9 @@
 //! Rows of the views that do not correspond as they are.
 
-use hsad::{disparity, io::pfm};
+use hsad::{
+    disparity,
+    io::{Picture, pfm},
+};
 
 use crate::{
     pair::{Pair, lowered, resampled, transposed, upside_down},
@@ -175,8 +178,34 @@ fn a_right_view_turned_far_and_smaller_is_rectified() {
 fn a_camera_that_turned_to_the_side_is_named() {
     let pair = Pair::shipped("planes");
     let turned = pair.clone().with_right(|_| resampled(&pair.left, panned(0.12)));
-    turned.matched(&[]).ends(0, &["the camera turned on the spot, and disparities tell no depth"]);
+    let words = "the camera turned on the spot, and disparities tell no depth";
+    let run = turned.matched(&["--focal", "378", "--baseline", "0.1"]).ends(4, &[words]).never_says(&["exchange"]);
+    assert_eq!((run.trust(), &run.report()["no_depth"]), (0.0, &"turned on the spot".into()));
+    assert!(!run.has("depth.pfm") && run.confidence().data().iter().all(|&confidence| confidence < 192));
+    let quiet = turned.matched(&["-q"]).ends(4, &[words]);
+    assert!(quiet.told.starts_with("error: ") && quiet.told.lines().count() == 1, "{}", quiet.told);
+    turned.matched(&["--force"]).ends(0, &["warning: the camera turned on the spot"]);
     pair.matched(&[]).never_says(&["on the spot"]);
+}
+
+#[test]
+fn a_mirror_image_is_named() {
+    let pair = Pair::shipped("planes");
+    let mirrored = |rows: bool, columns: bool| {
+        pair.clone().with_right(|right| {
+            let at = |mirrored: bool, place: u32, side: u32| if mirrored { side - 1 - place } else { place };
+            Picture::from_fn(right.size(), |x, y| right.get(at(columns, x, 340), at(rows, y, 255)))
+        })
+    };
+    let words = "one view is a mirror image of the other, ";
+    for (mirrored, sides) in [(mirrored(false, true), "left and right"), (mirrored(true, false), "top and bottom")] {
+        let run = mirrored.matched(&[]).never_says(&["negative", "upside down", "unrelated"]);
+        assert!([3, 4].contains(&run.code) && run.told.contains(words) && run.told.contains(sides), "{}", run.told);
+        let run = mirrored.matched(&["--rectify", "uncalibrated"]).ends(3, &[words, sides]);
+        run.never_says(&["unrelated"]);
+    }
+    let unrelated = Pair { right: Pair::shipped("curved").right, ..pair.clone() };
+    unrelated.matched(&[]).ends(4, &[]).never_says(&[words]);
 }
 
 #[test]
@@ -192,6 +221,20 @@ fn what_shows_no_depth_is_named() {
         ((x - 169.5) / depth + 180.0, (y - 127.0) / depth + 147.0)
     })
     .ends(3, &["the views show a plane, "]);
+    // Rows that a small warp mends: a plane from two places, and a camera that rolled.
+    let near = |change: &dyn Fn(f64, f64) -> (f64, f64)| {
+        pair.clone().with_right(|_| resampled(&pair.left, change)).matched(&[])
+    };
+    near(&|x, y| {
+        let depth = 1.0 + 0.0002 * (x - 169.5);
+        ((x - 169.5) / depth + 180.0, (y - 127.0) / depth + 128.0)
+    })
+    .ends(4, &["the views show a plane, "]);
+    let (sin, cos) = 0.03_f64.sin_cos();
+    near(&|x, y| (cos * (x - 169.5) - sin * (y - 127.0) + 180.0, sin * (x - 169.5) + cos * (y - 127.0) + 127.0))
+        .ends(4, &["the views show a plane, or the camera turned on the spot"]);
+    // A stereo camera sees a wall so.
+    near(&|x, y| (0.9 * (x - 169.5) + 150.0, y)).ends(0, &[]).never_says(&["plane"]);
     let unrelated = Pair { right: Pair::shipped("curved").right, ..pair.clone() };
     unrelated.matched(&["--rectify", "uncalibrated"]).ends(3, &["the views are unrelated"]);
 }

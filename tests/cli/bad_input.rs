@@ -119,7 +119,7 @@ fn calibrations_that_are_none() {
     }
     fs::write(&calib, "cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=-1000\nbaseline=1\n").unwrap();
     let mut command = match_on_cpu(&left, &right, &temporary.path().join("out"));
-    command.args(["--calib", calib_text]).assert().success().stderr(predicates::str::contains("no pixel has a depth"));
+    command.args(["--calib", calib_text]).assert().code(4).stderr(predicates::str::contains("no pixel has a depth"));
 }
 
 #[test]

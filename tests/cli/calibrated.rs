@@ -12,7 +12,7 @@ use hsad::{
     io::{Picture, calibration::to_json, load, pfm, png},
     rectify::CalibratedRectification,
 };
-use predicates::str::contains;
+use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -126,6 +126,26 @@ fn right_depths(depths: impl Iterator<Item = (DVec2, f64)>) -> (f64, usize) {
     let (right, count) =
         known.fold((0, 0), |(right, n), (z, truth)| (right + usize::from((z / truth - 1.0).abs() < 0.03), n + 1));
     (right as f64 / f64::from(count), count as usize)
+}
+
+#[test]
+fn points_behind_the_cameras_are_told() {
+    let mut taken = Taken::new();
+    let told = || contains("matched points lie behind the cameras").and(contains("the translation has the wrong sign"));
+    // The translation from the right to the left camera for that from the left to the right one.
+    let json = to_json(&taken.stereo);
+    let mut file: Value = serde_json::from_str(&json).unwrap();
+    for part in file["translation"].as_array_mut().unwrap() {
+        *part = Value::from(-part.as_f64().unwrap());
+    }
+    fs::write(&taken.calibration, file.to_string()).unwrap();
+    taken.run_calibrated("match", &["-q"]).code(3).stderr(told());
+    taken.run_calibrated("rectify", &["-q"]).code(3).stderr(told());
+    assert!(!taken.out().exists());
+    // Exchanged views.
+    fs::write(&taken.calibration, json).unwrap();
+    taken.pictures.reverse();
+    taken.run_calibrated("match", &["-q"]).code(3).stderr(contains("left and right are mixed up"));
 }
 
 #[test]

@@ -16,6 +16,8 @@ use crate::{image::Size, rectify::Correspondence};
 const RELATED: (usize, f64) = (20, 0.6);
 /// Distance from the best homography from which a point shows depth, in pixels of the left view, and the smallest share of such points.
 const DEPTH: (f64, f64) = (4.0, 0.04);
+/// The same distance of points whose rows correspond already: a turn on the spot of a scene leaves a pixel.
+const FLAT: f64 = 2.0;
 /// The distance of points that even an obliquely seen plane does not show, over the one above.
 const OBLIQUE: f64 = 3.0;
 /// Smallest and largest scale of the right view that counts: beyond them matches are less precise than depth.
@@ -25,17 +27,33 @@ const STILL: f64 = 0.5;
 /// Smallest share of the inliers whose rows agree as they are, for a scene without depth to count as rectified.
 const LEVEL: f64 = 0.9;
 
-/// Whether points of views of `sizes`, in pixels, detected in the views reduced by `factor`, show no depth and what only a camera sees
-/// that turned, or turned and zoomed, on the spot. Where a camera turns to the side, rows correspond nearly as they are, and a search
-/// along them finds disparities all the same.
-pub fn turned_on_the_spot(points: &[Correspondence], sizes: [Size; 2], factor: u32) -> bool {
+/// [`Relation::Plane`], [`Relation::Turned`] or [`Relation::Flat`] if points of views of `sizes`, in pixels, detected in the views reduced
+/// by `factor`, show no depth. Where a camera turns by little, rows correspond after a small warp, and a search along them finds
+/// disparities all the same.
+pub fn without_depth(points: &[Correspondence], sizes: [Size; 2], factor: u32) -> Option<Relation> {
+    if points.len() < RELATED.0 {
+        return None;
+    }
     let frame = Frame::new(sizes, factor);
     let points: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
-    let Some(plane) = homography::consensus(&points, DEPTH.0 / frame.unit) else { return false };
-    let off = points.iter().filter(|point| homography::distance(&plane, point) > DEPTH.0 / frame.unit).count();
-    points.len() >= RELATED.0
-        && (off as f64) < DEPTH.1 * points.len() as f64
-        && flat::relation(&points, &frame) == Relation::Turned
+    let plane = homography::consensus(&points, DEPTH.0 / frame.unit)?;
+    let off = points.iter().filter(|point| homography::distance(&plane, point) > FLAT / frame.unit).count();
+    ((off as f64) < DEPTH.1 * points.len() as f64).then(|| flat::relation(&points, &frame))
+}
+
+/// The points of views of `sizes`, in pixels, that agree on how the cameras stand; none if too few do.
+pub(crate) fn agreeing(points: &[Correspondence], sizes: [Size; 2]) -> Vec<Correspondence> {
+    let frame = Frame::new(sizes, 1);
+    let places: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
+    let Some(found) = Fundamental::consensus(&places, frame.unit) else { return Vec::new() };
+    let inliers = found.inliers(&places, AGREEMENT / frame.unit);
+    let is_related = inliers.len() as f64 >= RELATED.1 * points.len() as f64;
+    if is_related { inliers } else { Vec::new() }
+}
+
+/// Turn of the right points against the left ones, in radians, clockwise on the screen.
+pub(crate) fn turn(points: &[Correspondence]) -> f64 {
+    Similarity::between(points).turn
 }
 
 /// The figures that tell how the cameras stand.

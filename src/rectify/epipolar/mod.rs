@@ -28,7 +28,8 @@ mod tests;
 
 use glam::{DMat3, DVec2, DVec3};
 
-pub use evidence::{Evidence, turned_on_the_spot};
+pub use evidence::{Evidence, without_depth};
+pub(crate) use evidence::{agreeing, turn};
 pub use refusal::Refusal;
 pub use relation::Relation;
 pub use shape::Distortion;

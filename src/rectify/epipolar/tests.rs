@@ -281,14 +281,15 @@ fn what_cannot_be_rectified_is_told_apart() {
 
 #[test]
 fn a_turn_to_the_side_is_one_on_the_spot_though_rows_nearly_agree() {
-    let is_spot = |rig: Rig| turned_on_the_spot(&rig.points(300, 0.35), [SIZE; 2], 1);
+    let shown = |rig: Rig| without_depth(&rig.points(300, 0.35), [SIZE; 2], 1);
     for pan in [3.0, 6.0, 12.0] {
         let turned = Rig::turned([0.0, pan, 0.0]);
-        assert!(is_spot(Rig { place: DVec3::ZERO, ..turned }), "{pan}");
-        assert!(!is_spot(turned), "{pan}: a scene with depth");
-        assert!(!is_spot(Rig { depths: [4.0, 4.0], ..turned }), "{pan}: a plane");
+        assert_eq!(shown(Rig { place: DVec3::ZERO, ..turned }), Some(Relation::Turned), "{pan}");
+        assert_eq!(shown(turned), None, "{pan}: a scene with depth");
+        assert_eq!(shown(Rig { depths: [4.0, 4.0], ..turned }), Some(Relation::Plane), "{pan}");
     }
-    assert!(!is_spot(SIDE_BY_SIDE) && !is_spot(Rig { depths: [4.0, 4.0], ..SIDE_BY_SIDE }));
+    let roll = Rig { place: DVec3::ZERO, ..Rig::turned([0.0, 0.0, 2.0]) };
+    assert_eq!((shown(roll), shown(SIDE_BY_SIDE)), (Some(Relation::Flat), None));
 }
 
 #[test]
