@@ -1,0 +1,11 @@
+// Elements of the page.
+
+export const at = (id) => document.getElementById(id);
+
+/** Creates an element with text or elements in it. */
+export function made(tag, className, ...content) {
+  const element = document.createElement(tag);
+  element.className = className;
+  element.append(...content);
+  return element;
+}
