@@ -64,9 +64,15 @@ impl Browser {
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
             browser.call(domain, json!({}));
         }
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        browser.call("Emulation.setDeviceMetricsOverride", size);
+        browser.resize(width, height, false);
         browser
+    }
+
+    /// Gives the page `width` x `height` pixels, of a phone's screen with `fingers` or of a desktop's window.
+    pub fn resize(&mut self, width: u32, height: u32, fingers: bool) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": fingers });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": fingers }));
     }
 
     /// Calls a method of the protocol.

@@ -6,6 +6,7 @@
 
 mod devtools;
 mod files;
+mod layout;
 
 use std::{
     fs,
@@ -102,6 +103,7 @@ fn the_page_in_chromium() {
     decodes_what_is_decoded_here(&mut browser);
     computes_what_is_computed_here(&mut browser);
     takes_files_as_the_command_line_does(&mut browser);
+    layout::fits_desktops_and_phones(&mut browser);
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
     if let Some(path) = std::env::var_os("HSAD_SCREENSHOT") {
         // The view is a little to the side, where depth is visible.

@@ -1,5 +1,7 @@
 // A point cloud on a canvas, by WebGL 2: one point per pixel, at the depth of its disparity.
 
+import { listenForGestures } from "./gestures.js";
+
 const VERTEX = `#version 300 es
 uniform int width;        // width of the picture, in pixels
 uniform float focal;      // focal length of the camera, in pixels
@@ -144,6 +146,40 @@ export class Cloud {
     this.draw();
   }
 
+  /** Ends the sway at its current angles. */
+  hold() {
+    if (this.swaying && this.began !== undefined) Object.assign(this, this.angles(performance.now()));
+    this.swaying = false;
+  }
+
+  /** Turns the view, by angles in radians. */
+  turn(yaw, pitch) {
+    this.yaw += yaw;
+    this.pitch = Math.min(1.5, Math.max(-1.5, this.pitch + pitch));
+    this.draw();
+  }
+
+  /** Moves the view to the right and down, in units of what is seen at the median depth. */
+  move(right, down) {
+    const [x, y] = this.shift;
+    this.shift = [x + right * this.distance, y - down * this.distance];
+    this.draw();
+  }
+
+  zoom(factor) {
+    this.distance = Math.min(8, Math.max(0.08, this.distance * factor));
+    this.draw();
+  }
+
+  /** The angles of the view, with the sway at a time in milliseconds. */
+  angles(now) {
+    const { yaw, pitch } = this;
+    if (!this.swaying) return { yaw, pitch };
+    this.began ??= now;
+    const phase = (now - this.began) / 1600;
+    return { yaw: yaw + SWAY * Math.sin(phase), pitch: pitch + 0.25 * SWAY * Math.sin(0.7 * phase) };
+  }
+
   /** Requests a redraw at the next frame. */
   draw() {
     this.pending ??= requestAnimationFrame((now) => {
@@ -163,13 +199,7 @@ export class Cloud {
     if (!this.shown) return;
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(this.program);
-    let { yaw, pitch } = this;
-    if (this.swaying) {
-      this.began ??= now;
-      const phase = (now - this.began) / 1600;
-      yaw += SWAY * Math.sin(phase);
-      pitch += 0.25 * SWAY * Math.sin(0.7 * phase);
-    }
+    const { yaw, pitch } = this.angles(now);
     // Seen from the camera's position, the picture fills the canvas.
     const { picture, disparities, camera } = this.shown;
     const focal = camera.focal * Math.min(width / picture.width, height / picture.height);
@@ -181,6 +211,7 @@ export class Cloud {
     if (this.swaying) this.draw();
   }
 
+  /** Keeps the objects when the WebGL context is lost and restored. */
   listen() {
     const { canvas } = this;
     // The context is restored only if the default action of its loss is prevented.
@@ -189,58 +220,7 @@ export class Cloud {
       this.prepare();
       if (this.shown) this.load();
     });
-    /** Position of each finger, or of the mouse, by pointer id. */
-    const held = new Map();
-    const spread = () => {
-      const [a, b] = [...held.values()];
-      return Math.hypot(a.x - b.x, a.y - b.y);
-    };
-    const zoom = (factor) => {
-      this.distance = Math.min(8, Math.max(0.08, this.distance * factor));
-      this.draw();
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      if (this.swaying && this.began !== undefined) {
-        // The drag starts at the current angle of the sway.
-        const phase = (performance.now() - this.began) / 1600;
-        this.yaw += SWAY * Math.sin(phase);
-        this.pitch += 0.25 * SWAY * Math.sin(0.7 * phase);
-      }
-      this.swaying = false;
-      canvas.setPointerCapture(event.pointerId);
-      held.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      const last = held.get(event.pointerId);
-      if (!last) return;
-      const before = held.size === 2 ? spread() : 0;
-      const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
-      Object.assign(last, { x: event.clientX, y: event.clientY });
-      if (held.size === 2) {
-        zoom(before / Math.max(1, spread()));
-      } else if (event.buttons & 2 || event.shiftKey) {
-        const scale = this.distance / canvas.clientHeight;
-        this.shift = [this.shift[0] + dx * scale, this.shift[1] - dy * scale];
-      } else {
-        this.yaw += (3 * dx) / canvas.clientWidth;
-        this.pitch = Math.min(1.5, Math.max(-1.5, this.pitch + (3 * dy) / canvas.clientHeight));
-      }
-      this.draw();
-    });
-    for (const end of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(end, (event) => held.delete(event.pointerId));
-    }
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.swaying = false;
-      zoom(Math.exp(0.0012 * event.deltaY));
-    }, { passive: false });
-    canvas.addEventListener("keydown", ({ key }) => {
-      const turns = { ArrowLeft: [-0.08, 0], ArrowRight: [0.08, 0], ArrowUp: [0, -0.08], ArrowDown: [0, 0.08] };
-      if (turns[key]) this.look(this.yaw + turns[key][0], this.pitch + turns[key][1], this.distance);
-      if (key === "+" || key === "-") zoom(key === "+" ? 0.9 : 1.1);
-    });
+    listenForGestures(this);
   }
 }
 

@@ -1,7 +1,7 @@
 // The page: takes two pictures, has a worker match them, and shows the disparity map and the point cloud.
 
 import { Cloud } from "./cloud.js";
-import { at } from "./dom.js";
+import { at, isTouch } from "./dom.js";
 import { clearFacts, showFacts } from "./facts.js";
 import { clearMap, listenOnMap, showMap } from "./map.js";
 import { Matching } from "./matching.js";
@@ -64,9 +64,15 @@ function named(device) {
 function forget() {
   shown = undefined;
   cloud?.clear();
-  for (const id of ["tools", "help"]) at(id).hidden = true;
+  visible(false);
   clearMap();
   clearFacts();
+}
+
+/** Whether there is a result to see. */
+function visible(there) {
+  for (const id of ["tools", "help", "outputs"]) at(id).hidden = !there;
+  at("cloud").tabIndex = there ? 0 : -1;
 }
 
 function show(result) {
@@ -74,7 +80,7 @@ function show(result) {
   const colors = new ImageData(new Uint8ClampedArray(result.colors.buffer), width, height);
   const pixels = Float32Array.from(disparities, (disparity) => (disparity === none ? NaN : disparity / scale));
   shown = { pixels, confidences };
-  at("tools").hidden = at("help").hidden = false;
+  visible(true);
   showMap(result, colors, pixels);
   showFacts(result);
   cloud.show(pair.left, colors, chosen(), camera ?? {
@@ -84,7 +90,7 @@ function show(result) {
   });
   // For scripts that drive the page, such as the tests.
   window.result = result;
-  done();
+  done(`Matched: trust ${result.trust.toFixed(2)} of 1, ${(100 * result.coverage).toFixed(0)} % of the pixels have a disparity.`);
 }
 
 /** The disparities in the cloud: all of them, or the measured ones only. */
@@ -118,7 +124,9 @@ async function begin() {
     window.cloud = cloud;
     await offerPresets();
     listen();
-    say("Two photographs, one depth map", "Drop a rectified stereo pair anywhere on this page: of the two files, the first by name is the left view.", {
+    say("Two photographs, one depth map", isTouch
+      ? "Choose the left and the right view of one scene, rectified: corresponding points lie in the same row."
+      : "Drop a rectified stereo pair anywhere on this page: of the two files, the first by name is the left view.", {
       action: { label: "Show the example", run: matchExample },
     });
   } catch (error) {

@@ -1,4 +1,4 @@
-// The disparity map with its colour scale, and the disparity under the mouse.
+// The disparity map with its colour scale, and the disparity at a place of it.
 
 import { at } from "./dom.js";
 
@@ -11,21 +11,17 @@ export function showMap(result, colors, pixels) {
   const map = at("disparity");
   Object.assign(map, { width: result.width, height: result.height });
   map.getContext("2d").putImageData(colors, 0, 0);
-  document.querySelector(".map").classList.add("loaded");
+  map.style.setProperty("--aspect", result.width / result.height);
   legend(result);
 }
 
 export function clearMap() {
   shown = undefined;
-  for (const id of ["scale", "probe"]) at(id).hidden = true;
-  document.querySelector(".map").classList.remove("loaded");
-  const map = at("disparity");
-  map.getContext("2d").clearRect(0, 0, map.width, map.height);
+  at("probe").hidden = at("marker").hidden = true;
 }
 
 /** Draws the colour scale from far to near. */
 function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
-  at("scale").hidden = false;
   at("far").textContent = `far ${far.toFixed(1)} px`;
   at("near").textContent = `${near.toFixed(1)} px near`;
   const canvas = at("scale").querySelector("canvas");
@@ -46,19 +42,38 @@ function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
   context.putImageData(bar, 0, 0);
 }
 
-/** Shows the disparity under the mouse. */
-function probe({ offsetX, offsetY, currentTarget: map }) {
-  if (!shown) return;
-  const x = Math.min(shown.width - 1, Math.floor((offsetX / map.clientWidth) * shown.width));
-  const y = Math.min(shown.height - 1, Math.floor((offsetY / map.clientHeight) * shown.height));
-  const index = Math.max(0, y) * shown.width + Math.max(0, x);
+/** Shows the disparity at a place of the map, in pixels of the map. */
+function probe(x, y) {
+  const index = y * shown.width + x;
   const disparity = shown.pixels[index];
   const kind = shown.confidences[index] ? "" : ", filled";
   at("probe").value = Number.isNaN(disparity) ? "none" : `${disparity.toFixed(2)} px${kind}`;
   at("probe").hidden = false;
 }
 
+const within = (value, count) => Math.min(count - 1, Math.max(0, Math.floor(value)));
+
+/** Listens for the mouse and for arrow keys, which move a marker: by a pixel with shift, else by a fiftieth of the map. */
 export function listenOnMap() {
-  at("disparity").onpointermove = probe;
-  at("disparity").onpointerleave = () => (at("probe").hidden = true);
+  const [map, marker] = [at("disparity"), at("marker")];
+  const hide = () => (at("probe").hidden = marker.hidden = true);
+  map.onpointermove = map.onpointerdown = ({ offsetX, offsetY }) => {
+    if (!shown) return;
+    marker.hidden = true;
+    probe(within((offsetX / map.clientWidth) * shown.width, shown.width), within((offsetY / map.clientHeight) * shown.height, shown.height));
+  };
+  map.onpointerleave = map.onblur = hide;
+  map.onkeydown = (event) => {
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!way || !shown) return;
+    event.preventDefault();
+    const { width, height } = shown;
+    const step = event.shiftKey ? 1 : Math.max(1, Math.round(width / 50));
+    const { x, y } = shown.marked ?? { x: width >> 1, y: height >> 1 };
+    shown.marked = { x: within(x + step * way[0], width), y: within(y + step * way[1], height) };
+    marker.style.left = `${map.offsetLeft + ((shown.marked.x + 0.5) / width) * map.clientWidth}px`;
+    marker.style.top = `${((shown.marked.y + 0.5) / height) * map.clientHeight}px`;
+    marker.hidden = false;
+    probe(shown.marked.x, shown.marked.y);
+  };
 }

@@ -36,9 +36,10 @@ export function progress(now) {
   document.body.dataset.state = "busy";
 }
 
-/** Removes the card, since there is a result. */
-export function done() {
+/** Removes the card, since there is a result, and tells `sentence` to those who do not see it. */
+export function done(sentence) {
   at("message").replaceChildren();
+  at("spoken").textContent = sentence;
   document.body.dataset.state = "done";
 }
 
