@@ -17,7 +17,7 @@ fn main() -> anyhow::Result<()> {
     hsad_web::bundle::bundle(&folder)?;
     eprintln!("{} can be served by any web server", folder.display());
     eprintln!("serving it at http://localhost:{}", listener.local_addr()?.port());
-    hsad_web::serve::serve(&listener, &folder)
+    hsad_web::serve::serve(&listener, hsad_web::site::Site::read(&folder)?)
 }
 
 /// The WebAssembly build uses only the library.

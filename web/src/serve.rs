@@ -1,109 +1,106 @@
-//! A web server for the files of one folder, reachable from this machine only.
+//! A web server for a few files, reachable from this machine only.
+//!
+//! Each connection has one request and one thread. Idle, slow and foreign clients cannot keep the page from others: a connection ends
+//! after [`PATIENCE`], the oldest one ends when there are [`MOST`] or file handles run out, and only requests to this machine by its
+//! own name are answered, so that no page of another site reads these files through a name that it points here (DNS rebinding).
 
 use std::{
-    ffi::OsStr,
-    fs,
-    io::{self, BufRead, BufReader, Read, Write},
-    net::{TcpListener, TcpStream},
-    path::{Component, Path, PathBuf},
+    collections::VecDeque,
+    io::{self, Write},
+    net::{Shutdown, TcpListener, TcpStream},
+    sync::{Arc, Weak},
     thread,
+    time::{Duration, Instant},
 };
 
-/// Longest request that is read, in bytes.
-const MAX_REQUEST: u64 = 1 << 16;
+use crate::{
+    request::{Refusal, Request},
+    site::{File, Site},
+};
 
-/// Serves the files of `folder` until the process ends.
-///
-/// # Errors
-/// If a connection cannot be accepted.
-pub fn serve(listener: &TcpListener, folder: &Path) -> anyhow::Result<()> {
+/// Most connections at a time.
+const MOST: usize = 64;
+/// Longest time that a connection may take to send its request, and to take a part of the answer.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Time until connections are accepted again after the system refused one.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// What browsers are told with every file. The page runs its own scripts and WebAssembly alone, and loads nothing from elsewhere;
+/// `no-store`: a rebuilt page must be seen at once.
+const HEADERS: &str = "Content-Security-Policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
+                       img-src 'self' data:; connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; \
+                       frame-ancestors 'none'\r\n\
+                       X-Content-Type-Options: nosniff\r\n\
+                       Cross-Origin-Resource-Policy: same-origin\r\n\
+                       Referrer-Policy: no-referrer\r\n\
+                       Cache-Control: no-store\r\n";
+
+/// Serves the files of `site` until the process ends.
+pub fn serve(listener: &TcpListener, site: Site) -> ! {
+    let site = Arc::new(site);
+    let mut connections = Connections::default();
     loop {
-        let (stream, _) = listener.accept()?;
-        let folder = folder.to_path_buf();
-        // Each connection has its own thread, so that an aborted one does not affect the next.
-        thread::spawn(move || respond(&stream, &folder));
-    }
-}
-
-fn respond(mut stream: &TcpStream, folder: &Path) -> io::Result<()> {
-    let mut lines = BufReader::new(stream.take(MAX_REQUEST)).lines();
-    let request = lines.next().transpose()?.unwrap_or_default();
-    // The headers are not needed, but unread bytes would reset the connection.
-    for line in lines.by_ref() {
-        if line?.is_empty() {
-            break;
+        match listener.accept() {
+            Ok((stream, _)) => {
+                let stream = Arc::new(stream);
+                connections.add(&stream);
+                let site = Arc::clone(&site);
+                // Without a thread the connection ends here.
+                let _ = thread::Builder::new().spawn(move || respond(&stream, &site));
+            }
+            // File handles ran out, or a client is gone already.
+            Err(_) => {
+                connections.end_oldest();
+                thread::sleep(PAUSE);
+            }
         }
     }
-    let mut words = request.split(' ');
-    let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
-    let file = (method == "GET").then(|| file(folder, target)).flatten();
-    let (status, kind, body) = match file.map(|path| (mime_type(&path), fs::read(&path))) {
-        Some((kind, Ok(body))) => ("200 OK", kind, body),
-        _ => ("404 Not Found", "text/plain", b"there is no such file\n".to_vec()),
-    };
-    // no-store: a rebuilt page must be seen at once.
-    write!(
-        stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-         Connection: close\r\n\r\n",
-        body.len()
-    )?;
-    stream.write_all(&body)
 }
 
-/// Path of the file of a request target; `None` if it lies outside of `folder`.
-fn file(folder: &Path, target: &str) -> Option<PathBuf> {
-    let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
-    let path = Path::new(if path.is_empty() { "index.html" } else { path });
-    path.components().all(|part| matches!(part, Component::Normal(_))).then(|| folder.join(path))
-}
+/// The connections in the order of their arrival, some of which have ended.
+#[derive(Default)]
+struct Connections(VecDeque<Weak<TcpStream>>);
 
-fn mime_type(path: &Path) -> &'static str {
-    match path.extension().and_then(OsStr::to_str) {
-        Some("html") => "text/html; charset=utf-8",
-        Some("css") => "text/css; charset=utf-8",
-        Some("js") => "text/javascript; charset=utf-8",
-        Some("wasm") => "application/wasm",
-        Some("png") => "image/png",
-        Some("json") => "application/json",
-        _ => "application/octet-stream",
+impl Connections {
+    fn add(&mut self, stream: &Arc<TcpStream>) {
+        self.0.retain(|other| other.strong_count() > 0);
+        if self.0.len() >= MOST {
+            self.end_oldest();
+        }
+        self.0.push_back(Arc::downgrade(stream));
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_files_of_the_folder_are_served() {
-        let folder = Path::new("/page");
-        assert_eq!(file(folder, "/"), Some("/page/index.html".into()));
-        assert_eq!(file(folder, "/example/left.png?now#there"), Some("/page/example/left.png".into()));
-        for outside in ["", "page", "//etc/passwd", "/../secret", "/a/../../secret"] {
-            assert_eq!(file(folder, outside), None, "{outside}");
+    fn end_oldest(&mut self) {
+        while let Some(oldest) = self.0.pop_front() {
+            if let Some(stream) = oldest.upgrade() {
+                // A client that is gone has ended the connection already.
+                let _ = stream.shutdown(Shutdown::Both);
+                return;
+            }
         }
     }
+}
 
-    #[test]
-    fn a_request_is_answered() {
-        let folder = std::env::temp_dir().join(format!("hsad-web-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        fs::write(folder.join("main.js"), "let a = 1;").unwrap();
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let address = listener.local_addr().unwrap();
-        let served = folder.clone();
-        thread::spawn(move || serve(&listener, &served));
-        let ask = |request: &str| {
-            let mut stream = TcpStream::connect(address).unwrap();
-            write!(stream, "{request} HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
-            io::read_to_string(stream).unwrap()
-        };
-        let found = ask("GET /main.js");
-        assert!(found.starts_with("HTTP/1.1 200 OK\r\nContent-Type: text/javascript"), "{found}");
-        assert!(found.ends_with("\r\n\r\nlet a = 1;"), "{found}");
-        for missing in ["GET /other.js", "POST /main.js", "GET", ""] {
-            assert!(ask(missing).starts_with("HTTP/1.1 404"), "{missing}");
+fn respond(stream: &TcpStream, site: &Site) -> io::Result<()> {
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let request = Request::read(stream, Instant::now() + PATIENCE)?;
+    match request.and_then(|request| Ok((site.file(&request.target).ok_or(Refusal::NotFound)?, request.wants_body))) {
+        Ok((file, wants_body)) => answer(stream, "200 OK", file, wants_body),
+        Err(refusal) => {
+            let body = refusal.words().as_bytes().to_vec();
+            answer(stream, refusal.status(), &File { kind: "text/plain; charset=utf-8", body }, true)
         }
-        fs::remove_dir_all(folder).unwrap();
     }
+}
+
+fn answer(mut stream: &TcpStream, status: &str, File { kind, body }: &File, wants_body: bool) -> io::Result<()> {
+    let length = body.len();
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}Connection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())?;
+    if wants_body {
+        stream.write_all(body)?;
+    }
+    stream.shutdown(Shutdown::Write)
 }
