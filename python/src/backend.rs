@@ -95,6 +95,8 @@ pub fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
 /// The backend with the shapes of kernels that `hsad tune` has found for the device, if it has.
 fn tuned(backend: Backend) -> hsad::Result<Backend> {
     let (Backend::Gpu(gpu), Some(folder)) = (&backend, cache_folder()) else { return Ok(backend) };
-    let kept = ShapesFile::of(gpu, &folder).read()?;
-    Ok(kept.map_or(backend, |shapes| Backend::Gpu(gpu.clone().with_shapes(shapes))))
+    Ok(match ShapesFile::of(gpu, &folder).read()? {
+        Some(shapes) => Backend::Gpu(gpu.clone().with_shapes(shapes)),
+        None => backend,
+    })
 }
