@@ -100,9 +100,9 @@
 //! | feature | brings |
 //! |---|---|
 //! | `backends` | wgpu's Vulkan, Metal and DirectX 12; without it, the application's own wgpu features decide |
-//! | `pictures` | reading PNG, JPEG and other picture files |
+//! | `pictures` | reading PNG, JPEG and other picture files, writing maps as PNG |
 //! | `calibrations` | reading the calibrations of OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP and hsad itself |
-//! | `files` | writing maps as PNG, whole or not at all, and reading scenes with their ground truth |
+//! | `files` | writing files whole or not at all, and reading scenes with their ground truth |
 //! | `reports` | parameters, figures and scores as JSON |
 //! | `verify` | the kernels and their twins as a regression suite for a device |
 //! | `cli` | the command line, with all of the above |

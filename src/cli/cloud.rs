@@ -7,8 +7,8 @@ use hsad::{
         Calibration,
         ply::{LeftOut, PointFilter},
     },
+    report::Cloud,
 };
-use serde_json::{Value, json};
 
 /// Which pixels of a map become points of the cloud.
 #[derive(Args, Default)]
@@ -63,33 +63,16 @@ impl CloudOptions {
     }
 }
 
-/// The points of a cloud that was written, and those that were left out.
-pub struct WrittenCloud {
-    /// Number of points.
-    pub points: usize,
-    pub filter: PointFilter,
-    pub left_out: LeftOut,
-}
+/// A cloud that was written.
+pub struct WrittenCloud(pub Cloud);
 
 impl WrittenCloud {
-    /// For `report.json`; the largest depth is null for any depth.
-    pub fn report(&self) -> Value {
-        let Self { points, filter: PointFilter { max_depth, min_confidence }, left_out: LeftOut { unsure, beyond } } =
-            *self;
-        json!({
-            "points": points,
-            "max_depth_m": max_depth,
-            "min_confidence": min_confidence,
-            "left_out": { "beyond_max_depth": beyond, "below_min_confidence": unsure },
-        })
-    }
-
     /// Number of points, and how many were left out and why.
     pub fn summary(&self) -> String {
-        let LeftOut { unsure, beyond } = self.left_out;
-        let mut text = format!("{} points", self.points);
+        let LeftOut { unsure, beyond } = self.0.left_out;
+        let mut text = format!("{} points", self.0.points);
         if unsure > 0 {
-            text += &format!("; {unsure} of a confidence below {} left out", self.filter.min_confidence);
+            text += &format!("; {unsure} of a confidence below {} left out", self.0.filter.min_confidence);
         }
         if beyond > 0 {
             text += &format!("; {beyond} beyond {} left out", self.metres());
@@ -99,11 +82,11 @@ impl WrittenCloud {
 
     /// A warning if the largest depth takes away most of the points.
     pub fn warning(&self) -> Option<String> {
-        let beyond = self.left_out.beyond;
-        (beyond > self.points).then(|| {
+        let beyond = self.0.left_out.beyond;
+        (beyond > self.0.points).then(|| {
             format!(
                 "{beyond} of {} points lie beyond {} and are not in cloud.ply: --max-depth keeps them",
-                beyond + self.points,
+                beyond + self.0.points,
                 self.metres()
             )
         })
@@ -111,7 +94,7 @@ impl WrittenCloud {
 
     /// The largest depth, in three digits or more.
     fn metres(&self) -> String {
-        let depth = self.filter.max_depth;
+        let depth = self.0.filter.max_depth;
         let decimals = (2.0 - depth.log10().floor()).clamp(0.0, 9.0) as usize;
         format!("{depth:.decimals$} m")
     }
@@ -122,11 +105,11 @@ mod tests {
     use super::*;
 
     fn written(max_depth: f64, points: usize, unsure: usize, beyond: usize) -> WrittenCloud {
-        WrittenCloud {
+        WrittenCloud(Cloud {
             points,
             filter: PointFilter { max_depth, min_confidence: 16 },
             left_out: LeftOut { unsure, beyond },
-        }
+        })
     }
 
     #[test]
@@ -143,6 +126,5 @@ mod tests {
             [0.012_34, 1.5, 123.4, 12_345.6].map(|depth| written(depth, 0, 0, 0).metres()),
             ["0.0123 m", "1.50 m", "123 m", "12346 m"]
         );
-        assert_eq!(written(f64::INFINITY, 1, 0, 1).report()["max_depth_m"], Value::Null);
     }
 }

@@ -17,7 +17,6 @@ use super::{
     cloud::WrittenCloud,
     doubts::{self, NotTrusted},
     options::RunOptions,
-    rectification,
     terminal::Progress,
     way::Way,
 };
@@ -215,7 +214,7 @@ impl Job {
             }
             error => error,
         })?;
-        let warnings = rectification::doubt(&pair).into_iter().collect();
+        let warnings = doubts::of_rectified(&pair).into_iter().collect();
         Ok(Matched { outcome, rectified: Some(pair), warnings })
     }
 

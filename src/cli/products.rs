@@ -18,6 +18,7 @@ use hsad::{
         png,
     },
     pipeline::reduction,
+    report::Cloud,
 };
 use serde_json::Value;
 
@@ -53,7 +54,7 @@ impl CompletedJob {
             let filter = cloud.filter(&calibration)?;
             let depth = self.depth(&calibration);
             let (points, left_out) = self.points(calibration, &filter)?;
-            let cloud = WrittenCloud { points: points.len(), filter, left_out };
+            let cloud = WrittenCloud(Cloud { points: points.len(), filter, left_out });
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
                 self.warnings.push(format!(
                     "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration",

@@ -95,28 +95,6 @@ fn by_matches(found: &Uncalibrated) -> String {
     format!("{what}{lens}{shift}, by {inliers} of {points} matches")
 }
 
-/// A warning unless disparities of the pair are plainly those of the views as they were taken.
-pub fn doubt(pair: &RectifiedPair) -> Option<String> {
-    let StereoRectification::Uncalibrated(found) = &pair.rectification else { return None };
-    let [left, right] = found.sources();
-    if !found.keeps_columns {
-        return Some(
-            "the constant of the disparities is unknown, since matches do not tell columns of one view against those of the other: only \
-             differences of disparities hold, and no depth follows"
-                .into(),
-        );
-    }
-    if found.shift != 0.0 {
-        return Some(format!("disparities are {} px less than those of the views as they were taken", found.shift));
-    }
-    (left != right).then(|| {
-        format!(
-            "the left view is {left} and the right view {right} pixels: disparities are those of the views as they are, and off by what \
-             was cut from the left side of one alone"
-        )
-    })
-}
-
 /// Size of the rectified pictures, and how shapes change, in one line.
 pub fn pictures(found: &StereoRectification) -> String {
     let size = found.size();

@@ -95,7 +95,7 @@ impl Rectify {
         cached.save();
         let seconds = start.elapsed().as_secs_f64();
         warnings.extend(misfit(&pair));
-        warnings.extend(rectification::doubt(&pair));
+        warnings.extend(doubts::of_rectified(&pair));
         warnings.extend(exchanged(&pair));
         progress.begin("writing");
         rectification::add_files(&pair, &NAMES, &mut output)?;

@@ -82,6 +82,15 @@ pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPai
     pair([decode(left)?, decode(right)?], [left, right], unseen)
 }
 
+/// Decodes the views of one pair from two files' bytes, as [`load_pair`] does from files; the paths are named in errors.
+///
+/// # Errors
+/// As [`load_pair`].
+pub fn decode_pair(left: (&[u8], &Path), right: (&[u8], &Path), unseen: &Unseen) -> Result<LoadedPair> {
+    let decode = |(bytes, path): (&[u8], &Path)| codec::decode(bytes, path);
+    pair([decode(left)?, decode(right)?], [left.1, right.1], unseen)
+}
+
 /// Loads both views from one file, as [`load_pair`] does from two: from the halves of its picture, or, without `halves`, from a
 /// multi-picture file (MPO), as cameras with two lenses write.
 ///
@@ -89,30 +98,43 @@ pub fn load_pair(left: &Path, right: &Path, unseen: &Unseen) -> Result<LoadedPai
 /// As [`load_pair`]; also [`crate::Error::Format`] for a picture that is no multi-picture file, and one too small to hold two views.
 pub fn load_both(path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result<LoadedPair> {
     let bytes = codec::read_bytes(path)?;
-    let views = match halves {
-        Some(halves) => {
-            let both = codec::decode(&bytes, path)?;
-            halves.split(&both).ok_or_else(|| malformed(path, "the picture is too small to hold two views"))?
-        }
-        None => {
-            let [left, right] = mpo::views(&bytes).map_err(|reason| malformed(path, reason))?.ok_or_else(|| {
-                let reason = "it holds one picture and no list of several, as an MPO has: name the right view, too, or tell where both \
-                              views lie in it (--side-by-side, --top-bottom)";
-                malformed(path, reason)
-            })?;
-            let views = [codec::decode(left, path)?, codec::decode(right, path)?];
-            let [left, right] = views.each_ref().map(|view| (view.image.width(), view.image.height()));
-            if left != right {
-                let reason = format!(
-                    "its pictures are {}x{} and {}x{}: they are no views of one pair",
-                    left.0, left.1, right.0, right.1
-                );
-                return Err(malformed(path, reason));
-            }
-            views
-        }
+    let loaded = match halves {
+        Some(halves) => Some(decode_halves(&bytes, path, halves, unseen)?),
+        None => decode_mpo(&bytes, path, unseen)?,
     };
+    loaded.ok_or_else(|| {
+        let reason = "it holds one picture and no list of several, as an MPO has: name the right view, too, or tell where both \
+                      views lie in it (--side-by-side, --top-bottom)";
+        malformed(path, reason)
+    })
+}
+
+/// Decodes both views from the halves of the picture in a file's bytes; `path` is named in errors.
+///
+/// # Errors
+/// As [`load_both`].
+pub fn decode_halves(bytes: &[u8], path: &Path, halves: Halves, unseen: &Unseen) -> Result<LoadedPair> {
+    let both = codec::decode(bytes, path)?;
+    let views = halves.split(&both).ok_or_else(|| malformed(path, "the picture is too small to hold two views"))?;
     pair(views, [path; 2], unseen)
+}
+
+/// Decodes both views from the bytes of a multi-picture file (MPO); `None` if the file is no such file. `path` is named in errors.
+///
+/// # Errors
+/// As [`load_both`].
+pub fn decode_mpo(bytes: &[u8], path: &Path, unseen: &Unseen) -> Result<Option<LoadedPair>> {
+    let Some([left, right]) = mpo::views(bytes).map_err(|reason| malformed(path, reason))? else { return Ok(None) };
+    let views = [codec::decode(left, path)?, codec::decode(right, path)?];
+    let [left, right] = views.each_ref().map(|view| (view.image.width(), view.image.height()));
+    if left != right {
+        let reason = format!(
+            "its pictures are {}x{} and {}x{}: they are no views of one pair",
+            left.0, left.1, right.0, right.1
+        );
+        return Err(malformed(path, reason));
+    }
+    pair(views, [path; 2], unseen).map(Some)
 }
 
 fn pair(views: [Decoded; 2], [left, right]: [&Path; 2], unseen: &Unseen) -> Result<LoadedPair> {

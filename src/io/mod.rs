@@ -4,7 +4,7 @@
 //! error messages. Headers are not trusted: memory is allocated only for bytes that are really there, or up to
 //! [`MAX_PIXELS`] where a codec expands them.
 //!
-//! Reading pictures needs the feature `pictures`; writing pictures and whole files needs `files`; calibrations of other formats
+//! Reading and writing pictures needs the feature `pictures`; writing whole files needs `files`; calibrations of other formats
 //! than Middlebury's need `calibrations`. PFM, PLY, tables, homographies and colour maps are always available.
 
 #[cfg(feature = "files")]
@@ -19,7 +19,7 @@ pub mod csv;
 mod decoded;
 #[cfg(feature = "files")]
 pub mod disparities;
-#[cfg(feature = "files")]
+#[cfg(feature = "pictures")]
 pub mod disparity_png;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -37,9 +37,9 @@ pub mod pfm;
 pub mod picture;
 pub mod ply;
 mod ply_reader;
-#[cfg(feature = "files")]
+#[cfg(feature = "pictures")]
 pub mod png;
-#[cfg(feature = "files")]
+#[cfg(feature = "pictures")]
 mod png_text;
 mod point_filter;
 #[cfg(feature = "pictures")]

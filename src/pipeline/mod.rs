@@ -2,6 +2,7 @@
 
 mod back;
 mod confidence;
+pub mod doubts;
 mod metric;
 mod mirror;
 mod no_depth;

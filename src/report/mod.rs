@@ -1,9 +1,13 @@
 //! Parameters, figures and times as JSON, for programs: `report.json` of the command line, and what other bindings report.
 
 mod rectified;
+#[cfg(feature = "pictures")]
+mod run;
 mod score;
 
 pub use rectified::rectified;
+#[cfg(feature = "pictures")]
+pub use run::{Cloud, Run, run};
 pub use score::{from_json as score_from_json, to_json as score};
 
 pub use serde_json::Value;
