@@ -2,7 +2,7 @@
 
 use std::{
     io::{BufRead, BufReader, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, ChildStdin, Command, Stdio},
     sync::mpsc::{self, Receiver},
     thread,
@@ -128,20 +128,38 @@ impl Browser {
         self.wait_for(state);
     }
 
-    /// Chooses files for a side, as in the file dialog.
-    pub fn choose(&mut self, side: &str, files: &[PathBuf]) {
+    /// Chooses files for an input, as in the file dialog.
+    pub fn choose(&mut self, selector: &str, files: &[PathBuf]) {
         let document = self.call("DOM.getDocument", json!({}))["root"]["nodeId"].clone();
-        let selector = json!({ "nodeId": document, "selector": format!("#{side} input") });
+        let selector = json!({ "nodeId": document, "selector": selector });
         let input = self.call("DOM.querySelector", selector)["nodeId"].clone();
         self.call("DOM.setFileInputFiles", json!({ "files": files, "nodeId": input }));
     }
 
     /// Ends the browser's GPU process, as a driver's crash does. The browser starts it again.
     pub fn crash_gpu(&mut self) {
-        // This call goes to the browser, not to the page.
+        self.call_browser("Browser.crashGpuProcess", json!({}));
+    }
+
+    /// Saves what is downloaded in `folder`.
+    pub fn download_to(&mut self, folder: &Path) {
+        self.call_browser("Browser.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": folder }));
+    }
+
+    /// Calls a method of the browser, not of the page.
+    fn call_browser(&mut self, method: &str, params: Value) {
         let session = self.session.take();
-        self.call("Browser.crashGpuProcess", json!({}));
+        self.call(method, params);
         self.session = session;
+    }
+
+    /// Presses a key, without a character.
+    pub fn press(&mut self, key: &str) {
+        for kind in ["rawKeyDown", "keyUp"] {
+            let code = if key == "Tab" { 9 } else { 0 };
+            let event = json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
+            self.call("Input.dispatchKeyEvent", event);
+        }
     }
 
     /// Waits until the page is in `state`; panics if the page ends in another state.

@@ -1,18 +1,17 @@
-// The disparity map with its colour scale, and the disparity at a place of it.
+// The map, disparities or confidences, with its scale, and the values at a place of it.
 
 import { at } from "./dom.js";
 
 /** The result on the page, with its disparities in pixels. */
 let shown;
 
-/** Shows the map of a result, `colors`, with the disparities of its pixels. */
-export function showMap(result, colors, pixels) {
+/** Shows the map of a result, with the disparities of its pixels. */
+export function showMap(result, pixels) {
   shown = { ...result, pixels };
   const map = at("disparity");
   Object.assign(map, { width: result.width, height: result.height });
-  map.getContext("2d").putImageData(colors, 0, 0);
   map.style.setProperty("--aspect", result.width / result.height);
-  legend(result);
+  draw();
 }
 
 export function clearMap() {
@@ -20,34 +19,54 @@ export function clearMap() {
   at("probe").hidden = at("marker").hidden = true;
 }
 
-/** Draws the colour scale from far to near. */
-function legend({ colors, disparities, none, scale, colorRange: [far, near] }) {
-  at("far").textContent = `far ${far.toFixed(1)} px`;
-  at("near").textContent = `${near.toFixed(1)} px near`;
+const showsConfidences = () => document.querySelector("input[name=view]:checked").value === "confidence";
+
+/** Draws the disparities or the confidences, with their scale. */
+function draw() {
+  if (!shown) return;
+  const { width, height, colors, confidences, colorRange: [far, near] } = shown;
+  const isConfidence = showsConfidences();
+  const rgba = new Uint8ClampedArray(isConfidence ? greys(confidences) : colors);
+  at("disparity").getContext("2d").putImageData(new ImageData(rgba, width, height), 0, 0);
+  at("disparity").ariaLabel = `${isConfidence ? "Confidences" : "Disparity map"}: arrow keys read pixels`;
+  at("far").textContent = isConfidence ? "0 doubtful" : `far ${far.toFixed(1)} px`;
+  at("near").textContent = isConfidence ? "255 sure" : `${near.toFixed(1)} px near`;
   const canvas = at("scale").querySelector("canvas");
-  const context = canvas.getContext("2d");
-  const bar = context.createImageData(canvas.width, 1);
-  // The colour of each disparity is sampled from the map's own pixels.
-  const samples = new Array(canvas.width);
+  const bar = isConfidence ? greys(Uint8Array.from({ length: canvas.width }, (_, grey) => grey)) : colorScale(shown, canvas.width);
+  canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(bar), canvas.width, 1), 0, 0);
+}
+
+/** The RGBA bytes of grey values. */
+function greys(values) {
+  const rgba = new Uint8ClampedArray(4 * values.length);
+  values.forEach((value, index) => rgba.fill(value, 4 * index, 4 * index + 3));
+  for (let alpha = 3; alpha < rgba.length; alpha += 4) rgba[alpha] = 255;
+  return rgba;
+}
+
+/** The RGBA bytes of the colour scale from far to near: the colour of each disparity is sampled from the map's own pixels. */
+function colorScale({ colors, disparities, none, scale, colorRange: [far, near] }, width) {
+  const samples = new Array(width);
   disparities.forEach((disparity, index) => {
     if (disparity === none) return;
     const share = (disparity / scale - far) / (near - far || 1);
-    if (share >= 0 && share <= 1) samples[Math.min(canvas.width - 1, Math.floor(share * canvas.width))] = index;
+    if (share >= 0 && share <= 1) samples[Math.min(width - 1, Math.floor(share * width))] = index;
   });
+  const bar = new Uint8ClampedArray(4 * width);
   let last = samples.find((index) => index !== undefined) ?? 0;
-  for (let x = 0; x < canvas.width; ++x) {
+  for (let x = 0; x < width; ++x) {
     last = samples[x] ?? last;
-    bar.data.set(colors.subarray(4 * last, 4 * last + 4), 4 * x);
+    bar.set(colors.subarray(4 * last, 4 * last + 4), 4 * x);
   }
-  context.putImageData(bar, 0, 0);
+  return bar;
 }
 
-/** Shows the disparity at a place of the map, in pixels of the map. */
+/** Shows disparity and confidence at a place of the map, in pixels of the map. */
 function probe(x, y) {
   const index = y * shown.width + x;
-  const disparity = shown.pixels[index];
-  const kind = shown.confidences[index] ? "" : ", filled";
-  at("probe").value = Number.isNaN(disparity) ? "none" : `${disparity.toFixed(2)} px${kind}`;
+  const [disparity, confidence] = [shown.pixels[index], shown.confidences[index]];
+  const kind = confidence > shown.filled ? "" : confidence ? " (filled)" : " (doubtful)";
+  at("probe").value = Number.isNaN(disparity) ? "none" : `${disparity.toFixed(2)} px, confidence ${confidence}${kind}`;
   at("probe").hidden = false;
 }
 
@@ -62,6 +81,7 @@ export function listenOnMap() {
     marker.hidden = true;
     probe(within((offsetX / map.clientWidth) * shown.width, shown.width), within((offsetY / map.clientHeight) * shown.height, shown.height));
   };
+  at("view").onchange = draw;
   map.onpointerleave = map.onblur = hide;
   map.onkeydown = (event) => {
     const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];

@@ -4,15 +4,16 @@ import * as library from "./library.js";
 
 export class Matching {
   /**
-   * @param {{begin: () => void, news: (news: {device?: string, step?: string}) => void, done: (result: object) => void,
-   *   failed: (error: Error) => void}} on calls on the way; `done` and `failed` are not called for what is obsolete
+   * @param {{begin: () => void, news: (news: {device?: string, step?: string, share?: number}) => void,
+   *   done: (result: object) => void, failed: (error: Error) => void}} on calls on the way; `done` and `failed` are not called for what
+   *   is obsolete
    */
   constructor(on) {
     this.on = on;
     this.busy = false;
   }
 
-  /** @param {{left: ImageData, right: ImageData, options: object}} work */
+  /** @param {{left: ImageData, right: ImageData, task: object}} work */
   async match(work) {
     this.next = work;
     if (this.busy) {
@@ -40,6 +41,12 @@ export class Matching {
   /** Makes what is being matched, and what waits, obsolete. */
   forget() {
     this.awaited = this.next = undefined;
+  }
+
+  /** Ends what is being matched; it ends at its next wait for the GPU, and nothing is told of it. */
+  cancel() {
+    this.forget();
+    library.cancel();
   }
 
   occupied(now) {

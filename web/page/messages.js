@@ -6,9 +6,9 @@ import { at, made } from "./dom.js";
 export const STEPS = [["luma", "luma"], ["features", "interest points"], ["seeding", "range"], ["dense", "disparities"]];
 
 const HEADLINES = {
-  BadPicture: "This picture cannot be used",
+  BadPicture: "This file cannot be used",
   SizesDiffer: "The pictures differ in size",
-  NotRectified: "This pair is not rectified",
+  NotRectified: "The rows of this pair do not correspond",
   NoAdapter: "No GPU for this page",
   TooLarge: "Too large for this GPU",
   DeviceLost: "The GPU was lost",
@@ -18,22 +18,38 @@ const HEADLINES = {
 export function say(title, text = "", { bad = false, action } = {}) {
   const card = made("div", bad ? "card bad" : "card", made("h2", "", title));
   if (text) card.append(made("p", "", text));
-  if (action) {
-    const button = made("button", "", action.label);
-    button.onclick = action.run;
-    card.append(button);
-  }
+  if (action) card.append(button(action));
   at("message").replaceChildren(card);
   document.body.dataset.state = bad ? "failed" : "idle";
 }
 
-/** Shows the steps of matching, with the current one marked. */
-export function progress(now) {
-  const current = STEPS.findIndex(([name]) => name === now);
-  const items = STEPS.map(([, label], index) => made("li", index < current ? "done" : index === current ? "now" : "", label));
-  const card = made("div", "card", made("h2", "", "Matching"), made("ul", "steps", ...items));
-  at("message").replaceChildren(card);
+function button({ label, run }, className = "main") {
+  return Object.assign(made("button", className, label), { onclick: run });
+}
+
+/** The parts of the card while a pair is matched. */
+let matching;
+
+/** Shows that a pair is matched, with a button that calls `cancel`. */
+export function begin(cancel) {
+  const items = STEPS.map(([, label]) => made("li", "", label));
+  const bar = Object.assign(made("progress", ""), { ariaLabel: "Progress" });
+  const title = made("h2", "", "Matching");
+  matching = { title, items, bar };
+  at("message").replaceChildren(made("div", "card", title, made("ul", "steps", ...items), bar, button({ label: "Cancel", run: cancel }, "")));
   document.body.dataset.state = "busy";
+}
+
+/** Marks the current step, and shows the share of it that is done. */
+export function progress({ step, share }) {
+  const { title, items, bar } = matching;
+  if (step) {
+    const current = STEPS.findIndex(([name]) => name === step);
+    title.textContent = step === "rectifying" ? "Rectifying" : "Matching";
+    items.forEach((item, index) => (item.className = index < current ? "done" : index === current ? "now" : ""));
+    bar.removeAttribute("value");
+  }
+  if (share !== undefined) bar.value = share;
 }
 
 /** Removes the card, since there is a result, and tells `sentence` to those who do not see it. */
@@ -43,8 +59,8 @@ export function done(sentence) {
   document.body.dataset.state = "done";
 }
 
-/** Says what an error means, and offers `match`, which takes options, where matching again may help. */
-export function failure({ name, message }, match) {
+/** Says what an error means, and offers `match`, which takes options, where matching again may help, or `action`. */
+export function failure({ name, message }, match, action) {
   const again = { label: "Try again", run: () => match() };
   const actions = {
     NotRectified: { label: "Match it anyway", run: () => match({ force: true }) },
@@ -60,5 +76,5 @@ export function failure({ name, message }, match) {
         : name === "BadPicture"
           ? message // The message begins with the file's name.
           : message[0].toUpperCase() + message.slice(1);
-  say(HEADLINES[name] ?? "This could not be matched", text, { bad: true, action: actions[name] });
+  say(HEADLINES[name] ?? "This could not be matched", text, { bad: true, action: action ?? actions[name] });
 }

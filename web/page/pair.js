@@ -1,15 +1,39 @@
-// The two pictures: from files, dropped or chosen, or from the example.
+// The two pictures: from files, dropped, chosen or taken by a camera, or from the example.
 
 import { at } from "./dom.js";
 import * as library from "./library.js";
 
 const SIDES = ["left", "right"];
+/** Aspect from which on a picture seems to have two views beside each other. */
+const WIDE = 2.2;
 
-/** The picture of each side. */
-export const pair = { left: undefined, right: undefined };
+/** The picture of each side, its name, and its file unless that has both views. */
+const sides = { left: {}, right: {} };
+/** How samples of more than 8 bits were stretched, and doubts about the files. */
+let loaded = { stretch: [], warnings: [] };
+/** The file that was taken last, if it was one. */
+let single;
 
-function put(side, picture) {
-  pair[side] = picture;
+/** The pair as a task of the library has it; undefined if a picture is missing. */
+export function currentPair() {
+  const { left, right } = sides;
+  if (!left.picture || !right.picture) return undefined;
+  return { left: left.picture, right: right.picture, names: [left.name, right.name], ...loaded };
+}
+
+/** The side that misses its picture; undefined if both do. */
+export function missing() {
+  return sides.left.picture ? "right" : sides.right.picture ? "left" : undefined;
+}
+
+/** Whether the only picture seems to have both views beside each other. */
+export function seemsToHaveBoth() {
+  const { picture } = sides.left.picture ? sides.left : sides.right;
+  return Boolean(single && picture && picture.width > WIDE * picture.height);
+}
+
+function put(side, picture, name, file) {
+  sides[side] = { picture, name, file };
   const view = at(side);
   const canvas = view.querySelector("canvas");
   Object.assign(canvas, { width: picture.width, height: picture.height });
@@ -17,38 +41,54 @@ function put(side, picture) {
   view.classList.add("loaded");
 }
 
-/** Loads one picture for a side, or two for both sides in the order of their names. */
+/** Loads the file of one view, for a side, of both views, or two files in the order of their names. */
 async function take(files, side) {
   files = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
-  const sides = files.length > 1 ? SIDES : [side ?? (pair.left && !pair.right ? "right" : "left")];
   if (files.length > 2) throw new Error(`${files.length} files were dropped: one picture is needed for each side`);
-  const pictures = await Promise.all(files.map((file) => library.decode(file, file.name)));
-  pictures.forEach((picture, index) => put(sides[index], picture));
+  let named = files.map((file) => ({ file, name: file.name }));
+  single = named.length === 1 ? named[0] : undefined;
+  side ??= missing() ?? "left";
+  let found = await library.decode(named, at("halves").value);
+  if (found.views.length === 1) {
+    const other = sides[side === "left" ? "right" : "left"];
+    if (other.file) {
+      // Both files of a pair are decoded together, since samples of more than 8 bits get one scale.
+      named = side === "left" ? [single, other] : [other, single];
+      found = await library.decode(named);
+    } else {
+      put(side, found.views[0], single.name, single.file);
+      loaded = { stretch: [], warnings: [] };
+      return;
+    }
+  }
+  found.views.forEach((view, index) => {
+    const { name, file } = named[index] ?? named[0];
+    put(SIDES[index], view, name, named.length > 1 ? file : undefined);
+  });
+  loaded = { stretch: found.stretch, warnings: found.warnings };
 }
 
-/** Loads the example; returns its camera. */
+/** Loads the example; returns its calibration file. */
 export async function loadExample() {
-  const file = async (name) => {
+  const fetched = async (name) => {
     const response = await fetch(`example/${name}`);
     if (!response.ok) throw new Error(`the server has no example/${name}: ${response.status}`);
     return response;
   };
   const [left, right, meta] = await Promise.all([
-    ...SIDES.map(async (side) => library.decode(await (await file(`${side}.png`)).blob(), `${side}.png`)),
-    file("meta.json").then((response) => response.json()),
+    ...SIDES.map(async (side) => new File([await (await fetched(`${side}.png`)).blob()], `${side}.png`)),
+    fetched("meta.json").then((response) => response.json()),
   ]);
-  put("left", left);
-  put("right", right);
-  const [, cx, cy] = meta.calib_txt.match(/cam0=\[\S+ \S+ (\S+); \S+ \S+ (\S+);/);
-  return { focal: meta.focal_px, principal: [Number(cx), Number(cy)], doffs: meta.doffs_px };
+  await take([left, right]);
+  return { name: "calib.txt", text: meta.calib_txt };
 }
 
 /** Exchanges left and right; returns whether there was anything to exchange. */
 export function exchange() {
-  const { left, right } = pair;
-  if (!left || !right) return false;
-  put("left", right);
-  put("right", left);
+  const { left, right } = sides;
+  if (!left.picture || !right.picture) return false;
+  put("left", right.picture, right.name, right.file);
+  put("right", left.picture, left.name, left.file);
   return true;
 }
 
@@ -56,13 +96,14 @@ export function exchange() {
 export function listenForFiles(changed, failed) {
   const taken = (files, side) => take(files, side).then(changed, failed);
   for (const side of SIDES) {
-    const input = at(side).querySelector("input");
-    input.multiple = true;
-    input.onchange = () => {
-      if (input.files.length) taken(input.files, side);
-      input.value = "";
-    };
+    for (const input of at(side).querySelectorAll("input")) {
+      input.onchange = () => {
+        if (input.files.length) taken(input.files, side);
+        input.value = "";
+      };
+    }
   }
+  at("halves").onchange = () => single && taken([single.file], undefined);
   let inside = 0;
   const over = (change) => {
     inside = Math.max(0, inside + change);
@@ -78,4 +119,10 @@ export function listenForFiles(changed, failed) {
     if (files.length) taken(files, event.target.closest?.(".view")?.id);
     else failed(new Error("no file was dropped: drop pictures from a folder"));
   });
+}
+
+/** Takes the only file again, as one with the left view on the left and the right view on the right. */
+export function splitInHalves() {
+  at("halves").value = "left-right";
+  at("halves").onchange();
 }
