@@ -23,7 +23,7 @@ fn main() {
     };
     // Results are written by now; what is lost here is text for a reader that is gone.
     io::stdout().flush().ok();
-    cli::output::exit_at_once(code)
+    cli::interruption::exit_at_once(code)
 }
 
 /// Keeps Mesa's device-select layer out where there is no desktop: it looks for a compositor, and

@@ -33,6 +33,9 @@ const TRUTH: &[u8] = include_bytes!("../../data/curved/disp_left.pfm");
 const NON_OCCLUDED: &[u8] = include_bytes!("../../data/curved/nonocc.png");
 const META: &str = include_str!("../../data/curved/meta.json");
 
+/// The files that the demo adds to those of `hsad match`.
+const PICTURES: [&str; 3] = ["demo.png", "left.png", "right.png"];
+
 /// Error thresholds of the wrong-pixel shares, in pixels.
 const THRESHOLDS: [f32; 2] = [1.0, 2.0];
 
@@ -63,11 +66,13 @@ pub(super) fn views() -> anyhow::Result<([Luma; 2], f32)> {
 impl Demo {
     /// Matches the built-in scene as `hsad match` does, writes all files and prints the scores.
     pub fn run(self) -> anyhow::Result<()> {
-        let mut output = Output::open(&self.output)?;
+        let mut output = Output::open_set(&self.output)?;
+        let names = [&PICTURES[..], &products::MAPS, &products::DEPTH, &products::FIGURES].concat();
+        names.into_iter().try_for_each(|name| output.check(name))?;
         let scene = Scene::new()?;
-        let names = ["left.png", "right.png"].map(String::from);
+        let [_, left, right] = PICTURES.map(String::from);
         let job = Job {
-            names,
+            names: [left, right],
             left: scene.left.clone(),
             right: scene.right.clone(),
             stretch: None,
@@ -84,21 +89,22 @@ impl Demo {
         progress.begin("writing");
         let panels = products::beside_truth(&scene.left, &completed.outcome.dense.disparity, &scene.truth);
         let panels = figure::side_by_side(&panels.each_ref());
-        output.add("demo.png", |out| png::write_rgb8(out, &panels))?;
-        output.add("left.png", |out| out.write_all(LEFT))?;
-        output.add("right.png", |out| out.write_all(RIGHT))?;
+        let [demo_file, left_file, right_file] = PICTURES;
+        output.add(demo_file, |out| png::write_rgb8(out, &panels))?;
+        output.add(left_file, |out| out.write_all(LEFT))?;
+        output.add(right_file, |out| out.write_all(RIGHT))?;
         completed.add_maps(&mut output, &CloudOptions::default())?;
         completed.add_figures(&mut output)?;
         let mut report = completed.report();
         report["accuracy"] = accuracy.report();
         products::add_report(&mut output, report)?;
-        output.finish()?;
+        output.finish_run(0)?;
         drop(progress);
 
         if !self.run.quiet {
             completed.warnings.iter().for_each(terminal::warning);
             terminal::print(&(completed.summary() + &summary::files(&output) + &accuracy.summary()))?;
-            let look = output.folder().join("demo.png");
+            let look = output.folder().join(demo_file);
             terminal::print(&format!(
                 "\nLook at {}: left picture, disparities found, true disparities.\n",
                 look.display()

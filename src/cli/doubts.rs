@@ -19,6 +19,9 @@ pub struct NotTrusted {
 }
 
 impl NotTrusted {
+    /// The exit code of a run that wrote such a map.
+    pub const EXIT_CODE: i32 = 4;
+
     /// `None` for a map that can be trusted. `calibration` is that of the disparities.
     pub fn new(outcome: &Outcome, calibration: Option<&Calibration>) -> Option<Self> {
         doubts::not_trusted(outcome, calibration).map(|reason| Self { reason })

@@ -7,21 +7,32 @@ use std::{
 
 use clap::Args;
 use hsad::{
+    Backend,
     features::{DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig},
     gpu::block_on,
     image::reduced,
     io::{figure, load, png},
     matching::MatchConfig,
     pipeline::reduction,
+    report,
     seeding::{RawMatches, SeedingConfig, enlarged_feature},
 };
+use serde_json::{Value, json};
 
 use super::{
+    earlier_set::REPORT,
     matches::MatchTable,
     options::{FeatureOptions, RunOptions, with_default},
     output::Output,
+    products,
     terminal::{self, Progress},
 };
+
+/// The files of one picture.
+const POINTS: [&str; 2] = ["features.csv", "keypoints.png"];
+
+/// The files of two pictures.
+const MATCHES: [&str; 2] = ["matches.csv", "matches.png"];
 
 /// Find the interest points of one picture, or match those of two
 ///
@@ -36,16 +47,16 @@ use super::{
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad features photo.jpg > features.csv
-  hsad features photo.jpg -o out            features.csv and keypoints.png
+  hsad features photo.jpg -o out            features.csv, keypoints.png and report.json
   hsad features photo.jpg --oriented --descriptors --threshold 0.001
   hsad features left.jpg right.jpg > matches.csv
-  hsad features left.jpg right.jpg -o out   matches.csv and matches.png")]
+  hsad features left.jpg right.jpg -o out   matches.csv, matches.png and report.json")]
 pub struct Features {
     /// Picture file: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP
     image: PathBuf,
     /// Second picture, whose interest points are matched to those of the first
     second: Option<PathBuf>,
-    /// Write features.csv and keypoints.png, or matches.csv and matches.png, to this folder instead of printing the table
+    /// Write features.csv and keypoints.png, or matches.csv and matches.png, and report.json to this folder instead of printing the table
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Detect points at the picture's full size. By default a picture of more than 2 megapixels is
@@ -76,7 +87,7 @@ impl Features {
     fn run_for_one(&self) -> anyhow::Result<()> {
         let config = self.features.over(FeatureConfig::default())?;
         config.validate()?;
-        let mut output = self.output.as_deref().map(Output::open).transpose()?;
+        let mut output = self.open_set(&[&self.image], &POINTS)?;
         let picture = load::load(&self.image)?;
         let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
@@ -91,9 +102,11 @@ impl Features {
         if let Some(output) = &mut output {
             progress.begin("writing");
             let figure = figure::keypoints(&picture, &features);
-            output.add("features.csv", |out| out.write_all(csv.as_bytes()))?;
-            output.add("keypoints.png", |out| png::write_rgb8(out, &figure))?;
-            output.finish()?;
+            let [table, drawn] = POINTS;
+            output.add(table, |out| out.write_all(csv.as_bytes()))?;
+            output.add(drawn, |out| png::write_rgb8(out, &figure))?;
+            let figures = json!({ "points": features.len(), "found": found, "reduction": factor });
+            self.finish(output, &[&self.image], &cached.backend, &figures)?;
         }
         drop(progress);
 
@@ -109,7 +122,7 @@ impl Features {
         let mut seeding = SeedingConfig::default();
         seeding.matching.ratio = self.ratio.unwrap_or(seeding.matching.ratio);
         seeding.matching.validate()?;
-        let mut output = self.output.as_deref().map(Output::open).transpose()?;
+        let mut output = self.open_set(&images, &MATCHES)?;
         let [left, right] = [load::load(images[0])?, load::load(images[1])?];
         let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
@@ -135,9 +148,12 @@ impl Features {
         if let Some(output) = &mut output {
             progress.begin("writing");
             let figure = figure::matches(&left, &right, &table.positions());
-            output.add("matches.csv", |out| out.write_all(csv.as_bytes()))?;
-            output.add("matches.png", |out| png::write_rgb8(out, &figure))?;
-            output.finish()?;
+            let [table_file, drawn] = MATCHES;
+            output.add(table_file, |out| out.write_all(csv.as_bytes()))?;
+            output.add(drawn, |out| png::write_rgb8(out, &figure))?;
+            let points = features.each_ref().map(Vec::len);
+            let figures = json!({ "points": points, "matches": matches.len(), "agreeing": table.agreeing(), "reduction": factor });
+            self.finish(output, &images, &cached.backend, &figures)?;
         }
         drop(progress);
         let [of_left, of_right] = features.each_ref().map(Vec::len);
@@ -148,6 +164,27 @@ impl Features {
             cached.backend.name()
         );
         self.tell(output.as_ref(), &csv, &found)
+    }
+
+    /// The output folder, if there is one; `names`: the files that will be written.
+    fn open_set(&self, pictures: &[&Path], names: &[&str]) -> hsad::Result<Option<Output>> {
+        let Some(folder) = &self.output else { return Ok(None) };
+        let output = Output::open_set(folder)?.sparing(pictures.iter().copied());
+        names.iter().chain(&[REPORT]).try_for_each(|name| output.check(name))?;
+        Ok(Some(output))
+    }
+
+    /// Adds the report, and moves all files to their places.
+    fn finish(&self, output: &mut Output, pictures: &[&Path], backend: &Backend, figures: &Value) -> hsad::Result<()> {
+        let pictures: Vec<_> = pictures.iter().map(|path| path.display().to_string()).collect();
+        let report = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "pictures": pictures,
+            "device": report::device(backend),
+            "features": figures,
+        });
+        products::add_report(output, report)?;
+        output.finish_run(0)
     }
 
     /// Prints the table, or where its file is, and what was found.

@@ -8,6 +8,7 @@ use hsad::io::load::LoadedPair;
 use super::{
     cloud::CloudOptions,
     depth::{Cameras, DepthOptions},
+    doubts::NotTrusted,
     job::Job,
     options::{FigureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
@@ -97,11 +98,13 @@ impl Match {
     pub fn run(self) -> anyhow::Result<()> {
         let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
         let unseen = self.unseen.unseen();
-        let mut output = Output::open(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        let mut output = Output::open_set(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
         let LoadedPair { left, right, stretch, mut warnings } = self.views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
         let cameras = self.depth.cameras(self.views.paths(), sizes)?;
-        self.cloud.check(!matches!(cameras, Cameras::Unknown))?;
+        let is_calibrated = !matches!(cameras, Cameras::Unknown);
+        self.cloud.check(is_calibrated)?;
+        self.check_places(&output, is_calibrated)?;
         let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
         warnings.extend(notes);
         // Told before the match, since they may be the reason why it fails.
@@ -128,7 +131,7 @@ impl Match {
             completed.add_matches(&mut output)?;
         }
         products::add_report(&mut output, completed.report())?;
-        output.finish()?;
+        output.finish_run(completed.not_trusted.as_ref().map_or(0, |_| NotTrusted::EXIT_CODE))?;
         drop(progress);
 
         if !self.run.quiet {
@@ -136,5 +139,17 @@ impl Match {
             terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
         completed.not_trusted.map_or(Ok(()), |doubt| Err(doubt.into()))
+    }
+
+    /// Checks that each file that is sure to be written may be.
+    fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
+        let of = |names: &'static [&str], are_written: bool| if are_written { names } else { &[] };
+        let names = [
+            &products::MAPS[..],
+            of(&products::DEPTH, is_calibrated),
+            of(&products::FIGURES, self.figures),
+            of(&[products::MATCHES], self.matches),
+        ];
+        names.concat().into_iter().try_for_each(|name| output.check(name))
     }
 }

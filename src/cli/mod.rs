@@ -8,15 +8,17 @@ mod demo;
 mod depth;
 mod devices;
 mod doubts;
+mod earlier_set;
 mod eval;
 mod features;
+pub mod interruption;
 mod job;
 mod man;
 mod match_views;
 mod matches;
 mod options;
 pub mod out_of_memory;
-pub mod output;
+mod output;
 mod products;
 mod rectification;
 mod rectify;
@@ -69,7 +71,7 @@ enum Command {
 impl Cli {
     /// Runs the subcommand.
     pub fn run(self) -> anyhow::Result<()> {
-        output::clean_up_when_interrupted()?;
+        interruption::clean_up_when_interrupted()?;
         threads::start()?;
         match self.command {
             Command::Match(command) => command.run(),
@@ -90,7 +92,7 @@ impl Cli {
 /// The exit code that [`EXIT_CODES`] promises for an error.
 pub fn exit_code(error: &anyhow::Error) -> i32 {
     if error.is::<NotTrusted>() {
-        return 4;
+        return NotTrusted::EXIT_CODE;
     }
     match error.downcast_ref() {
         Some(hsad::Error::Parameter { .. }) => 2,

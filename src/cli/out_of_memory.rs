@@ -9,7 +9,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use super::output;
+use super::interruption;
 
 /// The allocator of the system; ends the program with code 1 and one message if the system refuses memory.
 pub struct Allocator;
@@ -60,5 +60,5 @@ fn end(bytes: usize) -> ! {
         "error: the system refuses {bytes} bytes of memory: scale the pictures down, search fewer disparities, or raise the \
          limit"
     );
-    output::abandon_at_once(1)
+    interruption::abandon_at_once(1)
 }

@@ -3,8 +3,8 @@
 use std::{
     fs::{self, File},
     io::{self, BufWriter, Write},
+    mem,
     path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use hsad::{
@@ -13,121 +13,10 @@ use hsad::{
 };
 use serde_json::Value;
 
-/// Folders that were created for a run, the deepest first. An interruption waits while the lock is held.
-static CREATED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-fn created() -> MutexGuard<'static, Vec<PathBuf>> {
-    CREATED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The exit code that a shell reports for a program ended by SIGINT.
-const INTERRUPTED: i32 = 130;
-
-/// Installs the handler that removes temporary files and empty folders when the process is interrupted by Ctrl-C,
-/// SIGTERM or SIGHUP. The handler runs in a thread of its own, and the process ends without dropping anything. Where no
-/// thread can be spawned, the handler runs in the thread that is interrupted.
-///
-/// # Errors
-/// If the system refuses the handler.
-pub fn clean_up_when_interrupted() -> anyhow::Result<()> {
-    #[cfg(unix)]
-    // SAFETY: no handler is installed. A write beyond a limit of file sizes is an error, as others are, and ends no process.
-    unsafe {
-        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
-    }
-    let ignored = ignored_signals();
-    let handled = ctrlc::set_handler(|| {
-        let created = created();
-        atomic::abandon();
-        remove_empty(&created);
-        exit_at_once(INTERRUPTED);
-    });
-    match handled {
-        Err(ctrlc::Error::System(_)) => without_thread(),
-        handled => handled?,
-    }
-    keep_ignoring(&ignored);
-    Ok(())
-}
-
-/// Ends the process and removes what [`clean_up_when_interrupted`] does, without waiting for any thread and without taking
-/// memory. A list that is in use stays as it is.
-pub fn abandon_at_once(code: i32) -> ! {
-    atomic::try_abandon();
-    if let Ok(created) = CREATED.try_lock() {
-        remove_empty(&created);
-    }
-    exit_at_once(code)
-}
-
-/// Exits without the destructors of drivers: on an interrupt other threads still use what they would destroy, and at the end
-/// of the program Mesa's now and then run code that is unloaded already, which ends in a segmentation fault.
-pub fn exit_at_once(code: i32) -> ! {
-    #[cfg(unix)]
-    // SAFETY: `_exit` only ends the process.
-    unsafe {
-        libc::_exit(code)
-    }
-    #[cfg(not(unix))]
-    std::process::exit(code)
-}
-
-/// The signals that interrupt.
-#[cfg(unix)]
-const SIGNALS: [libc::c_int; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
-
-/// Handles interruptions in the thread that they interrupt.
-#[cfg(unix)]
-fn without_thread() {
-    extern "C" fn handle(_: libc::c_int) {
-        abandon_at_once(INTERRUPTED)
-    }
-    for signal in SIGNALS {
-        // SAFETY: the handler takes no memory and no lock that is held, and does not return.
-        unsafe {
-            libc::signal(signal, handle as extern "C" fn(libc::c_int) as libc::sighandler_t);
-        }
-    }
-}
-
-#[cfg(not(unix))]
-fn without_thread() {}
-
-/// The signals that the parent process asked to ignore: nohup does, and a shell does for a background job.
-#[cfg(unix)]
-fn ignored_signals() -> Vec<libc::c_int> {
-    let is_ignored = |&signal: &libc::c_int| {
-        // SAFETY: without a new action the call only queries, and a zeroed action is valid to be overwritten.
-        unsafe {
-            let mut action: libc::sigaction = std::mem::zeroed();
-            libc::sigaction(signal, std::ptr::null(), &mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
-        }
-    };
-    SIGNALS.into_iter().filter(is_ignored).collect()
-}
-
-#[cfg(unix)]
-fn keep_ignoring(signals: &[libc::c_int]) {
-    for &signal in signals {
-        // SAFETY: ignoring a signal runs no code.
-        unsafe {
-            libc::signal(signal, libc::SIG_IGN);
-        }
-    }
-}
-
-#[cfg(not(unix))]
-fn ignored_signals() {}
-
-#[cfg(not(unix))]
-fn keep_ignoring(_: &()) {}
-
-/// Removes the folders that are empty; the system refuses to remove the others, so results are safe.
-fn remove_empty(folders: &[PathBuf]) {
-    for folder in folders {
-        let _ = fs::remove_dir(folder);
-    }
-}
+use super::{
+    earlier_set::{EarlierSet, FolderLock},
+    interruption::{self, remove_empty},
+};
 
 /// Staged output files. Unless [`Self::finish`] is reached, no file appears, and the folders that were created for
 /// the files are removed.
@@ -139,6 +28,14 @@ pub struct Output {
     names: Vec<&'static str>,
     /// Files that no output may replace, without links.
     spared: Vec<PathBuf>,
+    /// What an earlier run left, if the files of the folder are a set.
+    set: Option<Set>,
+}
+
+/// A folder of which one run at a time writes all files that are hsad's.
+struct Set {
+    earlier: EarlierSet,
+    _lock: FolderLock,
 }
 
 impl Output {
@@ -156,11 +53,37 @@ impl Output {
         }
         let missing = |path: &&Path| *path != Path::new("") && !path.exists();
         let created: Vec<_> = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        self::created().extend(created.iter().cloned());
+        interruption::created(&created);
         // From here on a failure removes the created folders: `output` is dropped.
-        let output = Self { folder: folder.into(), created, staged: Vec::new(), names: Vec::new(), spared: Vec::new() };
+        let output = Self {
+            folder: folder.into(),
+            created,
+            staged: Vec::new(),
+            names: Vec::new(),
+            spared: Vec::new(),
+            set: None,
+        };
         fs::create_dir_all(folder).map_err(|error| failed("the folder cannot be created", error))?;
         temporary_in(folder).map_err(|error| failed("no file can be written in this folder", error))?;
+        atomic::clear_leftovers(folder);
+        Ok(output)
+    }
+
+    /// As [`Self::open`], for files that are a set, with a report that lists them: [`Self::finish`] puts them in the place of the set of
+    /// an earlier run, and files that hsad did not write are not replaced.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and if another run is about to write a set there.
+    pub fn open_set(folder: &Path) -> Result<Self> {
+        let mut output = Self::open(folder)?;
+        let Some(lock) = FolderLock::take(folder) else {
+            // The folder is that of the other run.
+            output.created.clear();
+            let reason =
+                "another run of hsad is writing its results there: name another folder (-o), or wait for its end";
+            return Err(Error::Io { path: folder.into(), source: io::Error::new(io::ErrorKind::ResourceBusy, reason) });
+        };
+        output.set = Some(Set { earlier: EarlierSet::read(folder), _lock: lock });
         Ok(output)
     }
 
@@ -172,20 +95,39 @@ impl Output {
         self
     }
 
+    /// Checks that a file of this name may be written: before the work, if it is known to be written after it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with its path, if it would replace a file that is spared, or in a set one that hsad did not write.
+    pub fn check(&self, name: &str) -> Result<()> {
+        let path = self.folder.join(name);
+        let refused = |reason: &str| {
+            Err(Error::Io { path: path.clone(), source: io::Error::new(io::ErrorKind::AlreadyExists, reason) })
+        };
+        if path.canonicalize().is_ok_and(|path| self.spared.contains(&path)) {
+            return refused("a result of this name would replace a file that was read: name another folder (-o)");
+        }
+        let is_foreign = |set: &Set| path.is_file() && !set.earlier.contains(name);
+        if self.set.as_ref().is_some_and(is_foreign) {
+            return refused(
+                "a result of this name would replace a file that no report.json beside it lists as hsad's: name another folder \
+                 (-o), or move the file",
+            );
+        }
+        Ok(())
+    }
+
     /// Writes a file that appears only with [`Self::finish`].
     ///
     /// # Errors
-    /// [`Error::Io`] with its path; also if it would replace a file that is spared.
+    /// [`Error::Io`] with its path, and as [`Self::check`].
     pub fn add<T>(
         &mut self,
         name: &'static str,
         write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>,
     ) -> Result<T> {
+        self.check(name)?;
         let path = self.folder.join(name);
-        if path.canonicalize().is_ok_and(|path| self.spared.contains(&path)) {
-            let reason = "a result of this name would replace a file that was read: name another folder (-o)";
-            return Err(Error::Io { path, source: io::Error::new(io::ErrorKind::AlreadyExists, reason) });
-        }
         let (staged, written) = Staged::write(&path, write)?;
         self.staged.push(staged);
         self.names.push(name);
@@ -210,13 +152,29 @@ impl Output {
         &self.names
     }
 
-    /// Moves all files to their places. An interruption waits until all have been moved.
+    /// Moves all files to their places; those of an earlier set that are not among them go. An interruption waits until all is done.
     ///
     /// # Errors
-    /// [`Error::Io`] with the path of the first file that cannot be moved.
+    /// [`Error::Io`] with the path of the first file that cannot be moved; all files are as they were before, then.
     pub fn finish(&mut self) -> Result<()> {
-        let _uninterrupted = created();
-        self.staged.drain(..).try_for_each(Staged::put)
+        interruption::uninterrupted(None, || self.replace())
+    }
+
+    /// As [`Self::finish`], for the last thing that a run does: an interruption from then on ends the program with `code`.
+    ///
+    /// # Errors
+    /// As [`Self::finish`].
+    pub fn finish_run(&mut self, code: i32) -> Result<()> {
+        interruption::uninterrupted(Some(code), || self.replace())
+    }
+
+    fn replace(&mut self) -> Result<()> {
+        let is_spared = |path: &PathBuf| path.canonicalize().is_ok_and(|path| self.spared.contains(&path));
+        let stale: Vec<PathBuf> = match &self.set {
+            Some(set) => set.earlier.without(&self.folder, &self.names).filter(|path| !is_spared(path)).collect(),
+            None => Vec::new(),
+        };
+        atomic::replace_all(mem::take(&mut self.staged), &stale)
     }
 }
 

@@ -24,17 +24,31 @@ use serde_json::Value;
 
 use super::{
     cloud::{CloudOptions, WrittenCloud},
+    earlier_set::REPORT,
     job::{CompletedJob, Job},
     matches::MatchTable,
     output::Output,
 };
 
+/// The files of [`CompletedJob::add_maps`], and the report.
+pub const MAPS: [&str; 5] = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", REPORT];
+
+/// The files that a calibration adds.
+pub const DEPTH: [&str; 2] = ["depth.pfm", "cloud.ply"];
+
+/// The files of [`CompletedJob::add_figures`].
+pub const FIGURES: [&str; 2] = ["keypoints.png", "matches.png"];
+
+/// The file of [`CompletedJob::add_matches`].
+pub const MATCHES: &str = "matches.csv";
+
 impl CompletedJob {
     /// Adds the disparity and confidence maps; with a calibration also depth and the point cloud that `cloud` asks for.
     pub fn add_maps(&mut self, output: &mut Output, cloud: &CloudOptions) -> Result<()> {
         let dense = &self.outcome.dense;
-        output.add("disparity.pfm", |out| pfm::write_disparities(out, &dense.disparity))?;
-        output.add("disparity.png", |out| disparity_png::write(out, &dense.disparity))?;
+        let [pfm_file, png_file, colors_file, confidence_file, _] = MAPS;
+        output.add(pfm_file, |out| pfm::write_disparities(out, &dense.disparity))?;
+        output.add(png_file, |out| disparity_png::write(out, &dense.disparity))?;
         let encoding = Encoding::of(&dense.disparity);
         if encoding != Encoding::KITTI {
             self.warnings.push(format!(
@@ -46,8 +60,8 @@ impl CompletedJob {
         }
         let range = color::disparity_range(&dense.disparity).unwrap_or((0, 0));
         let colors = color::disparity_colors(&dense.disparity, range);
-        output.add("disparity-color.png", |out| png::write_rgb8(out, &colors))?;
-        output.add("confidence.png", |out| png::write_grey8(out, &dense.confidence))?;
+        output.add(colors_file, |out| png::write_rgb8(out, &colors))?;
+        output.add(confidence_file, |out| png::write_grey8(out, &dense.confidence))?;
 
         let has_depth = self.outcome.no_depth.is_none() || self.job.config.force;
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
@@ -63,8 +77,9 @@ impl CompletedJob {
             } else {
                 self.warnings.extend(cloud.warning());
             }
-            output.add("depth.pfm", |out| pfm::write(out, &depth))?;
-            output.add("cloud.ply", |out| ply::write(out, &points))?;
+            let [depth_file, cloud_file] = DEPTH;
+            output.add(depth_file, |out| pfm::write(out, &depth))?;
+            output.add(cloud_file, |out| ply::write(out, &points))?;
             self.cloud = Some(cloud);
         }
         Ok(())
@@ -110,13 +125,14 @@ impl CompletedJob {
         };
         let [left_features, right_features] = &self.outcome.features;
         let both = figure::side_by_side(&[&keypoints(left, left_features), &keypoints(right, right_features)]);
-        output.add("keypoints.png", |out| png::write_rgb8(out, &both))?;
+        let [keypoints_file, matches_file] = FIGURES;
+        output.add(keypoints_file, |out| png::write_rgb8(out, &both))?;
 
         // Seeds come sorted, the most confident first.
         let seeds = self.outcome.seeding.seeds.iter().take(count);
         let pairs: Vec<_> = seeds.map(|seed| ([seed.x, seed.y], [seed.right_x(), seed.right_y()])).collect();
         let matches = figure::matches(left, right, &pairs);
-        output.add("matches.png", |out| png::write_rgb8(out, &matches))
+        output.add(matches_file, |out| png::write_rgb8(out, &matches))
     }
 
     /// Adds the table of all matches of interest points, in the pictures that were matched.
@@ -129,7 +145,7 @@ impl CompletedJob {
             rows: outcome.seeding.rectification.rows,
             max_dy: f64::from(job.config.seeding.max_dy) * f64::from(reduction(left.size())),
         };
-        output.add("matches.csv", |out| out.write_all(table.csv().as_bytes()))
+        output.add(MATCHES, |out| out.write_all(table.csv().as_bytes()))
     }
 }
 
@@ -144,7 +160,6 @@ pub fn beside_truth(view: &Picture, map: &DisparityMap, truth: &Plane<f32>) -> [
 
 /// Adds `report.json`, which lists all files added so far.
 pub fn add_report(output: &mut Output, mut report: Value) -> Result<()> {
-    const NAME: &str = "report.json";
-    report["files"] = output.names().iter().copied().chain([NAME]).collect();
-    output.add_json(NAME, &report)
+    report["files"] = output.names().iter().copied().chain([REPORT]).collect();
+    output.add_json(REPORT, &report)
 }

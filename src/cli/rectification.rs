@@ -27,6 +27,14 @@ pub struct Names {
     pub yaml: &'static str,
 }
 
+impl Names {
+    /// All names.
+    pub fn all(&self) -> [&'static str; 7] {
+        let Self { pictures: [left, right], masks: [left_mask, right_mask], figure, json, yaml } = *self;
+        [left, right, left_mask, right_mask, figure, json, yaml]
+    }
+}
+
 /// Adds all files of a rectified pair.
 pub fn add_files(pair: &RectifiedPair, names: &Names, output: &mut Output) -> Result<()> {
     for ((name, mask_name), (picture, mask)) in

@@ -14,6 +14,7 @@ use serde_json::json;
 use super::{
     depth::CalibrationOptions,
     doubts,
+    earlier_set::REPORT,
     options::{RunOptions, UnseenOptions},
     output::Output,
     products,
@@ -69,7 +70,8 @@ impl Rectify {
     /// Rectifies the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
         let unseen = self.unseen.unseen();
-        let mut output = Output::open(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        let mut output = Output::open_set(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        NAMES.all().into_iter().chain([REPORT]).try_for_each(|name| output.check(name))?;
         let LoadedPair { left, right, mut warnings, .. } = self.views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
         let file = self.calibration.read(self.views.paths(), sizes)?;
@@ -109,7 +111,7 @@ impl Rectify {
             "warnings": warnings,
         });
         products::add_report(&mut output, report)?;
-        output.finish()?;
+        output.finish_run(0)?;
         drop(progress);
         if !self.run.quiet {
             warnings.iter().for_each(terminal::warning);

@@ -56,7 +56,7 @@ fn files_go_to_the_folder() {
     let mut command = hsad();
     command.arg("features").arg(scene("planes", "left.png")).arg("-o").arg(&out).args(["--device", "cpu"]);
     command.assert().success().stdout(contains("interest points").and(contains("out"))).stderr("");
-    assert_eq!(names(&out), ["features.csv", "keypoints.png"]);
+    assert_eq!(names(&out), ["features.csv", "keypoints.png", "report.json"]);
     assert!(fs::read_to_string(out.join("features.csv")).unwrap().starts_with(HEADER));
     assert_eq!(load::load(&out.join("keypoints.png")).unwrap().size(), (340, 255));
 }

@@ -5,7 +5,7 @@ use std::{
     io,
     os::unix::process::CommandExt,
     path::Path,
-    process::{Child, Command},
+    process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
@@ -23,8 +23,17 @@ impl Run {
     /// Starts the program with `ignored` signals ignored and the others as they are by default. A shell ignores SIGINT for
     /// what it runs in the background, and a process hands that on to all that it starts.
     pub fn start(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>, ignored: &'static [libc::c_int]) -> Self {
+        Self::printing_to(arguments, ignored, Stdio::inherit())
+    }
+
+    /// As [`Self::start`], with the summary on `stdout`.
+    pub fn printing_to(
+        arguments: impl IntoIterator<Item = impl AsRef<OsStr>>,
+        ignored: &'static [libc::c_int],
+        stdout: impl Into<Stdio>,
+    ) -> Self {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hsad"));
-        command.args(arguments).env_remove("RUST_LOG");
+        command.args(arguments).env_remove("RUST_LOG").stdout(stdout);
         let dispositions = move || {
             for signal in SIGNALS {
                 let action = if ignored.contains(&signal) { libc::SIG_IGN } else { libc::SIG_DFL };

@@ -31,6 +31,7 @@ mod one_file;
 mod pictures;
 mod pipeline_cache;
 mod rectify;
+mod sets;
 mod tune;
 mod verify;
 

@@ -472,7 +472,7 @@ fn other_kinds_of_pictures_are_read() {
 
 /// A pair that the twins take a minute for, and the arguments of a match of it that leaves its results in `out`.
 #[cfg(unix)]
-fn endless(folder: &Path, out: &Path) -> Vec<std::ffi::OsString> {
+pub fn endless(folder: &Path, out: &Path) -> Vec<std::ffi::OsString> {
     let [left, right] = ["left.png", "right.png"].map(|name| folder.join(name));
     for path in [&left, &right] {
         grey_png(path, &noise(1500, 1300, 3));

@@ -63,7 +63,7 @@ fn the_matches_of_two_pictures_go_to_a_folder() {
     assert!(note.is_empty() && rows(&printed).iter().all(|row| row["ratio"] <= 0.6001));
     let (told, note) = features(&["--ratio", "0.6", "-o", out.to_str().unwrap()]);
     assert!(told.contains(" matches, ") && told.contains("out") && note.is_empty(), "{told} {note}");
-    assert_eq!(names(&out), ["matches.csv", "matches.png"]);
+    assert_eq!(names(&out), ["matches.csv", "matches.png", "report.json"]);
     assert_eq!(fs::read_to_string(out.join("matches.csv")).unwrap(), printed);
     assert_eq!(load::load(&out.join("matches.png")).unwrap().size(), (688, 255));
 }

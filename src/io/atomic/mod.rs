@@ -1,20 +1,28 @@
 //! Output files that are written whole or not at all.
 
+mod set;
+mod temporary;
+
 use std::{
     fs::{self, File, OpenOptions},
     io::{self, BufWriter, Write},
-    mem,
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
 };
+
+pub use set::replace_all;
+#[cfg(unix)]
+pub use temporary::lock::try_take as try_lock;
+pub use temporary::{abandon, clear_leftovers, temporary_in, try_abandon};
 
 use crate::error::{Error, Result};
 
 /// Writes a file to a temporary place and moves it to `path` only when it is complete. If anything fails, an older file
 /// at `path` stays unchanged.
 ///
-/// The new file takes over the permissions of the file it replaces; a read-only file is not replaced; a link is
-/// followed; a path that is no regular file (`/dev/null`, a pipe) is written to directly.
+/// The new file is synced before it takes its place, so that a system that loses power keeps one of both, and what fails late, as on a
+/// network's disk that is full, is an error. It takes over the permissions of the file it replaces, but no set-user-ID, set-group-ID or
+/// sticky bit; a read-only file is not replaced; a link is followed; a path that is no regular file (`/dev/null`, a pipe) is written to
+/// directly.
 ///
 /// # Errors
 /// [`Error::Io`] with `path`, for any failure.
@@ -41,6 +49,11 @@ impl Staged {
         let failed = |source| Error::Io { path: path.into(), source };
         let (file, written) = stage(path, write).map_err(failed)?;
         Ok((Self { path: path.into(), file }, written))
+    }
+
+    /// The place that the file will take; `None` if it was written to directly.
+    fn target(&self) -> Option<&Path> {
+        self.file.as_ref().map(|(_, target)| &**target)
     }
 
     /// Moves the file to its place.
@@ -78,58 +91,21 @@ fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     let temporary = temporary_in(&folder(&target))?;
     let written = fill(temporary.as_file(), write)?;
     if let Some(old) = old {
-        temporary.as_file().set_permissions(old.permissions())?;
+        temporary.as_file().set_permissions(permissions_of(&old))?;
     }
+    temporary.as_file().sync_all()?;
     Ok((Some((temporary, target)), written))
 }
 
-/// Paths of all temporary files ever made, including those that are removed or moved by now.
-static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-/// Removes the temporary files that are not moved to their place yet, and keeps all threads from making another. For an
-/// interrupted process that ends without dropping anything.
-pub fn abandon() {
-    let temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
-    remove(&temporaries);
-    mem::forget(temporaries);
-}
-
-/// Does what [`abandon`] does, unless a file is being made: for a thread that cannot wait, since it may be the one that makes
-/// it.
-pub fn try_abandon() {
-    if let Ok(temporaries) = TEMPORARIES.try_lock() {
-        remove(&temporaries);
-        mem::forget(temporaries);
-    }
-}
-
-fn remove(temporaries: &[PathBuf]) {
-    for path in temporaries {
-        // Most of the files are removed or moved already.
-        let _ = fs::remove_file(path);
-    }
-}
-
-/// A temporary file in `folder`, removed when dropped. Also the way to check, before any work, whether files can be
-/// written in `folder`.
-///
-/// # Errors
-/// The errors of the system, and an error if `folder` does not exist.
-pub fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    if !folder.is_dir() {
-        let reason = format!("there is no folder '{}': create it first", folder.display());
-        return Err(io::Error::new(io::ErrorKind::NotFound, reason));
-    }
-    let mut builder = tempfile::Builder::new();
-    // By default only the owner can read a temporary file; the umask still applies to these permissions.
+/// The permissions of a file that replaces one with this metadata.
+fn permissions_of(old: &fs::Metadata) -> fs::Permissions {
     #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // Only the kind of the error is kept: its text names the temporary file, which means nothing to the user.
-    builder.prefix(".hsad-");
-    let mut temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
-    let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
-    temporaries.push(file.path().into());
-    Ok(file)
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::Permissions::from_mode(old.permissions().mode() & 0o777)
+    }
+    #[cfg(not(unix))]
+    old.permissions()
 }
 
 fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
@@ -224,6 +200,10 @@ mod tests {
         fs::set_permissions(&ours, fs::Permissions::from_mode(0o640)).unwrap();
         write_whole(&ours, |_| Ok(())).unwrap();
         assert_eq!(mode(&ours), 0o640);
+
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o6751)).unwrap();
+        write_whole(&ours, |_| Ok(())).unwrap();
+        assert_eq!(fs::metadata(&ours).unwrap().permissions().mode() & 0o7777, 0o751);
 
         fs::set_permissions(&ours, fs::Permissions::from_mode(0o444)).unwrap();
         assert!(write_whole(&ours, |_| Ok(())).unwrap_err().to_string().contains("read-only"));
