@@ -1,11 +1,28 @@
 //! The errors of this crate. Each message has the value, the limit and the way out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::size::Size;
 
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// A path in a message: characters that would break its line, or that terminals obey, are escaped as in Rust's strings.
+#[doc(hidden)]
+pub fn shown(path: &Path) -> String {
+    let mut text = String::new();
+    for letter in path.to_string_lossy().chars() {
+        // Marks that turn the direction of writing are no control characters by their class.
+        if letter.is_control()
+            || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        {
+            text.extend(letter.escape_default());
+        } else {
+            text.push(letter);
+        }
+    }
+    text
+}
 
 /// The reason why a call failed.
 #[derive(Debug, thiserror::Error)]
@@ -159,7 +176,7 @@ pub enum Error {
     DeviceLost(String),
 
     /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", shown(path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -168,7 +185,7 @@ pub enum Error {
     },
 
     /// The content of a file contradicts its format.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {reason}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,

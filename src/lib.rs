@@ -161,6 +161,8 @@ pub use backend::Backend;
 pub use config::{Config, Preset};
 pub use dense::{Dense, DenseConfig, Matcher};
 pub use disparity::{DisparityMap, DisparityRange};
+#[doc(hidden)]
+pub use error::shown;
 pub use error::{Error, Result};
 pub use features::{Detector, Feature, FeatureConfig};
 #[cfg(not(target_arch = "wasm32"))]

@@ -107,7 +107,7 @@ impl Demo {
             let look = output.folder().join(demo_file);
             terminal::print(&format!(
                 "\nLook at {}: left picture, disparities found, true disparities.\n",
-                look.display()
+                hsad::shown(&look)
             ))?;
         }
         Ok(())

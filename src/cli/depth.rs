@@ -52,8 +52,10 @@ impl CalibrationFile {
     /// [`Error::Format`] if the file describes only pictures that are not rectified, or pictures of another size.
     pub fn for_rectified(&self, size: Size) -> Result<(Calibration, Vec<String>)> {
         let calibration = self.loaded.for_rectified(size).map_err(|error| self.misfit(&error))?;
-        let notes = self.loaded.notes.iter().cloned().chain(unsized_misfit(&calibration, size));
-        Ok((calibration, notes.collect()))
+        match unsized_misfit(&calibration, size) {
+            Some(reason) => Err(Error::Format { path: self.path.clone(), reason }),
+            None => Ok((calibration, self.loaded.notes.clone())),
+        }
     }
 
     /// Checks that the file is for pictures as they were taken of these sizes, left and right, in pixels.
@@ -109,13 +111,13 @@ impl DepthOptions {
     }
 }
 
-/// A warning if a calibration without a size seems to be for larger pictures.
+/// Why a calibration without a size is not for `pictures`: its principal point lies outside.
 fn unsized_misfit(&Calibration { cx, cy, size, .. }: &Calibration, pictures: Size) -> Option<String> {
     let is_inside = (0.0..f64::from(pictures.width)).contains(&cx) && (0.0..f64::from(pictures.height)).contains(&cy);
     (size.is_none() && !is_inside).then(|| {
         format!(
-            "the principal point ({cx:.1}, {cy:.1}) lies outside the pictures of {pictures} pixels: the calibration seems to \
-             be for other pictures"
+            "the principal point ({cx:.1}, {cy:.1}) lies outside the pictures of {pictures} pixels: the calibration is for other ones; \
+             scale its numbers to these pictures, or give --focal and --baseline (for parts of larger pictures, too)"
         )
     })
 }

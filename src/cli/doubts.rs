@@ -28,6 +28,19 @@ impl NotTrusted {
     }
 }
 
+/// A depth that was asked for and does not follow from the map. The files of the map were written all the same.
+#[derive(Debug, thiserror::Error)]
+#[error("{reason}; the files were written, and --force accepts the result without depth")]
+pub struct NoDepth {
+    /// Why there is none, in words.
+    pub reason: String,
+}
+
+impl NoDepth {
+    /// The exit code of a run that wrote no depth though a calibration asked for it.
+    pub const EXIT_CODE: i32 = 5;
+}
+
 /// The warnings about a result.
 pub fn warnings(views: (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     doubts::warnings(views, config, outcome).iter().map(|warning| in_words_of_options(warning)).collect()

@@ -191,7 +191,7 @@ impl Features {
     fn tell(&self, output: Option<&Output>, csv: &str, found: &str) -> anyhow::Result<()> {
         match output {
             Some(_) if self.run.quiet => {}
-            Some(output) => terminal::print(&format!("{found}; see {}\n", output.folder().display()))?,
+            Some(output) => terminal::print(&format!("{found}; see {}\n", hsad::shown(output.folder())))?,
             None => {
                 terminal::print(csv)?;
                 if !self.run.quiet {

@@ -15,7 +15,7 @@ use hsad::{
 
 use super::{
     cloud::WrittenCloud,
-    doubts::{self, NotTrusted},
+    doubts::{self, NoDepth, NotTrusted},
     options::RunOptions,
     terminal::Progress,
     way::Way,
@@ -56,6 +56,8 @@ pub struct CompletedJob {
     pub warnings: Vec<String>,
     /// Why the map is not to be trusted; `None` for a map that is, and with `--force`.
     pub not_trusted: Option<NotTrusted>,
+    /// Why there is no depth, if it was asked for; `None` with `--force`.
+    pub no_depth: Option<NoDepth>,
     /// The point cloud, once it was written.
     pub cloud: Option<WrittenCloud>,
 }
@@ -96,7 +98,7 @@ impl Job {
         if self.config.force {
             warnings.extend(not_trusted.take().map(|doubt| doubt.reason));
         }
-        let mut back = None;
+        let (mut back, mut no_depth) = (None, None);
         if let Some(pair) = &rectified {
             if self.map_back {
                 let way = pair.way_back(self.config.reference, &outcome.seeding.rectification.rows)?;
@@ -106,9 +108,9 @@ impl Job {
                 [self.left, self.right] = pair.pictures.clone();
             }
             if calibration.is_none() && self.calibration.is_some() {
-                warnings.push(
-                    "no depth and no point cloud: a pair rectified without calibration has no known baseline".into(),
-                );
+                let reason = "no depth and no point cloud: the pair was rectified from its matches, which tell no baseline; the calibration \
+                              is that of a rectified pair, and this one is not";
+                no_depth = Some(reason.to_string());
             }
         } else if let Some(doubt) =
             calibration.and_then(|calibration| doubts::looks_to_the_side(&outcome, &calibration))
@@ -118,7 +120,20 @@ impl Job {
         }
         self.calibration = calibration;
         let (backend, total) = (cached.backend, start.elapsed());
-        Ok(CompletedJob { job: self, backend, outcome, rectified, back, total, warnings, not_trusted, cloud: None })
+        let mut completed = CompletedJob {
+            job: self,
+            backend,
+            outcome,
+            rectified,
+            back,
+            total,
+            warnings,
+            not_trusted,
+            no_depth: None,
+            cloud: None,
+        };
+        no_depth.into_iter().for_each(|reason| completed.miss_depth(reason));
+        Ok(completed)
     }
 
     /// How one view mirrors the other, which is found out where the pair was refused or its map is not to be trusted.

@@ -8,7 +8,6 @@ use hsad::io::load::LoadedPair;
 use super::{
     cloud::CloudOptions,
     depth::{Cameras, DepthOptions},
-    doubts::NotTrusted,
     job::Job,
     options::{FigureOptions, MatchOptions, RunOptions, UnseenOptions},
     output::Output,
@@ -58,7 +57,8 @@ const NAMES: Names = Names {
   hsad match DSCF0001.MPO -o out
   hsad match both.jps -o out --side-by-side right-left
 
-Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified and cannot be, 4 written but not to be trusted (--force goes on all the same)"))]
+Exit codes: 0 done, 1 failed, 2 usage, 3 not rectified and cannot be, 4 written but not to be trusted,
+5 written but without the depth that was asked for (--force goes on all the same)"))]
 pub struct Match {
     #[command(flatten)]
     views: ViewOptions,
@@ -131,14 +131,15 @@ impl Match {
             completed.add_matches(&mut output)?;
         }
         products::add_report(&mut output, completed.report())?;
-        output.finish_run(completed.not_trusted.as_ref().map_or(0, |_| NotTrusted::EXIT_CODE))?;
+        let shortfall = completed.shortfall();
+        output.finish_run(shortfall.as_ref().map_or(0, super::exit_code))?;
         drop(progress);
 
         if !self.run.quiet {
             completed.warnings[told..].iter().for_each(terminal::warning);
             terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
-        completed.not_trusted.map_or(Ok(()), |doubt| Err(doubt.into()))
+        shortfall.map_or(Ok(()), Err)
     }
 
     /// Checks that each file that is sure to be written may be.

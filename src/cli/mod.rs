@@ -34,7 +34,7 @@ mod wording;
 
 use clap::{Parser, Subcommand};
 
-use doubts::NotTrusted;
+use doubts::{NoDepth, NotTrusted};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -43,6 +43,7 @@ Exit codes:
   2  usage: an unknown option, or a value outside its range
   3  the pair is not rectified and cannot be (hsad match --force matches it all the same)
   4  the map was written, but is not to be trusted (hsad match --force accepts it)
+  5  the map was written, but not the depth that a calibration asked for (hsad match --force accepts it)
 130  interrupted: no incomplete files are left behind";
 
 /// Stereo depth from two photographs, on any GPU
@@ -93,6 +94,9 @@ impl Cli {
 pub fn exit_code(error: &anyhow::Error) -> i32 {
     if error.is::<NotTrusted>() {
         return NotTrusted::EXIT_CODE;
+    }
+    if error.is::<NoDepth>() {
+        return NoDepth::EXIT_CODE;
     }
     match error.downcast_ref() {
         Some(hsad::Error::Parameter { .. }) => 2,

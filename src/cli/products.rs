@@ -24,6 +24,7 @@ use serde_json::Value;
 
 use super::{
     cloud::{CloudOptions, WrittenCloud},
+    doubts::NoDepth,
     earlier_set::REPORT,
     job::{CompletedJob, Job},
     matches::MatchTable,
@@ -70,8 +71,9 @@ impl CompletedJob {
             let (points, left_out) = self.points(calibration, &filter)?;
             let cloud = WrittenCloud(Cloud { points: points.len(), filter, left_out });
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
-                self.warnings.push(format!(
-                    "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration",
+                self.miss_depth(format!(
+                    "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration, and that left and \
+                     right are not mixed up",
                     calibration.doffs
                 ));
             } else {
@@ -83,6 +85,21 @@ impl CompletedJob {
             self.cloud = Some(cloud);
         }
         Ok(())
+    }
+
+    /// Notes why a depth that was asked for cannot be given.
+    pub fn miss_depth(&mut self, reason: String) {
+        if self.job.config.force {
+            self.warnings.push(reason);
+        } else {
+            self.no_depth = Some(NoDepth { reason });
+        }
+    }
+
+    /// Why the run ends with another exit code than 0, though its files are written.
+    pub fn shortfall(&mut self) -> Option<anyhow::Error> {
+        let not_trusted = self.not_trusted.take().map(anyhow::Error::from);
+        not_trusted.or_else(|| self.no_depth.take().map(anyhow::Error::from))
     }
 
     /// The depth of each pixel of the map, in metres; +inf where there is none.

@@ -13,7 +13,7 @@ pub use hsad::report::{device, searched};
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, cloud } = self;
+        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, no_depth, cloud } = self;
         let mut value = report::run(&Run {
             names: job.names.each_ref().map(String::as_str),
             size: job.left.size(),
@@ -23,6 +23,7 @@ impl CompletedJob {
             cloud: cloud.as_ref().map(|cloud| &cloud.0),
             rectified: rectified.as_ref(),
             mapped_back: back.is_some(),
+            no_depth: no_depth.as_ref().map(|missing| missing.reason.as_str()),
             not_trusted: not_trusted.as_ref().map(|doubt| doubt.reason.as_str()),
             warnings,
             config: &job.config,

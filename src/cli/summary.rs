@@ -93,7 +93,7 @@ pub fn rectified(pair: &RectifiedPair) -> String {
 /// The line that names the output folder and its files.
 pub fn files(output: &Output) -> String {
     let mut text = String::new();
-    line(&mut text, "files", format!("{}: {}", output.folder().display(), output.names().join(", ")));
+    line(&mut text, "files", format!("{}: {}", hsad::shown(output.folder()), output.names().join(", ")));
     text
 }
 

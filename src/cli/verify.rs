@@ -152,7 +152,7 @@ impl Verify {
         if faults > 0 {
             let lost =
                 if ran < cases.len() { "; the device was lost, and the remaining cases were not run" } else { "" };
-            bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, self.output.display());
+            bail!("{faults} of {ran} cases fail on {}{lost}: see {}", info.name, hsad::shown(&self.output));
         }
         let passed = if ran == 1 { "the case passes".into() } else { format!("all {ran} cases pass") };
         print(&format!("{passed}, in {}\n", time(seconds)))?;

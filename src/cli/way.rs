@@ -43,15 +43,13 @@ impl Resolved {
     /// The way of a pair with views of these sizes, in pixels.
     ///
     /// # Errors
-    /// [`Error::Format`] for a calibration of other pictures; [`Error::Parameter`] if there is none and there must be one.
+    /// [`Error::Format`] for a calibration of other pictures; [`Error::Parameter`] if there is none and there must be one, or one that
+    /// there must not be.
     pub fn new(rectify: Rectify, cameras: Cameras, sizes: [Size; 2]) -> Result<Self> {
         let file = match (rectify, cameras) {
             (Rectify::Calibrated, Cameras::Unknown | Cameras::Rectified(_)) => return Err(needs_files()),
             (Rectify::Uncalibrated, Cameras::Unknown) => return Ok(Self::plain(Way::Uncalibrated, None)),
-            (Rectify::Uncalibrated, _) => {
-                let note = "--rectify uncalibrated leaves the calibration out: no depth and no point cloud";
-                return Ok(Self { notes: vec![note.into()], ..Self::plain(Way::Uncalibrated, None) });
-            }
+            (Rectify::Uncalibrated, _) => return Err(needs_none()),
             (Rectify::Never, Cameras::Unknown) => return Ok(Self::plain(Way::AsIs, None)),
             (Rectify::Never, Cameras::Rectified(calibration)) => return Ok(Self::plain(Way::AsIs, Some(calibration))),
             (Rectify::Auto, Cameras::Unknown) => return Ok(Self::plain(Way::AsNeeded, None)),
@@ -83,6 +81,14 @@ impl Resolved {
 
     fn plain(way: Way, calibration: Option<Calibration>) -> Self {
         Self { way, calibration, notes: Vec::new() }
+    }
+}
+
+fn needs_none() -> Error {
+    Error::Parameter {
+        name: "--rectify",
+        value: "uncalibrated".into(),
+        expected: "a pair that is rectified from its matches has no depth: leave the calibration out, or rectify by it (calibrated)".into(),
     }
 }
 

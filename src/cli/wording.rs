@@ -45,8 +45,9 @@ pub fn in_words_of_options(sentence: &str) -> String {
 }
 
 /// Parameters that are no options of the library by name, and the options that set them.
-const OPTIONS: [(&str, &str); 6] = [
+const OPTIONS: [(&str, &str); 7] = [
     ("condition", "--condition"),
+    ("nodata", "--nodata"),
     ("only", "--only"),
     ("size", "--size"),
     ("strongest", "--strongest"),

@@ -8,7 +8,7 @@ use crate::fnv::fnv1a;
 pub(super) fn dump(name: &str, text: &str) {
     let Some(folder) = std::env::var_os("HSAD_DUMP_WGSL").filter(|folder| !folder.is_empty()) else { return };
     if let Err(error) = write(Path::new(&folder), name, text) {
-        log::warn!("HSAD_DUMP_WGSL: {name} is not written to {}: {error}", folder.display());
+        log::warn!("HSAD_DUMP_WGSL: {name} is not written to {}: {error}", crate::error::shown(Path::new(&folder)));
     }
 }
 

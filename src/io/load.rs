@@ -29,7 +29,7 @@ use super::{
     malformed, mpo,
     samples::{Kind, Samples},
 };
-use crate::error::Result;
+use crate::error::{Result, shown};
 
 pub use super::{
     halves::Halves,
@@ -138,6 +138,7 @@ pub fn decode_mpo(bytes: &[u8], path: &Path, unseen: &Unseen) -> Result<Option<L
 }
 
 fn pair(views: [Decoded; 2], [left, right]: [&Path; 2], unseen: &Unseen) -> Result<LoadedPair> {
+    unseen.check(views.each_ref().map(Kind::of))?;
     let [left_mask, right_mask] = unseen.masks.each_ref().map(Option::as_deref);
     let shown = |view, path: &Path, mask| -> Result<Samples> {
         let mut view = seen(view, path)?;
@@ -205,7 +206,7 @@ fn check_kinds(views: [&Samples; 2], paths: [&Path; 2]) -> Result<()> {
     let (float, integer) = if kinds[0] { (paths[0], paths[1]) } else { (paths[1], paths[0]) };
     let reason = "has floating-point samples (or integers beyond 16 bits)";
     let way_out = "nothing tells how the two compare, convert both views with the same scale";
-    Err(malformed(float, format!("the picture {reason} and the other view, {}, has not: {way_out}", integer.display())))
+    Err(malformed(float, format!("the picture {reason} and the other view, {}, has not: {way_out}", shown(integer))))
 }
 
 /// A warning if the files turn the views differently.

@@ -16,6 +16,33 @@ pub(super) enum Kind {
     Float,
 }
 
+impl Kind {
+    /// The kind of a decoded file.
+    pub fn of(decoded: &Decoded) -> Self {
+        Self::of_image(&decoded.image)
+    }
+
+    fn of_image(image: &DynamicImage) -> Self {
+        use DynamicImage as Image;
+        match image {
+            Image::ImageLuma8(_) | Image::ImageLumaA8(_) | Image::ImageRgb8(_) | Image::ImageRgba8(_) => Self::Eight,
+            Image::ImageLuma16(_) | Image::ImageLumaA16(_) | Image::ImageRgb16(_) | Image::ImageRgba16(_) => {
+                Self::Sixteen
+            }
+            _ => Self::Float,
+        }
+    }
+
+    /// The largest sample of integers, which are whole numbers from 0 on; `None` for floats.
+    pub fn largest(self) -> Option<f32> {
+        match self {
+            Self::Eight => Some(255.0),
+            Self::Sixteen => Some(65_535.0),
+            Self::Float => None,
+        }
+    }
+}
+
 /// A picture in the samples of its file, and which of its pixels were seen.
 pub(super) struct Samples {
     image: DynamicImage,
@@ -38,14 +65,7 @@ impl Samples {
     }
 
     pub fn kind(&self) -> Kind {
-        use DynamicImage as Image;
-        match self.image {
-            Image::ImageLuma8(_) | Image::ImageLumaA8(_) | Image::ImageRgb8(_) | Image::ImageRgba8(_) => Kind::Eight,
-            Image::ImageLuma16(_) | Image::ImageLumaA16(_) | Image::ImageRgb16(_) | Image::ImageRgba16(_) => {
-                Kind::Sixteen
-            }
-            _ => Kind::Float,
-        }
+        Kind::of_image(&self.image)
     }
 
     /// Whether any pixel was seen.

@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{codec, malformed, samples::Samples};
-use crate::error::Result;
+use super::{
+    codec, malformed,
+    samples::{Kind, Samples},
+};
+use crate::error::{Error, Result, shown};
 
 /// Pixels of a pair that were not seen, besides those of alpha 0 and those of samples that are not finite.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +23,27 @@ impl Unseen {
     /// The files of the masks.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.masks.iter().filter_map(Option::as_deref)
+    }
+
+    /// Checks that a view of one of `kinds` can have the value for missing data.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if none can.
+    pub(super) fn check(&self, kinds: [Kind; 2]) -> Result<()> {
+        let Some(value) = self.nodata.filter(|value| value.is_finite()) else { return Ok(()) };
+        let occurs = |most: f32| (0.0..=most).contains(&value) && value.fract() == 0.0;
+        // The wider kind has the values of the other one.
+        let most = kinds.map(Kind::largest).into_iter().reduce(|a, b| Some(a?.max(b?))).flatten();
+        match most {
+            Some(most) if !occurs(most) => Err(Error::Parameter {
+                name: "nodata",
+                value: value.to_string(),
+                expected: format!(
+                    "samples of these pictures are whole numbers from 0 to {most}: name one of them, or none"
+                ),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Makes pixels of a view, the one in `path`, unseen.
@@ -40,14 +64,13 @@ impl Unseen {
         let mask = Samples::new(codec::decode(&codec::read_bytes(mask_path)?, mask_path)?);
         if mask.size() != view.size() {
             let (size, found) = (view.size(), mask.size());
-            let reason =
-                format!("the mask is {found} and its view, {}, {size} pixels: they must agree", path.display());
+            let reason = format!("the mask is {found} and its view, {}, {size} pixels: they must agree", shown(path));
             return Err(malformed(mask_path, reason));
         }
         view.hide_outside(&mask);
         if !view.is_seen() {
             let reason =
-                format!("the mask leaves no pixel of {}: it must not be 0 where the view is valid", path.display());
+                format!("the mask leaves no pixel of {}: it must not be 0 where the view is valid", shown(path));
             return Err(malformed(mask_path, reason));
         }
         Ok(())

@@ -37,6 +37,8 @@ pub struct Run<'a> {
     pub rectified: Option<&'a RectifiedPair>,
     /// Whether the map was taken back to the view as it was taken.
     pub mapped_back: bool,
+    /// Why there is no depth though a calibration asks for it.
+    pub no_depth: Option<&'a str>,
     /// Why the map is not to be trusted.
     pub not_trusted: Option<&'a str>,
     /// Doubts about the map, one line each.
@@ -75,6 +77,7 @@ pub fn run(run: &Run<'_>) -> Value {
         "cloud": run.cloud.map(cloud),
         "rectified": run.rectified.map(rectified),
         "mapped_back": run.mapped_back,
+        "no_depth": run.no_depth,
         "not_trusted": run.not_trusted,
         "disparity_png": disparity_png(&run.outcome.dense.disparity),
         "warnings": run.warnings,

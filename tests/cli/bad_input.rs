@@ -29,7 +29,7 @@ fn files_that_are_no_pictures() {
         ("cut.png", &bytes[..bytes.len() / 2], "cut.png: "),
         ("text.png", b"this is text, and long enough to be looked at", "PNG, JPEG, PNM, BMP, TIFF and WebP"),
         ("cmyk.tiff", &cmyk_tiff(), "CMYK: convert it"),
-        ("line\nfeed.png", b"text", "line feed.png"),
+        ("line\nfeed.png", b"text", r"line\nfeed.png: "),
     ];
     for (name, content, expected) in contents {
         let path = temporary.path().join(name);
@@ -119,7 +119,12 @@ fn calibrations_that_are_none() {
     }
     fs::write(&calib, "cam0=[9 0 1; 0 9 1; 0 0 1]\ndoffs=-1000\nbaseline=1\n").unwrap();
     let mut command = match_on_cpu(&left, &right, &temporary.path().join("out"));
-    command.args(["--calib", calib_text]).assert().code(4).stderr(predicates::str::contains("no pixel has a depth"));
+    // All points lie behind the cameras.
+    let told = predicates::str::contains("behind the cameras by the calibration");
+    command.args(["--calib", calib_text, "-q"]).assert().code(4).stdout("").stderr(told);
+    let written = crate::common::report(&temporary.path().join("out"));
+    assert!(written["no_depth"].as_str().unwrap().starts_with("no pixel has a depth"), "{}", written["no_depth"]);
+    command.arg("--force").assert().success().stderr("");
 }
 
 #[test]
@@ -195,4 +200,23 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
         .assert()
         .success()
         .stdout(predicates::str::contains("rectified  no: the right view lies 40.0 px lower"));
+}
+
+/// A name that breaks lines, colours a terminal, or turns the direction of writing is told apart from any other.
+#[cfg(unix)]
+#[test]
+fn paths_in_messages_are_escaped() {
+    let temporary = folder();
+    let name = "a\nb\x1b[31m\u{202e}c.png";
+    let shown = r"a\nb\u{1b}[31m\u{202e}c.png: ";
+    let out = temporary.path().join("out\t1");
+    let [left, right] = views("weak");
+    fails(match_on_cpu(&temporary.path().join(name), &right, &out), 1, shown);
+    let mut command = match_on_cpu(&left, &right, &out);
+    command.args(["--disparities", "16", "--preset", "fast", "--force"]);
+    command.assert().success().stdout(predicates::str::contains(r"out\t1: disparity.pfm"));
+    fs::write(temporary.path().join(name), "").unwrap();
+    let mut command = match_on_cpu(&left, &right, &out);
+    command.arg("--calib").arg(temporary.path().join(name));
+    fails(command, 1, &format!("{shown}the file is empty"));
 }

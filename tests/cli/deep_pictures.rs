@@ -65,6 +65,12 @@ fn masks_and_missing_data_that_do_not_fit() {
     fails_with(&left, &["--mask", left.to_str().unwrap(), &small], "right.png, 340x255 pixels");
     fails_with(&left, &["--mask", &missing], "missing.png");
     fails_with(&path("flat.png"), &["--nodata", "7"], "flat.png: all its pixels have the value for missing data, 7");
+    for impossible in ["300", "-9999", "7.5"] {
+        let mut command = match_on_cpu(&left, &right, &path("out"));
+        command.args(["--nodata", impossible]);
+        let told = format!("--nodata is {impossible}, but samples of these pictures are whole numbers from 0 to 255");
+        fails(command, 2, &told);
+    }
     for args in [&["--nodata", "none"][..], &["--nodata"], &["--mask"]] {
         hsad().args(["match", "a", "b", "-o", "out"]).args(args).assert().code(2).stderr(contains("error: "));
     }
@@ -76,8 +82,16 @@ fn masks_and_negative_missing_data_are_taken() {
     let out = temporary.path().join("out");
     let mask = temporary.path().join("mask.png");
     grey_png(&mask, &Plane::from_fn((340, 255), |x, _| if x < 20 { 0 } else { 1 }));
+    let floats = [left, right].map(|view| {
+        let path = temporary.path().join(view.with_extension("pfm").file_name().unwrap());
+        let mut bytes = Vec::new();
+        pfm::write(&mut bytes, &load::load(&view).unwrap().luma().map(|&grey| f32::from(grey))).unwrap();
+        fs::write(&path, bytes).unwrap();
+        path
+    });
+    let [left, right] = &floats;
     for nodata in ["-9999", "nan", "-3.4e38"] {
-        let mut command = match_on_cpu(&left, &right, &out);
+        let mut command = match_on_cpu(left, right, &out);
         command.args(["--disparities", "72", "--preset", "fast", "--nodata", nodata, "--mask"]).args([&mask, &mask]);
         command.assert().success().stderr("");
     }

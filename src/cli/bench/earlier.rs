@@ -11,8 +11,8 @@ pub struct Earlier(BTreeMap<String, f64>);
 impl Earlier {
     /// Reads the JSON of `hsad bench`.
     pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(file).map_err(|error| anyhow!("{}: {error}", file.display()))?;
-        let unknown = || anyhow!("{}: no figures of hsad bench --json", file.display());
+        let text = fs::read_to_string(file).map_err(|error| anyhow!("{}: {error}", hsad::shown(file)))?;
+        let unknown = || anyhow!("{}: no figures of hsad bench --json", hsad::shown(file));
         let report: Value = serde_json::from_str(&text).map_err(|_| unknown())?;
         let case = |case: &Value| {
             let number = |name: &str| case[name].as_u64();

@@ -216,7 +216,7 @@ impl Features {
         drop((progress, root));
         if let (Some(folder), true, false) = (&self.output, !table.rows.is_empty(), self.run.quiet) {
             let reuse = saved_results::reuse_note(reused, table.rows.len());
-            terminal::print(&format!("\nresults are in {}{reuse}\n", folder.display()))?;
+            terminal::print(&format!("\nresults are in {}{reuse}\n", hsad::shown(folder)))?;
         }
         self.write_figures(&table, &finder, &failures)?;
         report_failures(&failures)

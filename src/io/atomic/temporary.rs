@@ -9,6 +9,8 @@ use std::{
 
 use tempfile::NamedTempFile;
 
+use crate::error::shown;
+
 /// The beginning of the name of each temporary file.
 const PREFIX: &str = ".hsad-";
 
@@ -49,7 +51,7 @@ fn remove(temporaries: &[PathBuf]) {
 /// The errors of the system, and an error if `folder` does not exist.
 pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     if !folder.is_dir() {
-        let reason = format!("there is no folder '{}': create it first", folder.display());
+        let reason = format!("there is no folder '{}': create it first", shown(folder));
         return Err(io::Error::new(io::ErrorKind::NotFound, reason));
     }
     let mut builder = builder();

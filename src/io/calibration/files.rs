@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     calibration::{Calibration, StereoCalibration},
-    error::{Error, Result},
+    error::{Error, Result, shown},
     image::Size,
     io::{malformed, read_whole},
 };
@@ -188,7 +188,7 @@ fn of_two(first: &File<'_>, second: &File<'_>, hints: &Hints<'_>, notes: &mut Ve
             let reason = format!(
                 "this file has the format {other:?} and {} the format {own:?}: two files are two ROS camera_info, two EuRoC \
                  sensor.yaml, OpenCV's intrinsics and extrinsics, or COLMAP's cameras.txt and images.txt",
-                first.path.display()
+                shown(first.path)
             );
             Err(malformed(second.path, reason))
         }
@@ -241,6 +241,6 @@ fn check_length(text: &str, path: &Path, format: Format) -> Result<()> {
 }
 
 fn unknown(path: &Path, error: &str) -> Error {
-    let prefix = format!("{}: ", path.display());
+    let prefix = format!("{}: ", shown(path));
     malformed(path, format!("{}; {ACCEPTED}", error.strip_prefix(&prefix).unwrap_or(error)))
 }

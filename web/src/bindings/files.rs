@@ -80,6 +80,7 @@ impl Matched {
             cloud: cloud.as_ref(),
             rectified: self.rectified.as_ref(),
             mapped_back: false,
+            no_depth: None,
             not_trusted: self.not_trusted.as_deref(),
             warnings: &self.warnings,
             config: &self.task.config,

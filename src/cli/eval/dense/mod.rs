@@ -168,7 +168,7 @@ impl Dense {
         }
         let mut text = format!("{}\n{}", table::tables(&results.records, methods), table::LEGEND);
         if let Some(folder) = &self.output {
-            text += &format!("\nmaps and pictures of errors are in {}", folder.display());
+            text += &format!("\nmaps and pictures of errors are in {}", hsad::shown(folder));
             text += &saved_results::reuse_note(results.reused, results.records.len());
             text.push('\n');
         }

@@ -189,7 +189,7 @@ impl Paper {
     fn print_results(&self, scene: &str, groups: &[Group], found: &SceneResults) -> io::Result<()> {
         let mut text = table::text(scene, groups);
         if let Some(folder) = &self.output {
-            text += &format!("\ncurves and plots are in {}", folder.join(scene).display());
+            text += &format!("\ncurves and plots are in {}", hsad::shown(&folder.join(scene)));
             text += &saved_results::reuse_note(found.reused, found.records.len());
             text.push('\n');
         }
