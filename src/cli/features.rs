@@ -11,7 +11,11 @@ use hsad::{
     features::{DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig},
     gpu::block_on,
     image::reduced,
-    io::{figure, load, png},
+    io::{
+        Picture, figure,
+        load::{self, LoadedPair, Unseen},
+        png,
+    },
     matching::MatchConfig,
     pipeline::reduction,
     report,
@@ -26,6 +30,7 @@ use super::{
     output::Output,
     products,
     terminal::{self, Progress},
+    view_files::HalvesOptions,
 };
 
 /// The files of one picture.
@@ -50,12 +55,19 @@ const MATCHES: [&str; 2] = ["matches.csv", "matches.png"];
   hsad features photo.jpg -o out            features.csv, keypoints.png and report.json
   hsad features photo.jpg --oriented --descriptors --threshold 0.001
   hsad features left.jpg right.jpg > matches.csv
+  hsad features photo.mpo --both-views > matches.csv
   hsad features left.jpg right.jpg -o out   matches.csv, matches.png and report.json")]
 pub struct Features {
     /// Picture file: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP
     image: PathBuf,
     /// Second picture, whose interest points are matched to those of the first
+    #[arg(group = "second_view")]
     second: Option<PathBuf>,
+    #[command(flatten)]
+    halves: HalvesOptions,
+    /// IMAGE has both views, and tells where: MPO of 3D cameras, JPS. Their interest points are matched
+    #[arg(long, group = "second_view")]
+    both_views: bool,
     /// Write features.csv and keypoints.png, or matches.csv and matches.png, and report.json to this folder instead of printing the table
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -64,9 +76,9 @@ pub struct Features {
     #[arg(long)]
     full_size: bool,
     /// Add the 64 descriptor values of each point as columns d0 to d63
-    #[arg(long, conflicts_with = "second")]
+    #[arg(long, conflicts_with = "second_view")]
     descriptors: bool,
-    #[arg(long, value_name = "R", requires = "second", help = with_default("Ratio test: largest ratio of the distances of the \
+    #[arg(long, value_name = "R", requires = "second_view", help = with_default("Ratio test: largest ratio of the distances of the \
         best and the second best descriptor, above 0, at most 1", MatchConfig::default().ratio))]
     ratio: Option<f32>,
     #[command(flatten)]
@@ -79,8 +91,8 @@ impl Features {
     /// Detects the interest points, matches those of two pictures, and prints or writes the table.
     pub fn run(self) -> anyhow::Result<()> {
         match &self.second {
-            Some(second) => self.run_for_two([&self.image, second]),
-            None => self.run_for_one(),
+            None if !self.both_views && self.halves.halves().is_none() => self.run_for_one(),
+            second => self.run_for_two([&self.image, second.as_ref().unwrap_or(&self.image)]),
         }
     }
 
@@ -123,7 +135,7 @@ impl Features {
         seeding.matching.ratio = self.ratio.unwrap_or(seeding.matching.ratio);
         seeding.matching.validate()?;
         let mut output = self.open_set(&images, &MATCHES)?;
-        let [left, right] = [load::load(images[0])?, load::load(images[1])?];
+        let [left, right] = self.views(images)?;
         let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("finding interest points");
@@ -164,6 +176,19 @@ impl Features {
             cached.backend.name()
         );
         self.tell(output.as_ref(), &csv, &found)
+    }
+
+    /// Both pictures.
+    fn views(&self, images: [&Path; 2]) -> hsad::Result<[Picture; 2]> {
+        if self.second.is_some() {
+            return Ok([load::load(images[0])?, load::load(images[1])?]);
+        }
+        let LoadedPair { left, right, warnings, .. } =
+            load::load_both(images[0], self.halves.halves(), &Unseen::default())?;
+        if !self.run.quiet {
+            warnings.iter().for_each(terminal::warning);
+        }
+        Ok([left, right])
     }
 
     /// The output folder, if there is one; `names`: the files that will be written.

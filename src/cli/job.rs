@@ -8,7 +8,7 @@ use hsad::{
     config::Config,
     dense::View,
     gpu::block_on,
-    io::{Calibration, Picture, load::Stretch},
+    io::{Calibration, Picture, depth_png::Unheld, load::Stretch},
     pipeline::{self, Mirrored, Outcome, RectifiedPair, TakenPair, WayBack},
     seeding::Verdict,
 };
@@ -58,6 +58,8 @@ pub struct CompletedJob {
     pub not_trusted: Option<NotTrusted>,
     /// Why there is no depth, if it was asked for; `None` with `--force`.
     pub no_depth: Option<NoDepth>,
+    /// What the depth in millimetres lacks, once it was written.
+    pub depth_png: Option<Unheld>,
     /// The point cloud, once it was written.
     pub cloud: Option<WrittenCloud>,
 }
@@ -130,6 +132,7 @@ impl Job {
             warnings,
             not_trusted,
             no_depth: None,
+            depth_png: None,
             cloud: None,
         };
         no_depth.into_iter().for_each(|reason| completed.miss_depth(reason));

@@ -32,8 +32,8 @@ const NAMES: Names = Names {
 ///
 /// Writes disparity.pfm (32-bit float, in pixels, +inf for no disparity), disparity.png (16 bit, 256
 /// times the disparity, 0 for no disparity; with an offset where disparities are negative), disparity-color.png, confidence.png and report.json;
-/// with a calibration also depth.pfm (in metres) and cloud.ply, which has the measured pixels whose
-/// depth is known to a tenth. A left pixel (x, y) with disparity d corresponds to the right pixel
+/// with a calibration also depth.pfm (in metres), depth.png (16 bit, in millimetres) and cloud.ply, which
+/// has the measured pixels whose depth is known to a tenth. A left pixel (x, y) with disparity d corresponds to the right pixel
 /// (x - d, y). Without --disparities the range is found from a coarse map of the pair and from
 /// matching interest points.
 ///

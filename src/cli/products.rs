@@ -11,7 +11,7 @@ use hsad::{
     io::{
         Calibration, Picture,
         calibration::depth_map,
-        color,
+        color, depth_png,
         disparity_png::{self, Encoding},
         figure, pfm,
         ply::{self, LeftOut, Point, PointFilter},
@@ -35,7 +35,7 @@ use super::{
 pub const MAPS: [&str; 5] = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", REPORT];
 
 /// The files that a calibration adds.
-pub const DEPTH: [&str; 2] = ["depth.pfm", "cloud.ply"];
+pub const DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
 
 /// The files of [`CompletedJob::add_figures`].
 pub const FIGURES: [&str; 2] = ["keypoints.png", "matches.png"];
@@ -79,8 +79,9 @@ impl CompletedJob {
             } else {
                 self.warnings.extend(cloud.warning());
             }
-            let [depth_file, cloud_file] = DEPTH;
+            let [depth_file, millimetre_file, cloud_file] = DEPTH;
             output.add(depth_file, |out| pfm::write(out, &depth))?;
+            self.depth_png = Some(output.add(millimetre_file, |out| depth_png::write(out, &depth))?);
             output.add(cloud_file, |out| ply::write(out, &points))?;
             self.cloud = Some(cloud);
         }

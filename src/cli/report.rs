@@ -2,6 +2,7 @@
 
 use hsad::{
     config::Config,
+    io::depth_png::{METRES_PER_VALUE, Unheld},
     report::{self, Run},
 };
 use serde_json::{Value, json};
@@ -13,7 +14,8 @@ pub use hsad::report::{device, searched};
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, no_depth, cloud } = self;
+        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, no_depth, depth_png, cloud } =
+            self;
         let mut value = report::run(&Run {
             names: job.names.each_ref().map(String::as_str),
             size: job.left.size(),
@@ -30,6 +32,7 @@ impl CompletedJob {
             outcome,
             total: *total,
         });
+        value["depth_png"] = depth_png.map(depth_in_png).into();
         value["parameters"] = parameters(&job.config, job.strongest);
         value
     }
@@ -40,4 +43,9 @@ pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
     let mut parameters = report::parameters(config);
     parameters["strongest"] = json!(strongest);
     parameters
+}
+
+/// How the values of `depth.png` become metres, and how many depths they cannot hold.
+fn depth_in_png(Unheld { beyond, nearer }: Unheld) -> Value {
+    json!({ "metres_per_value": METRES_PER_VALUE, "left_out": { "beyond_65.535_m": beyond, "nearer_than_half_a_value": nearer } })
 }

@@ -12,16 +12,24 @@ use hsad::{
 #[derive(Args)]
 pub struct ViewOptions {
     /// Left view: PNG, JPEG, PNM, PFM, BMP, TIFF or WebP, of 8 bits, 16 bits or floats; or, without RIGHT, a file with both
-    /// views: MPO of 3D cameras, or any picture with --side-by-side or --top-bottom
+    /// views: MPO of 3D cameras, JPS, or any picture with --side-by-side or --top-bottom
     left: PathBuf,
     /// Right view
+    #[arg(group = "second_view")]
     right: Option<PathBuf>,
-    /// LEFT has both views beside each other, in this order: left-right for parallel viewing, right-left for crossed eyes, as in
-    /// most JPS files
-    #[arg(long, value_enum, value_name = "ORDER", conflicts_with_all = ["right", "top_bottom"])]
+    #[command(flatten)]
+    halves: HalvesOptions,
+}
+
+/// Where the views of a picture that has both lie.
+#[derive(Args)]
+pub struct HalvesOptions {
+    /// The picture has both views beside each other, in this order: left-right for parallel viewing, right-left for crossed eyes, as
+    /// in most JPS files (those that tell it need no option)
+    #[arg(long, value_enum, value_name = "ORDER", group = "second_view")]
     side_by_side: Option<Order>,
-    /// LEFT has both views above each other, the first of the order on top
-    #[arg(long, value_enum, value_name = "ORDER", conflicts_with = "right")]
+    /// The picture has both views above each other, the first of the order on top
+    #[arg(long, value_enum, value_name = "ORDER", group = "second_view")]
     top_bottom: Option<Order>,
 }
 
@@ -45,6 +53,13 @@ impl ViewOptions {
         if let Some(right) = &self.right {
             return load_pair(&self.left, right, unseen);
         }
+        load_both(&self.left, self.halves.halves(), unseen)
+    }
+}
+
+impl HalvesOptions {
+    /// Where the views lie, if it is told.
+    pub fn halves(&self) -> Option<Halves> {
         let beside = self.side_by_side.map(|order| match order {
             Order::LeftRight => Halves::LeftRight,
             Order::RightLeft => Halves::RightLeft,
@@ -53,6 +68,6 @@ impl ViewOptions {
             Order::LeftRight => Halves::LeftOnTop,
             Order::RightLeft => Halves::RightOnTop,
         });
-        load_both(&self.left, beside.or(above), unseen)
+        beside.or(above)
     }
 }

@@ -35,6 +35,26 @@ pub(super) fn objection(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
+/// Position behind `name` in the first application segment of this marker that begins with it; `None` if a file has none before its
+/// pixels.
+pub(super) fn app_segment(bytes: &[u8], marker: u8, name: &[u8]) -> Option<usize> {
+    if !bytes.starts_with(&[0xff, 0xd8]) {
+        return None;
+    }
+    let mut position = 2;
+    loop {
+        let &[0xff, found, high, low] = bytes.get(position..position + 4)? else { return None };
+        if found == START_OF_SCAN {
+            return None;
+        }
+        let segment = bytes.get(position + 4..position + 2 + usize::from(u16::from_be_bytes([high, low])))?;
+        if found == marker && segment.starts_with(name) {
+            return Some(position + 4 + name.len());
+        }
+        position += 4 + segment.len();
+    }
+}
+
 /// The code of the next marker and the bytes behind it; fill bytes and stray bytes before the marker are skipped.
 fn next_marker(bytes: &[u8]) -> Option<(u8, &[u8])> {
     let start = bytes.iter().position(|&byte| byte == 0xff)?;

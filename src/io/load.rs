@@ -14,7 +14,7 @@
 //! Both views of a pair have one stretch ([`load_pair`]). A pair of 8 and 16 bits is accepted, and only the latter view
 //! stretched; floats and integers of up to 16 bits do not go together, since nothing tells how their units compare.
 //!
-//! A file may have both views ([`load_both`]): an MPO of a 3D camera, or one picture with a view in each half.
+//! A file may have both views ([`load_both`]): an MPO of a 3D camera, a JPS, or one picture with a view in each half.
 //!
 //! CMYK is refused, since its conversion to 8 bits would be a guess, and so are PFM of three channels. Only the first
 //! frame or page of a file is read.
@@ -26,7 +26,7 @@ use ::image::metadata::Orientation;
 use super::{
     Picture, codec,
     decoded::Decoded,
-    malformed, mpo,
+    jps, malformed, mpo,
     samples::{Kind, Samples},
 };
 use crate::error::{Result, shown};
@@ -92,7 +92,7 @@ pub fn decode_pair(left: (&[u8], &Path), right: (&[u8], &Path), unseen: &Unseen)
 }
 
 /// Loads both views from one file, as [`load_pair`] does from two: from the halves of its picture, or, without `halves`, from a
-/// multi-picture file (MPO), as cameras with two lenses write.
+/// multi-picture file (MPO), as cameras with two lenses write, or a stereo JPEG (JPS) whose APP3 segment tells where its views lie.
 ///
 /// # Errors
 /// As [`load_pair`]; also [`crate::Error::Format`] for a picture that is no multi-picture file, and one too small to hold two views.
@@ -100,11 +100,11 @@ pub fn load_both(path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result
     let bytes = codec::read_bytes(path)?;
     let loaded = match halves {
         Some(halves) => Some(decode_halves(&bytes, path, halves, unseen)?),
-        None => decode_mpo(&bytes, path, unseen)?,
+        None => decode_both(&bytes, path, unseen)?,
     };
     loaded.ok_or_else(|| {
-        let reason = "it holds one picture and no list of several, as an MPO has: name the right view, too, or tell where both \
-                      views lie in it (--side-by-side, --top-bottom)";
+        let reason = "it holds one picture, no list of several as an MPO has, and no word on where its views lie as a JPS may have: \
+                      name the right view, too, or tell where both views lie in it (--side-by-side, --top-bottom)";
         malformed(path, reason)
     })
 }
@@ -119,11 +119,19 @@ pub fn decode_halves(bytes: &[u8], path: &Path, halves: Halves, unseen: &Unseen)
     pair(views, [path; 2], unseen)
 }
 
-/// Decodes both views from the bytes of a multi-picture file (MPO); `None` if the file is no such file. `path` is named in errors.
+/// Decodes both views from the bytes of a file that tells where they lie: an MPO, or a JPS with a descriptor. `None` for any other file.
+/// `path` is named in errors.
 ///
 /// # Errors
 /// As [`load_both`].
-pub fn decode_mpo(bytes: &[u8], path: &Path, unseen: &Unseen) -> Result<Option<LoadedPair>> {
+pub fn decode_both(bytes: &[u8], path: &Path, unseen: &Unseen) -> Result<Option<LoadedPair>> {
+    if let Some(told) = jps::descriptor(bytes).map_err(|reason| malformed(path, reason))? {
+        let mut loaded = decode_halves(bytes, path, told.halves, unseen)?;
+        loaded.warnings.extend(told.squeezed.map(|side| {
+            format!("the views were squeezed to half their {side}: disparities are those of the squeezed pictures, and so must a calibration be")
+        }));
+        return Ok(Some(loaded));
+    }
     let Some([left, right]) = mpo::views(bytes).map_err(|reason| malformed(path, reason))? else { return Ok(None) };
     let views = [codec::decode(left, path)?, codec::decode(right, path)?];
     let [left, right] = views.each_ref().map(|view| (view.image.width(), view.image.height()));

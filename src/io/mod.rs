@@ -18,6 +18,8 @@ pub mod csv;
 #[cfg(feature = "pictures")]
 mod decoded;
 #[cfg(feature = "files")]
+pub mod depth_png;
+#[cfg(feature = "files")]
 pub mod disparities;
 #[cfg(feature = "pictures")]
 pub mod disparity_png;
@@ -29,6 +31,8 @@ mod halves;
 pub mod homography;
 #[cfg(feature = "pictures")]
 mod jpeg;
+#[cfg(feature = "pictures")]
+mod jps;
 #[cfg(feature = "pictures")]
 pub mod load;
 #[cfg(feature = "pictures")]

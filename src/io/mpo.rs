@@ -4,8 +4,10 @@
 //! picture ('Multi-Picture Format', CIPA DC-007, 2009, sections 5.1 and 5.2). Pictures of different views are numbered from left to
 //! right.
 
+use super::jpeg;
+
 const APP2: u8 = 0xe2;
-const START_OF_SCAN: u8 = 0xda;
+const NAME: &[u8] = b"MPF\0";
 /// The tag of the list of pictures.
 const ENTRIES: u32 = 0xb002;
 /// Bytes of an entry: attributes, size and offset of 32 bits each, and two numbers of dependent pictures.
@@ -19,7 +21,7 @@ const THUMBNAIL: u32 = 1;
 /// Why a multi-picture file cannot be read.
 pub(super) fn views(bytes: &[u8]) -> Result<Option<[&[u8]; 2]>, &'static str> {
     const DAMAGED: &str = "the index of the multi-picture file is damaged, or the file is cut off: copy it again";
-    let Some(start) = index(bytes) else { return Ok(None) };
+    let Some(start) = jpeg::app_segment(bytes, APP2, NAME) else { return Ok(None) };
     let entries = Index::new(&bytes[start..]).and_then(|index| index.entries()).ok_or(DAMAGED)?;
     let views: Option<Vec<&[u8]>> = entries
         .iter()
@@ -33,26 +35,6 @@ pub(super) fn views(bytes: &[u8]) -> Result<Option<[&[u8]; 2]>, &'static str> {
         .collect();
     let views = views.ok_or(DAMAGED)?;
     Ok(views.try_into().ok())
-}
-
-/// Position behind 'MPF' in its segment; `None` if the JPEG has none before its pixels.
-fn index(bytes: &[u8]) -> Option<usize> {
-    const NAME: &[u8] = b"MPF\0";
-    if !bytes.starts_with(&[0xff, 0xd8]) {
-        return None;
-    }
-    let mut position = 2;
-    loop {
-        let &[0xff, marker, high, low] = bytes.get(position..position + 4)? else { return None };
-        if marker == START_OF_SCAN {
-            return None;
-        }
-        let segment = bytes.get(position + 4..position + 2 + usize::from(u16::from_be_bytes([high, low])))?;
-        if marker == APP2 && segment.starts_with(NAME) {
-            return Some(position + 4 + NAME.len());
-        }
-        position += 4 + segment.len();
-    }
 }
 
 /// A picture of the list.

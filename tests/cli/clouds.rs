@@ -1,10 +1,32 @@
 //! `cloud.ply` of `hsad match`: which pixels become points.
 
+use std::path::Path;
+
 use hsad::io::{load, pfm};
 use predicates::str::contains;
 use serde_json::json;
 
 use crate::common::{cloud, fails, folder, match_on_cpu, report, views};
+
+/// `depth.png` has `depths`, in metres, as far as 16 bits hold millimetres.
+fn check_millimetres(out: &Path, depths: &[f32]) {
+    let values = image::open(out.join("depth.png")).unwrap().into_luma16().into_raw();
+    let mut beyond = 0;
+    for (&value, &depth) in values.iter().zip(depths) {
+        match depth {
+            depth if depth.is_infinite() => assert_eq!(value, 0),
+            depth if depth > 65.5354 => {
+                beyond += 1;
+                assert_eq!(value, 0);
+            }
+            depth => assert!((f64::from(value) - 1000.0 * f64::from(depth)).abs() <= 0.5001, "{value} {depth}"),
+        }
+    }
+    assert!(beyond > 0);
+    let told =
+        json!({ "metres_per_value": 0.001, "left_out": { "beyond_65.535_m": beyond, "nearer_than_half_a_value": 0 } });
+    assert_eq!(report(out)["depth_png"], told);
+}
 
 #[test]
 fn the_cloud_has_measured_points_of_known_depth() {
@@ -16,6 +38,7 @@ fn the_cloud_has_measured_points_of_known_depth() {
         command.args(["--disparities", "72", "--focal", "300", "--baseline", "0.1", "--doffs", "-9"]).args(args);
         command.assert().success().stdout(contains("cloud "));
         let depth = pfm::read(&out.join("depth.pfm")).unwrap();
+        check_millimetres(&out, depth.data());
         let confidence = load::load(&out.join("confidence.png")).unwrap().luma();
         let pixels = depth.into_data().into_iter().zip(confidence.into_data());
         (cloud(&out), report(&out)["cloud"].clone(), pixels.collect::<Vec<_>>())

@@ -18,7 +18,7 @@ fn works_anywhere_and_tells_its_accuracy() {
     hsad().arg("demo").current_dir(temporary.path()).assert().success().stdout(told);
     assert_eq!(names(temporary.path()), ["hsad-demo"]);
     let out = temporary.path().join("hsad-demo");
-    let expected = "cloud.ply confidence.png demo.png depth.pfm disparity-color.png disparity.pfm disparity.png \
+    let expected = "cloud.ply confidence.png demo.png depth.pfm depth.png disparity-color.png disparity.pfm disparity.png \
                     keypoints.png left.png matches.png report.json right.png";
     assert_eq!(names(&out).join(" "), expected);
     assert!(fs::read(out.join("left.png")).unwrap() == fs::read(scene("curved", "left.png")).unwrap());

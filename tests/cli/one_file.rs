@@ -117,6 +117,46 @@ fn halves_of_a_picture_are_views() {
     assert!(names(&path("rectified")).contains(&"right.png".into()));
 }
 
+/// A JPEG with a stereoscopic descriptor of these flags and this layout.
+fn jps(picture: &Path, flags: u8, layout: u8) -> Vec<u8> {
+    let jpeg = jpeg(picture);
+    let segment = [&[0xff, 0xe3, 0, 16][..], b"_JPSJPS_", &[0, 4, 0, flags, layout, 1]].concat();
+    [&jpeg[..2], &segment, &jpeg[2..]].concat()
+}
+
+#[test]
+fn a_jps_tells_where_its_views_lie() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    let [left, right] = views("planes").map(|view| load::load(&view).unwrap());
+    let beside = Picture::from_fn((680, 255), |x, y| if x < 340 { right.get(x, y) } else { left.get(x - 340, y) });
+    write(&path("both.png"), &beside);
+    // The right view lies on the left; squeezed, too, as the third file says.
+    fs::write(path("plain.jpg"), jpeg(&path("both.png"))).unwrap();
+    for (name, flags, layout) in [("right.jps", 0, 2), ("half.jps", 2, 2), ("rows.jps", 0, 1)] {
+        fs::write(path(name), jps(&path("both.png"), flags, layout)).unwrap();
+    }
+    let map = |name: &str| fs::read(path(name).join("disparity.pfm")).unwrap();
+    match_one(&path("plain.jpg"), &path("1")).args(["--side-by-side", "right-left"]).assert().success().stderr("");
+    match_one(&path("right.jps"), &path("2")).assert().success().stderr("");
+    let told = contains("the views were squeezed to half their width: disparities are those of the squeezed pictures");
+    match_one(&path("half.jps"), &path("3")).assert().success().stderr(told);
+    assert!(map("1") == map("2") && map("2") == map("3"));
+    fails(match_one(&path("rows.jps"), &path("4")), 1, "it is a JPS with interleaved rows");
+
+    let points = |args: &[&str]| {
+        let mut command = hsad();
+        command.arg("features").arg(path("right.jps")).args(["-q", "--device", "cpu"]).args(args);
+        String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap()
+    };
+    let (alone, told, named) = (points(&[]), points(&["--both-views"]), points(&["--side-by-side", "right-left"]));
+    assert!(alone.starts_with("x,y,scale") && told.starts_with("x1,y1,scale1") && told == named);
+    assert!(told.lines().filter(|line| line.ends_with(",1")).count() > 100);
+    let mut command = hsad();
+    command.arg("features").arg(path("plain.jpg")).args(["--both-views", "--device", "cpu"]);
+    fails(command, 1, "no word on where its views lie as a JPS may have");
+}
+
 #[test]
 fn one_picture_alone_is_no_pair() {
     let temporary = folder();

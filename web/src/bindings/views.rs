@@ -70,7 +70,7 @@ impl Loaded {
         let both = match halves {
             Some(halves) => load::decode_halves(bytes, path, halves, &unseen).map(Some),
             // Phones write such lists with a picture and its brightness, which are no pair.
-            None => load::decode_mpo(bytes, path, &unseen).or(Ok(None)),
+            None => load::decode_both(bytes, path, &unseen).or(Ok(None)),
         };
         match both.map_err(thrown)? {
             Some(pair) => Ok(pair.into()),
