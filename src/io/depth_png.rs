@@ -56,8 +56,8 @@ mod tests {
         let metres = [0.0004, 0.0006, 1.2345, 65.5354, 65.5356, 1e9, f32::INFINITY, f32::NAN, 0.0, -1.0];
         let depth = Plane::new((10, 1), metres.to_vec()).unwrap();
         let (values, unheld) = millimetres(&depth);
-        // 1.2345 as a float lies just below.
-        assert_eq!(values.data(), [0, 1, 1234, 65_535, 0, 0, 0, 0, 0, 0]);
+        // 1.2345 as a float lies just above.
+        assert_eq!(values.data(), [0, 1, 1235, 65_535, 0, 0, 0, 0, 0, 0]);
         assert_eq!(unheld, Unheld { beyond: 2, nearer: 1 });
         let mut bytes = Vec::new();
         assert_eq!(write(&mut bytes, &depth).unwrap(), unheld);
