@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Where the computation runs: on a GPU, or on the CPU twins.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Backend {
     /// The kernels, on a device.
     Gpu(Gpu),

@@ -13,7 +13,7 @@ use hsad::{
 };
 
 /// Calibration files of a pair.
-#[derive(Args)]
+#[derive(Args, Debug)]
 pub struct CalibrationOptions {
     /// Calibration file of the pair: Middlebury, OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP, K.txt or hsad's JSON, see
     /// docs/calibration.md; twice for formats with a file per camera, left first
@@ -30,12 +30,17 @@ impl CalibrationOptions {
     /// # Errors
     /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read, [`Error::Parameter`] for a unit outside its range.
     pub fn read(&self, pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Option<CalibrationFile>> {
-        let Some(path) = self.calib.first() else { return Ok(None) };
+        self.read_from(&self.calib, pictures, sizes)
+    }
+
+    /// As [`Self::read`], from these files.
+    fn read_from(&self, files: &[PathBuf], pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Option<CalibrationFile>> {
+        let Some(path) = files.first() else { return Ok(None) };
         if let Some(unit) = self.calib_unit {
             check_unit(unit)?;
         }
         let hints = Hints { pictures: Some(pictures), sizes: Some(sizes), unit: self.calib_unit };
-        Ok(Some(CalibrationFile { path: path.clone(), loaded: calibration::read(&self.calib, &hints)? }))
+        Ok(Some(CalibrationFile { path: path.clone(), loaded: calibration::read(files, &hints)? }))
     }
 }
 
@@ -72,7 +77,7 @@ impl CalibrationFile {
 }
 
 /// Geometry that turns disparities into depth.
-#[derive(Args)]
+#[derive(Args, Debug)]
 #[command(next_help_heading = "Depth")]
 pub struct DepthOptions {
     #[command(flatten)]
@@ -98,12 +103,16 @@ pub enum Cameras {
 }
 
 impl DepthOptions {
-    /// What the options tell of the cameras of `pictures` of these sizes in pixels.
+    /// What the options tell of the cameras of `pictures` of these sizes in pixels. A file `of_pair` takes the place of all.
     ///
     /// # Errors
     /// As [`CalibrationOptions::read`]; [`Error::Parameter`] for values outside their range.
-    pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Cameras> {
-        if let Some(file) = self.files.read(pictures, sizes)? {
+    pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2], of_pair: Option<&Path>) -> Result<Cameras> {
+        let file = match of_pair {
+            Some(file) => self.files.read_from(&[file.into()], pictures, sizes)?,
+            None => self.files.read(pictures, sizes)?,
+        };
+        if let Some(file) = file {
             return Ok(Cameras::Files(file.into()));
         }
         let Some((focal, baseline)) = self.focal.zip(self.baseline) else { return Ok(Cameras::Unknown) };

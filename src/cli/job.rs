@@ -73,19 +73,24 @@ struct Matched {
 
 impl Job {
     /// Opens the device and matches the pair; writes no files.
-    pub fn run(mut self, options: &RunOptions) -> Result<CompletedJob> {
+    pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
         let cached = options.open()?;
-        let progress = Progress::new(options.quiet);
-        let matched = self.matched(&cached.backend, &progress);
-        let mirrored = self.mirrored(&matched, &cached.backend, &progress)?;
+        let completed = self.run_on(&cached.backend, &Progress::new(options.quiet), start)?;
+        cached.save();
+        Ok(completed)
+    }
+
+    /// Matches the pair on an open device, for a job that began at `start`; writes no files.
+    pub fn run_on(mut self, backend: &Backend, progress: &Progress, start: Instant) -> Result<CompletedJob> {
+        let matched = self.matched(backend, progress);
+        let mirrored = self.mirrored(&matched, backend, progress)?;
         let Matched { mut outcome, rectified, mut warnings } = match (matched, mirrored) {
             (Err(_), Some(sides)) => {
                 return Err(Error::NotRectifiable { reason: doubts::mirrored(sides) }.into());
             }
             (matched, _) => matched?,
         };
-        cached.save();
         let given = [&self.left, &self.right];
         let [left, right] = rectified.as_ref().map_or(given, |pair| pair.pictures.each_ref());
         let mut calibration = match &rectified {
@@ -121,7 +126,7 @@ impl Job {
             calibration = None;
         }
         self.calibration = calibration;
-        let (backend, total) = (cached.backend, start.elapsed());
+        let (backend, total) = (backend.clone(), start.elapsed());
         let mut completed = CompletedJob {
             job: self,
             backend,

@@ -3,29 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hsad::io::load::LoadedPair;
 
 use super::{
-    cloud::CloudOptions,
-    depth::{Cameras, DepthOptions},
-    job::Job,
-    options::{FigureOptions, MatchOptions, RunOptions, UnseenOptions},
+    options::RunOptions,
     output::Output,
-    products,
-    rectification::{self, Names},
+    recipe::{Prepared, Recipe},
     summary,
     terminal::{self, Progress},
     view_files::ViewOptions,
-    way::{Rectify, Resolved},
-};
-
-/// Names of the files of a pair that was rectified first.
-const NAMES: Names = Names {
-    pictures: ["rectified-left.png", "rectified-right.png"],
-    masks: ["rectified-left-mask.png", "rectified-right-mask.png"],
-    figure: "epipolar-lines.png",
-    json: "rectification.json",
-    yaml: "rectification.yml",
 };
 
 /// Compute a disparity for every pixel of a pair
@@ -65,72 +50,28 @@ pub struct Match {
     /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Also draw interest points (keypoints.png) and matches (matches.png)
-    #[arg(long)]
-    figures: bool,
-    /// Also write the matches of the interest points (matches.csv), found in any row: positions, scales and orientations in
-    /// both views, distance and ratio of the descriptors, confidence, and 1 where rows agree
-    #[arg(long)]
-    matches: bool,
-    /// Whether and how to rectify the pair before it is matched
-    #[arg(long, value_enum, default_value = "auto")]
-    rectify: Rectify,
-    /// Take the map of a pair that was rectified first back to the left picture as it was taken (with --reference right to
-    /// the right one); disparities remain those of the rectified pair
-    #[arg(long)]
-    map_back: bool,
     #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
-    matching: MatchOptions,
-    #[command(flatten)]
-    figure: FigureOptions,
-    #[command(flatten)]
-    depth: DepthOptions,
-    #[command(flatten)]
-    cloud: CloudOptions,
-    #[command(flatten)]
-    unseen: UnseenOptions,
+    recipe: Recipe,
 }
 
 impl Match {
     /// Matches the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
-        let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
-        let unseen = self.unseen.unseen();
-        let mut output = Output::open_set(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
-        let LoadedPair { left, right, stretch, mut warnings } = self.views.load(&unseen)?;
-        let sizes = [left.size(), right.size()];
-        let cameras = self.depth.cameras(self.views.paths(), sizes)?;
-        let is_calibrated = !matches!(cameras, Cameras::Unknown);
-        self.cloud.check(is_calibrated)?;
-        self.check_places(&output, is_calibrated)?;
-        let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
-        warnings.extend(notes);
-        // Told before the match, since they may be the reason why it fails.
+        self.recipe.config()?;
+        let mut output = Output::open_set(&self.output)?;
+        let Prepared { job, warnings } = self.recipe.prepare(&self.views.views(), None, &mut output)?;
         let told = warnings.len();
         if !self.run.quiet {
             warnings.iter().for_each(terminal::warning);
         }
-
-        let names = self.views.paths().map(|path| path.display().to_string());
-        let job = Job { names, left, right, stretch, config, way, map_back: self.map_back, strongest, calibration };
         let mut completed = job.run(&self.run)?;
         completed.warnings.splice(0..0, warnings);
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        completed.add_maps(&mut output, &self.cloud)?;
-        if let Some(pair) = &completed.rectified {
-            rectification::add_files(pair, &NAMES, &mut output)?;
-        }
-        if self.figures {
-            completed.add_figures(&mut output)?;
-        }
-        if self.matches {
-            completed.add_matches(&mut output)?;
-        }
-        products::add_report(&mut output, completed.report())?;
+        self.recipe.add_files(&mut completed, &mut output)?;
         let shortfall = completed.shortfall();
         output.finish_run(shortfall.as_ref().map_or(0, super::exit_code))?;
         drop(progress);
@@ -140,17 +81,5 @@ impl Match {
             terminal::print(&(completed.summary() + &summary::files(&output)))?;
         }
         shortfall.map_or(Ok(()), Err)
-    }
-
-    /// Checks that each file that is sure to be written may be.
-    fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
-        let of = |names: &'static [&str], are_written: bool| if are_written { names } else { &[] };
-        let names = [
-            &products::MAPS[..],
-            of(&products::DEPTH, is_calibrated),
-            of(&products::FIGURES, self.figures),
-            of(&[products::MATCHES], self.matches),
-        ];
-        names.concat().into_iter().try_for_each(|name| output.check(name))
     }
 }

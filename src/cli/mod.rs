@@ -1,5 +1,6 @@
 //! The subcommands of `hsad`, one file each, and their shared modules.
 
+mod batch;
 mod bench;
 mod cache;
 mod cloud;
@@ -20,6 +21,7 @@ mod options;
 pub mod out_of_memory;
 mod output;
 mod products;
+mod recipe;
 mod rectification;
 mod rectify;
 mod report;
@@ -62,6 +64,7 @@ enum Command {
     Devices(devices::Devices),
     Demo(demo::Demo),
     Eval(eval::Eval),
+    Batch(Box<batch::Batch>),
     Verify(verify::Verify),
     Bench(bench::Bench),
     Tune(tune::Tune),
@@ -81,6 +84,7 @@ impl Cli {
             Command::Devices(command) => command.run(),
             Command::Demo(command) => command.run(),
             Command::Eval(command) => command.run(),
+            Command::Batch(command) => command.run(),
             Command::Verify(command) => command.run(),
             Command::Bench(command) => command.run(),
             Command::Tune(command) => command.run(),
@@ -97,6 +101,9 @@ pub fn exit_code(error: &anyhow::Error) -> i32 {
     }
     if error.is::<NoDepth>() {
         return NoDepth::EXIT_CODE;
+    }
+    if let Some(shortfall) = error.downcast_ref::<batch::Shortfall>() {
+        return shortfall.exit_code();
     }
     match error.downcast_ref() {
         Some(hsad::Error::Parameter { .. }) => 2,

@@ -84,6 +84,7 @@ pub fn with_default(help: &str, value: impl Display) -> String {
 }
 
 /// Options of matching, with those of the interest point detector.
+#[derive(Debug)]
 pub struct MatchOptions(Options);
 
 impl MatchOptions {
@@ -97,7 +98,7 @@ impl MatchOptions {
 }
 
 /// What figures show.
-#[derive(Args)]
+#[derive(Args, Debug)]
 #[command(next_help_heading = "Figures")]
 pub struct FigureOptions {
     /// Draw only the N strongest interest points and matches in the figures, at least 1 [default: all,
@@ -196,7 +197,7 @@ fn given(matches: &ArgMatches, groups: &[Group]) -> Parsed<Options> {
 }
 
 /// Pixels that were not seen, besides transparent ones (alpha 0) and floats that are NaN or infinite.
-#[derive(Args)]
+#[derive(Args, Debug)]
 #[command(next_help_heading = "Unseen pixels")]
 pub struct UnseenOptions {
     /// Masks of the left and the right view: pictures of the views' size, 0 for pixels that were not seen and get no

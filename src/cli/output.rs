@@ -90,9 +90,14 @@ impl Output {
     /// Spares the files that are read: no output replaces them.
     #[must_use]
     pub fn sparing<'p>(mut self, inputs: impl IntoIterator<Item = &'p Path>) -> Self {
+        self.spare(inputs);
+        self
+    }
+
+    /// As [`Self::sparing`].
+    pub fn spare<'p>(&mut self, inputs: impl IntoIterator<Item = &'p Path>) {
         // What does not exist is told when it is read.
         self.spared.extend(inputs.into_iter().filter_map(|input| input.canonicalize().ok()));
-        self
     }
 
     /// Checks that a file of this name may be written: before the work, if it is known to be written after it.

@@ -70,11 +70,11 @@ impl Rectify {
     /// Rectifies the pair and writes all files; none of them appears unless every one could be written.
     pub fn run(self) -> anyhow::Result<()> {
         let unseen = self.unseen.unseen();
-        let mut output = Output::open_set(&self.output)?.sparing(self.views.paths()).sparing(unseen.files());
+        let mut output = Output::open_set(&self.output)?.sparing(self.views.views().paths()).sparing(unseen.files());
         NAMES.all().into_iter().chain([REPORT]).try_for_each(|name| output.check(name))?;
-        let LoadedPair { left, right, mut warnings, .. } = self.views.load(&unseen)?;
+        let LoadedPair { left, right, mut warnings, .. } = self.views.views().load(&unseen)?;
         let sizes = [left.size(), right.size()];
-        let file = self.calibration.read(self.views.paths(), sizes)?;
+        let file = self.calibration.read(self.views.views().paths(), sizes)?;
         if let Some(file) = &file {
             file.check_taken(sizes)?;
             warnings.extend(file.loaded.notes.iter().cloned());
@@ -103,8 +103,8 @@ impl Rectify {
         rectification::add_files(&pair, &NAMES, &mut output)?;
         let report = json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "left": self.views.paths()[0].display().to_string(),
-            "right": self.views.paths()[1].display().to_string(),
+            "left": self.views.views().paths()[0].display().to_string(),
+            "right": self.views.views().paths()[1].display().to_string(),
             "device": report::device(backend),
             "rectified": hsad::report::rectified(&pair),
             "seconds": { "total": seconds },

@@ -16,8 +16,12 @@ use super::wording::in_options;
 
 /// Prints one line that says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    let text = error.downcast_ref().map_or_else(|| error.to_string(), in_options);
-    print_line("error", &text);
+    print_line("error", &described(error));
+}
+
+/// Why work failed, in words of the command line.
+pub fn described(error: &anyhow::Error) -> String {
+    error.downcast_ref().map_or_else(|| error.to_string(), in_options)
 }
 
 /// Prints one line about a doubt that the result itself does not show.

@@ -22,7 +22,7 @@ pub struct ViewOptions {
 }
 
 /// Where the views of a picture that has both lie.
-#[derive(Args)]
+#[derive(Args, Debug)]
 pub struct HalvesOptions {
     /// The picture has both views beside each other, in this order: left-right for parallel viewing, right-left for crossed eyes, as
     /// in most JPS files (those that tell it need no option)
@@ -33,16 +33,30 @@ pub struct HalvesOptions {
     top_bottom: Option<Order>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum Order {
     LeftRight,
     RightLeft,
 }
 
+/// The files of a pair, and where the views of one with both lie.
+pub struct Views<'a> {
+    pub left: &'a Path,
+    pub right: Option<&'a Path>,
+    pub halves: Option<Halves>,
+}
+
 impl ViewOptions {
+    /// The files.
+    pub fn views(&self) -> Views<'_> {
+        Views { left: &self.left, right: self.right.as_deref(), halves: self.halves.halves() }
+    }
+}
+
+impl Views<'_> {
     /// The files of the left and of the right view, which may be one.
     pub fn paths(&self) -> [&Path; 2] {
-        [&self.left, self.right.as_ref().unwrap_or(&self.left)]
+        [self.left, self.right.unwrap_or(self.left)]
     }
 
     /// Loads both views.
@@ -50,10 +64,10 @@ impl ViewOptions {
     /// # Errors
     /// As [`load_pair`] and [`load_both`].
     pub fn load(&self, unseen: &Unseen) -> Result<LoadedPair> {
-        if let Some(right) = &self.right {
-            return load_pair(&self.left, right, unseen);
+        match self.right {
+            Some(right) => load_pair(self.left, right, unseen),
+            None => load_both(self.left, self.halves, unseen),
         }
-        load_both(&self.left, self.halves.halves(), unseen)
     }
 }
 

@@ -3,6 +3,7 @@
 #![cfg(feature = "cli")]
 
 mod bad_input;
+mod batch;
 mod bench;
 mod calibrated;
 mod calibrations;

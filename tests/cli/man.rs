@@ -22,7 +22,7 @@ fn a_folder_gets_a_page_per_command() {
     let commands = ["completions", "demo", "devices", "eval", "eval-dense", "eval-features", "eval-paper", "features"];
     let mut expected: Vec<String> = commands
         .iter()
-        .chain(&["bench", "man", "match", "rectify", "tune", "verify"])
+        .chain(&["batch", "bench", "man", "match", "rectify", "tune", "verify"])
         .map(|name| format!("hsad-{name}.1"))
         .collect();
     expected.push("hsad.1".into());

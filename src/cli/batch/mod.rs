@@ -1,0 +1,182 @@
+//! `hsad batch`: many pairs on one device.
+
+mod journal;
+mod list;
+mod pair;
+mod patterns;
+mod record;
+mod shard;
+mod tally;
+mod tree;
+mod work;
+
+use std::{
+    fs,
+    num::NonZero,
+    path::{Path, PathBuf},
+    sync::Mutex,
+    thread,
+    time::Instant,
+};
+
+use anyhow::{Result, anyhow, bail};
+use clap::Args;
+
+use super::{options::RunOptions, recipe::Recipe, view_files::HalvesOptions};
+use journal::Journal;
+use pair::Pair;
+use shard::Shard;
+use tally::Tally;
+use work::Work;
+
+/// Most pairs that are worked on at once, unless it is told.
+const MOST_JOBS: usize = 8;
+
+/// Match many pairs on one device
+///
+/// Each pair gets a folder of its own in the output folder, with the files of hsad match. A pair that cannot be matched is recorded and
+/// passed over. report.jsonl has a line per pair, written when its files are in their place: --resume goes on after an interruption and
+/// redoes nothing but what failed.
+///
+/// Several pairs are worked on at once, so that reading, the device and writing overlap; each takes the memory of a pair.
+#[derive(Args)]
+#[command(after_help = concat!("Examples:
+  hsad batch pairs.csv -o out
+  hsad batch KITTI/training -o out --calib calib.txt
+  hsad batch --left 'cam0/*.png' --right 'cam1/*.png' -o out --resume
+  hsad batch pairs.jsonl -o out --shard $SLURM_ARRAY_TASK_ID/64
+
+A list is CSV with the columns left, right, name and calib in any order (right is missing where left has both views), or JSON lines with
+the same fields; paths are relative to the list.
+
+Exit codes: 0 all pairs done, 1 some failed, 4 all files are written and some maps are not to be trusted or have no depth, 2 usage"))]
+pub struct Batch {
+    /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair
+    #[arg(required_unless_present = "left")]
+    source: Option<PathBuf>,
+    /// Left views: a path with one *, whose text names the pair
+    #[arg(long, value_name = "PATTERN", requires = "right", conflicts_with = "source")]
+    left: Option<String>,
+    /// Right views: a path with one *
+    #[arg(long, value_name = "PATTERN", requires = "left", group = "second_view")]
+    right: Option<String>,
+    /// Output folder, created if missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Go on with the batch of this folder
+    #[arg(long)]
+    resume: bool,
+    /// Work on every N-th pair from pair I on, I from 0 to N-1; the journal is report-I-of-N.jsonl then
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Pairs that are worked on at once [default: one per processor, at most 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    halves: HalvesOptions,
+    #[command(flatten)]
+    run: RunOptions,
+    #[command(flatten)]
+    recipe: Recipe,
+}
+
+/// Pairs that failed, or whose maps are doubtful.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Shortfall(String, i32);
+
+impl Shortfall {
+    /// The exit code of the run.
+    pub fn exit_code(&self) -> i32 {
+        self.1
+    }
+}
+
+impl Batch {
+    /// Matches all pairs.
+    pub fn run(self) -> Result<()> {
+        self.recipe.config()?;
+        let pairs = self.pairs()?;
+        pair::check_names(&pairs)?;
+        let shard = |&(number, _): &(usize, Pair)| self.shard.is_none_or(|shard| shard.has(number));
+        let pairs: Vec<Pair> = pairs.into_iter().enumerate().filter(shard).map(|(_, pair)| pair).collect();
+        let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
+        fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
+        let recipe = format!("{:?} {:?}", self.recipe, self.halves);
+        let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
+        let (finished, open): (Vec<_>, Vec<_>) =
+            pairs.into_iter().partition(|pair| earlier.finished(&pair.name).is_some());
+        let mut tally = Tally::new(finished.len() + open.len(), self.run.quiet);
+        finished.iter().filter_map(|pair| earlier.finished(&pair.name)).for_each(|record| tally.count_earlier(record));
+
+        let cached = if open.is_empty() { None } else { Some(self.run.open()?) };
+        let start = Instant::now();
+        if let Some(cached) = &cached {
+            let work = Work {
+                backend: &cached.backend,
+                recipe: &self.recipe,
+                halves: self.halves.halves(),
+                folder: &self.output,
+                resumes: self.resume,
+            };
+            self.work_on(&open, &work, journal, &mut tally)?;
+            cached.save();
+        }
+        tally.finish(start.elapsed(), &self.output.join(name))?;
+        match tally.shortfall() {
+            None => Ok(()),
+            Some((reason, code)) => Err(Shortfall(reason, code).into()),
+        }
+    }
+
+    /// The pairs of the source, in order.
+    fn pairs(&self) -> Result<Vec<Pair>> {
+        let pairs = match (&self.source, &self.left, &self.right) {
+            (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
+            (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
+            (Some(source), ..) if list::is_list(source) => list::read(source)?,
+            (Some(source), ..) => bail!(
+                "{}: neither a folder nor a list of pairs (.csv, .jsonl); hsad match matches a pair",
+                hsad::shown(source)
+            ),
+            _ => return Err(anyhow!("name a list or a folder, or --left and --right")),
+        };
+        if pairs.is_empty() {
+            bail!("{}: no pairs", hsad::shown(self.source.as_deref().unwrap_or(Path::new("the list"))));
+        }
+        Ok(pairs)
+    }
+
+    /// Works on `pairs`, several at once, and records each when it is done. Ends with the first record that cannot be written, and with a
+    /// device that is lost.
+    fn work_on(&self, pairs: &[Pair], work: &Work<'_>, journal: Journal, tally: &mut Tally) -> hsad::Result<()> {
+        let jobs = self
+            .jobs
+            .map_or_else(|| thread::available_parallelism().map_or(1, NonZero::get).min(MOST_JOBS), usize::from);
+        let next = Mutex::new(pairs.iter());
+        let recorded = Mutex::new((journal, tally, Ok(())));
+        let one_after_the_other = || {
+            while let Some(pair) = next.lock().expect("no panic while it is held").next() {
+                let record = work.on(pair);
+                let mut recorded = recorded.lock().expect("no panic while it is held");
+                let (journal, tally, result) = &mut *recorded;
+                if result.is_ok() {
+                    *result = record.and_then(|record| journal.add(&record).and_then(|()| tally.count(&record)));
+                }
+                if result.is_err() {
+                    break;
+                }
+            }
+        };
+        thread::scope(|scope| {
+            // Where the system allows no more threads, this one does all the work.
+            for _ in 1..jobs.min(pairs.len()) {
+                if thread::Builder::new().name("pairs".into()).spawn_scoped(scope, one_after_the_other).is_err() {
+                    break;
+                }
+            }
+            one_after_the_other();
+        });
+        recorded.into_inner().expect("no panic while it is held").2
+    }
+}

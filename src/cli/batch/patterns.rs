@@ -1,0 +1,119 @@
+//! Pairs from two patterns: files whose paths differ from the pattern's in what `*` stands for.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result, bail};
+
+use super::pair::Pair;
+
+/// The pairs of the files that both patterns match with the same text in place of `*`, which is the pair's name; sorted by it, whole
+/// numbers by their value.
+///
+/// # Errors
+/// A pattern without exactly one `*`, a folder that cannot be read, files without a partner, and no file at all.
+pub fn pairs(left: &str, right: &str) -> Result<Vec<Pair>> {
+    let (lefts, mut rights) = (matches(left)?, matches(right)?);
+    if lefts.is_empty() {
+        bail!("no file matches {left}");
+    }
+    let mut pairs = Vec::new();
+    for (name, file) in lefts {
+        let Some(partner) = rights.remove(&name) else {
+            bail!("{} has no partner: no file matches {right} with '{}' in place of *", file.display(), name.1);
+        };
+        pairs.push(Pair { name: name.1, left: file, right: Some(partner), calibration: None });
+    }
+    if let Some((name, file)) = rights.pop_first() {
+        bail!("{} has no partner: no file matches {left} with '{}' in place of *", file.display(), name.1);
+    }
+    Ok(pairs)
+}
+
+/// What `*` stands for, behind its digits as a number: texts with numbers are sorted by them.
+type Name = (u128, String);
+
+/// The files that match a pattern.
+fn matches(pattern: &str) -> Result<BTreeMap<Name, PathBuf>> {
+    let [before, after] = pattern.split('*').collect::<Vec<_>>()[..] else {
+        bail!("a pattern has one * in it: '{pattern}' has not");
+    };
+    let (folder, prefix) = before.rsplit_once('/').map_or(("", before), |(folder, prefix)| (folder, prefix));
+    let folder = if before.starts_with('/') && folder.is_empty() { "/" } else { folder };
+    let (suffix, below) = after.split_once('/').map_or((after, None), |(suffix, below)| (suffix, Some(below)));
+    let read = if folder.is_empty() { Path::new(".") } else { Path::new(folder) };
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(read).with_context(|| read.display().to_string())? {
+        let entry = entry.with_context(|| read.display().to_string())?.file_name();
+        let Some(name) = entry.to_str().and_then(|name| name.strip_prefix(prefix)?.strip_suffix(suffix)) else {
+            continue;
+        };
+        let file = Path::new(folder).join(&entry);
+        let file = below.map_or(file.clone(), |below| file.join(below));
+        if !name.is_empty() && file.is_file() {
+            let digits: String = name.chars().filter(char::is_ascii_digit).collect();
+            found.insert((digits.parse().unwrap_or(u128::MAX), name.to_owned()), file);
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().expect("a folder");
+        for file in files {
+            let file = folder.path().join(file);
+            fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+            fs::write(file, "").expect("a file");
+        }
+        folder
+    }
+
+    fn paired(files: &[&str], left: &str, right: &str) -> Result<Vec<String>> {
+        let folder = folder(files);
+        let at = |pattern: &str| format!("{}/{pattern}", folder.path().display());
+        let name = |pair: &Pair| {
+            let right = pair.right.as_ref().expect("a right view").strip_prefix(folder.path()).expect("in the folder");
+            format!(
+                "{}: {} {}",
+                pair.name,
+                pair.left.strip_prefix(folder.path()).expect("in it").display(),
+                right.display()
+            )
+        };
+        Ok(pairs(&at(left), &at(right))?.iter().map(name).collect())
+    }
+
+    #[test]
+    fn files_are_paired_by_what_the_star_stands_for() {
+        let files = ["l/10.png", "l/9.png", "r/9.png", "r/10.png", "r/note.txt"];
+        assert_eq!(
+            paired(&files, "l/*.png", "r/*.png").expect("pairs"),
+            ["9: l/9.png r/9.png", "10: l/10.png r/10.png"]
+        );
+        let files = ["s1/im0.png", "s1/im1.png", "s2/im0.png", "s2/im1.png", "more/a.png"];
+        let expected = ["1: s1/im0.png s1/im1.png", "2: s2/im0.png s2/im1.png"];
+        assert_eq!(paired(&files, "s*/im0.png", "s*/im1.png").expect("pairs"), expected);
+    }
+
+    #[test]
+    fn what_cannot_be_paired_is_told() {
+        for (left, right, told) in [
+            ("l/*.png", "r/*.jpg", "has no partner"),
+            ("l/*.png", "l/9.png", "a pattern has one *"),
+            ("l/*.tif", "r/*.png", "no file matches"),
+            ("m/*.png", "r/*.png", "/m"),
+            ("l/1*.png", "r/*.png", "no partner"),
+        ] {
+            let error =
+                format!("{:#}", paired(&["l/10.png", "l/9.png", "r/9.png", "r/10.png"], left, right).expect_err(told));
+            assert!(error.contains(told), "{told}: {error}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! What became of a pair.
+
+use std::time::Duration;
+
+use hsad::report::number;
+use serde_json::{Value, json};
+
+use super::{super::job::CompletedJob, pair::Pair};
+
+/// What became of a pair, as JSON: its `name` and `status`, and what the status asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record(Value);
+
+/// Status of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// All files are there.
+    Done,
+    /// All files are there, and the map is not to be trusted, or the depth that was asked for is missing.
+    Doubtful,
+    /// No file is there: the pair could not be read, rectified, matched or written.
+    Failed,
+}
+
+impl Status {
+    pub const ALL: [Self; 3] = [Self::Done, Self::Doubtful, Self::Failed];
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Doubtful => "doubtful",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// Times of the parts of the work on a pair.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// Reading and decoding.
+    pub read: Duration,
+    /// Matching.
+    pub matched: Duration,
+    /// Encoding and writing.
+    pub written: Duration,
+}
+
+impl Record {
+    fn new(pair: &Pair, status: Status, exit_code: i32, reason: Option<&str>) -> Self {
+        let [left, right] = pair.files().map(|path| path.display().to_string());
+        Self(json!({
+            "name": pair.name,
+            "status": status.name(),
+            "exit_code": exit_code,
+            "reason": reason,
+            "left": left,
+            "right": right,
+        }))
+    }
+
+    /// The record of a pair whose files are written. `exit_code` and `reason` are those of `hsad match`.
+    pub fn written(
+        pair: &Pair,
+        completed: &CompletedJob,
+        (exit_code, reason): (i32, Option<&str>),
+        times: Times,
+    ) -> Self {
+        let status = if exit_code == 0 { Status::Done } else { Status::Doubtful };
+        let Self(mut value) = Self::new(pair, status, exit_code, reason);
+        let outcome = &completed.outcome;
+        value["width"] = completed.job.left.width().into();
+        value["height"] = completed.job.left.height().into();
+        value["trust"] = number(outcome.trust);
+        value["min_disparity"] = outcome.range.min.into();
+        value["disparities"] = outcome.range.count.into();
+        value["warnings"] = json!(completed.warnings);
+        value["seconds"] = json!({
+            "reading": times.read.as_secs_f64(),
+            "matching": times.matched.as_secs_f64(),
+            "writing": times.written.as_secs_f64(),
+        });
+        Self(value)
+    }
+
+    /// The record of a pair that came to nothing.
+    pub fn failed(pair: &Pair, exit_code: i32, reason: &str) -> Self {
+        Self::new(pair, Status::Failed, exit_code, Some(reason))
+    }
+
+    /// The record of a pair whose files an earlier run has written, before it could record that.
+    pub fn found(pair: &Pair, report: &Value) -> Self {
+        let reason = ["not_trusted", "no_depth"].into_iter().find_map(|doubt| report[doubt].as_str());
+        let code = match (report["not_trusted"].is_null(), reason) {
+            (_, None) => 0,
+            (false, _) => super::super::doubts::NotTrusted::EXIT_CODE,
+            _ => super::super::doubts::NoDepth::EXIT_CODE,
+        };
+        let status = if code == 0 { Status::Done } else { Status::Doubtful };
+        let Self(mut value) = Self::new(pair, status, code, reason);
+        for field in ["width", "height", "trust", "warnings"] {
+            value[field] = report[field].clone();
+        }
+        Self(value)
+    }
+
+    /// A record of an earlier run; `None` if the value is none.
+    pub fn from_json(value: Value) -> Option<Self> {
+        let record = Self(value);
+        let is_known =
+            record.0["name"].is_string() && Status::ALL.iter().any(|status| record.0["status"] == status.name());
+        is_known.then_some(record)
+    }
+
+    pub fn to_json(&self) -> &Value {
+        &self.0
+    }
+
+    pub fn name(&self) -> &str {
+        self.0["name"].as_str().unwrap_or_default()
+    }
+
+    pub fn status(&self) -> Status {
+        Status::ALL.into_iter().find(|status| self.0["status"] == status.name()).unwrap_or(Status::Failed)
+    }
+
+    pub fn has_failed(&self) -> bool {
+        self.status() == Status::Failed
+    }
+
+    /// Why the pair is not simply done.
+    pub fn reason(&self) -> Option<&str> {
+        self.0["reason"].as_str()
+    }
+}

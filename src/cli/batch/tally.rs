@@ -1,0 +1,119 @@
+//! What became of the pairs so far: progress on a terminal, lines of JSON elsewhere, and the summary.
+
+use std::{
+    io::{self, IsTerminal},
+    path::Path,
+    time::Duration,
+};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{
+    super::terminal,
+    record::{Record, Status},
+};
+
+/// Names of pairs that the summary lists at most per status.
+const LISTED: usize = 10;
+
+/// The pairs by their status.
+pub struct Tally {
+    all: usize,
+    /// Pairs that earlier runs have finished.
+    earlier: usize,
+    /// Names and reasons, by the number of [`Status::ALL`].
+    found: [Vec<(String, Option<String>)>; 3],
+    bar: ProgressBar,
+    /// Whether records are printed.
+    prints: bool,
+    quiet: bool,
+}
+
+impl Tally {
+    /// For `all` pairs; with `quiet` nothing is shown.
+    pub fn new(all: usize, quiet: bool) -> Self {
+        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(all as u64) };
+        let template = "{wide_bar} {pos} of {len}, {per_sec}, {eta} left {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        let prints = !quiet && !io::stdout().is_terminal();
+        Self { all, earlier: 0, found: Default::default(), bar, prints, quiet }
+    }
+
+    fn note(&mut self, record: &Record) {
+        let place = Status::ALL.iter().position(|status| *status == record.status()).unwrap_or(0);
+        self.found[place].push((record.name().into(), record.reason().map(String::from)));
+    }
+
+    /// Counts a pair that an earlier run has finished.
+    pub fn count_earlier(&mut self, record: &Record) {
+        self.earlier += 1;
+        self.note(record);
+        self.bar.set_length((self.all - self.earlier) as u64);
+    }
+
+    /// Counts a pair, and tells of it.
+    ///
+    /// # Errors
+    /// [`hsad::Error::Io`] if standard output cannot be written.
+    pub fn count(&mut self, record: &Record) -> hsad::Result<()> {
+        self.note(record);
+        self.bar.inc(1);
+        let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        if doubtful + failed > 0 {
+            self.bar.set_message(format!("({failed} failed, {doubtful} doubtful)"));
+        }
+        if !self.prints {
+            return Ok(());
+        }
+        let printed = terminal::print(&format!("{}\n", record.to_json()));
+        printed.map_err(|source| hsad::Error::Io { path: "standard output".into(), source })
+    }
+
+    /// Ends the progress line and prints the summary.
+    ///
+    /// # Errors
+    /// Those of standard output.
+    pub fn finish(&self, time: Duration, journal: &Path) -> io::Result<()> {
+        self.bar.finish_and_clear();
+        if self.quiet {
+            return Ok(());
+        }
+        let here = self.all - self.earlier;
+        let [done, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        let mut text = format!("{} pairs: {done} done, {doubtful} doubtful, {failed} failed", self.all);
+        if self.earlier > 0 {
+            text += &format!("; {} by earlier runs", self.earlier);
+        }
+        let seconds = time.as_secs_f64();
+        if here > 0 {
+            text += &format!("\n{here} in {seconds:.1} s, {:.2} per second", here as f64 / seconds.max(1e-9));
+        }
+        for (status, pairs) in Status::ALL.iter().zip(&self.found).skip(1) {
+            for (name, reason) in pairs.iter().take(LISTED) {
+                text += &format!("\n  {} {name}: {}", status.name(), reason.as_deref().unwrap_or("unknown"));
+            }
+            if pairs.len() > LISTED {
+                text += &format!("\n  and {} more {}", pairs.len() - LISTED, status.name());
+            }
+        }
+        text += &format!("\n{} has all\n", hsad::shown(journal));
+        // Standard output has the records, where they are printed.
+        if self.prints {
+            terminal::note(text.trim_end());
+            return Ok(());
+        }
+        terminal::print(&text)
+    }
+
+    /// What falls short, and the exit code that says so.
+    pub fn shortfall(&self) -> Option<(String, i32)> {
+        let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        match (failed, doubtful) {
+            (0, 0) => None,
+            (0, _) => Some((format!("{doubtful} of {} maps are doubtful; their files were written", self.all), 4)),
+            _ => Some((format!("{failed} of {} pairs failed", self.all), 1)),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! How a pair is matched, and which files come out: what `hsad match` and `hsad batch` share.
+
+use std::path::Path;
+
+use clap::Args;
+use hsad::{config::Config, io::load::LoadedPair};
+
+use super::{
+    cloud::CloudOptions,
+    depth::{Cameras, DepthOptions},
+    job::{CompletedJob, Job},
+    options::{FigureOptions, MatchOptions, UnseenOptions},
+    output::Output,
+    products,
+    rectification::{self, Names},
+    view_files::Views,
+    way::{Rectify, Resolved},
+};
+
+/// Names of the files of a pair that was rectified first.
+const NAMES: Names = Names {
+    pictures: ["rectified-left.png", "rectified-right.png"],
+    masks: ["rectified-left-mask.png", "rectified-right-mask.png"],
+    figure: "epipolar-lines.png",
+    json: "rectification.json",
+    yaml: "rectification.yml",
+};
+
+/// How a pair is matched, and which files come out.
+#[derive(Args, Debug)]
+pub struct Recipe {
+    /// Also draw interest points (keypoints.png) and matches (matches.png)
+    #[arg(long)]
+    figures: bool,
+    /// Also write the matches of the interest points (matches.csv), found in any row: positions, scales and orientations in
+    /// both views, distance and ratio of the descriptors, confidence, and 1 where rows agree
+    #[arg(long)]
+    matches: bool,
+    /// Whether and how to rectify the pair before it is matched
+    #[arg(long, value_enum, default_value = "auto")]
+    rectify: Rectify,
+    /// Take the map of a pair that was rectified first back to the left picture as it was taken (with --reference right to
+    /// the right one); disparities remain those of the rectified pair
+    #[arg(long)]
+    map_back: bool,
+    #[command(flatten)]
+    matching: MatchOptions,
+    #[command(flatten)]
+    figure: FigureOptions,
+    #[command(flatten)]
+    depth: DepthOptions,
+    #[command(flatten)]
+    cloud: CloudOptions,
+    #[command(flatten)]
+    unseen: UnseenOptions,
+}
+
+/// A job, and doubts about the files that were read for it, which may be the reason why it fails.
+pub struct Prepared {
+    pub job: Job,
+    pub warnings: Vec<String>,
+}
+
+impl Recipe {
+    /// The configuration, and how many interest points and matches a figure shows.
+    ///
+    /// # Errors
+    /// [`hsad::Error::Parameter`].
+    pub fn config(&self) -> hsad::Result<(Config, Option<usize>)> {
+        Ok((self.matching.config()?, self.figure.strongest(&self.matching)?))
+    }
+
+    /// Reads the files of a pair, and checks that its results can be written to `output`. `calibration` takes the place of the files that
+    /// the options name.
+    pub fn prepare(&self, views: &Views, calibration: Option<&Path>, output: &mut Output) -> anyhow::Result<Prepared> {
+        let (config, strongest) = self.config()?;
+        let unseen = self.unseen.unseen();
+        output.spare(views.paths());
+        output.spare(unseen.files());
+        let LoadedPair { left, right, stretch, mut warnings } = views.load(&unseen)?;
+        let sizes = [left.size(), right.size()];
+        let cameras = self.depth.cameras(views.paths(), sizes, calibration)?;
+        let is_calibrated = !matches!(cameras, Cameras::Unknown);
+        self.cloud.check(is_calibrated)?;
+        self.check_places(output, is_calibrated)?;
+        let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
+        warnings.extend(notes);
+        let names = views.paths().map(|path| path.display().to_string());
+        let job = Job { names, left, right, stretch, config, way, map_back: self.map_back, strongest, calibration };
+        Ok(Prepared { job, warnings })
+    }
+
+    /// Adds all files of a matched pair, the report last.
+    pub fn add_files(&self, completed: &mut CompletedJob, output: &mut Output) -> hsad::Result<()> {
+        completed.add_maps(output, &self.cloud)?;
+        if let Some(pair) = &completed.rectified {
+            rectification::add_files(pair, &NAMES, output)?;
+        }
+        if self.figures {
+            completed.add_figures(output)?;
+        }
+        if self.matches {
+            completed.add_matches(output)?;
+        }
+        products::add_report(output, completed.report())
+    }
+
+    /// Checks that each file that is sure to be written may be.
+    fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
+        let of = |names: &'static [&str], are_written: bool| if are_written { names } else { &[] };
+        let names = [
+            &products::MAPS[..],
+            of(&products::DEPTH, is_calibrated),
+            of(&products::FIGURES, self.figures),
+            of(&[products::MATCHES], self.matches),
+        ];
+        names.concat().into_iter().try_for_each(|name| output.check(name))
+    }
+}

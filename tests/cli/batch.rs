@@ -1,0 +1,178 @@
+//! `hsad batch`.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use assert_cmd::assert::Assert;
+use predicates::str::contains;
+use serde_json::Value;
+
+use crate::common::{folder, grey_png, hsad, names, noise, views};
+
+/// A small part of a shipped scene as two pictures in `folder`.
+fn small_pair(folder: &Path, name: &str, row: u32) -> [PathBuf; 2] {
+    let both = ["left", "right"].map(|side| folder.join(side).join(format!("{name}.png")));
+    for (path, view) in both.iter().zip(views("planes")) {
+        let picture = hsad::io::load::load(&view).expect("a shipped view").luma();
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        grey_png(path, &hsad::image::Plane::from_fn((160, 60), |x, y| picture.get(x, y + row)));
+    }
+    both
+}
+
+fn batch(arguments: &[&str], output: &Path) -> Assert {
+    let mut command = hsad();
+    command.arg("batch").args(arguments).arg("-o").arg(output).assert()
+}
+
+/// The records of a journal, in the order of the names.
+fn records(journal: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(journal).expect("a journal");
+    let mut records: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    records.sort_by_key(|record| record["name"].to_string());
+    records
+}
+
+fn statuses(journal: &Path) -> Vec<(String, String)> {
+    let text = |value: &Value| value.as_str().expect("a text").to_owned();
+    records(journal).iter().map(|record| (text(&record["name"]), text(&record["status"]))).collect()
+}
+
+fn of(pairs: &[(&str, &str)]) -> Vec<(String, String)> {
+    pairs.iter().map(|&(name, status)| (name.into(), status.into())).collect()
+}
+
+#[test]
+fn every_pair_has_the_files_of_match_and_bad_ones_are_passed_over() {
+    let temporary = folder();
+    let root = temporary.path();
+    let [left, right] = small_pair(root, "a", 0);
+    small_pair(root, "b", 40);
+    grey_png(&root.join("noise.png"), &noise(160, 60, 3));
+    grey_png(&root.join("narrow.png"), &noise(70, 60, 4));
+    fs::write(root.join("broken.png"), "no picture").unwrap();
+    let list = root.join("pairs.csv");
+    let rows = "left,right,name\nleft/a.png,right/a.png,\nbroken.png,right/a.png,broken\nleft/b.png,right/b.png,deep/b\n\
+                left/a.png,gone.png,gone\nnoise.png,right/a.png,unrelated\n";
+    fs::write(&list, rows).unwrap();
+    let (list, out) = (list.to_str().unwrap(), root.join("out"));
+    let told =
+        batch(&[list, "--disparities", "24", "--jobs", "2"], &out).code(1).stderr(contains("2 of 5 pairs failed"));
+    // Standard output, which is no terminal, has the records as they come.
+    let printed = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    assert_eq!(printed, fs::read_to_string(out.join("report.jsonl")).unwrap());
+    let journal = out.join("report.jsonl");
+    let expected =
+        [("a", "done"), ("broken", "failed"), ("deep/b", "done"), ("gone", "failed"), ("unrelated", "doubtful")];
+    assert_eq!(statuses(&journal), of(&expected));
+    let all = records(&journal);
+    assert_eq!((&all[1]["exit_code"], &all[4]["exit_code"]), (&1.into(), &4.into()));
+    assert!(all[3]["reason"].as_str().unwrap().contains("gone.png: No such file"), "{}", all[3]);
+    assert!(!out.join("broken").exists() && !out.join("gone").exists());
+
+    let single = root.join("single");
+    hsad().arg("match").args([&left, &right]).args(["--disparities", "24", "-o"]).arg(&single).assert().success();
+    assert_eq!(names(&single), names(&out.join("a")));
+    for file in names(&single).iter().filter(|name| *name != "report.json") {
+        assert_eq!(fs::read(single.join(file)).unwrap(), fs::read(out.join("a").join(file)).unwrap(), "{file}");
+    }
+}
+
+#[test]
+fn a_batch_goes_on_where_it_ended() {
+    let temporary = folder();
+    let root = temporary.path();
+    for (number, name) in ["9", "10", "11"].into_iter().enumerate() {
+        small_pair(root, name, 10 * number as u32);
+    }
+    let patterns = ["left", "right"].map(|side| root.join(side).join("*.png").display().to_string());
+    let out = root.join("out");
+    let run = |more: &[&str]| {
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "24", "-q", "--jobs", "1"];
+        batch(&[&arguments[..], more].concat(), &out)
+    };
+    run(&[]).success().stdout("").stderr("");
+    let journal = out.join("report.jsonl");
+    let whole = fs::read_to_string(&journal).unwrap();
+    // In the order of the numbers.
+    let order: Vec<String> =
+        whole.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["name"].to_string()).collect();
+    assert_eq!(order, ["\"9\"", "\"10\"", "\"11\""]);
+
+    // Killed while the second record was written: the second pair's files are in their place, the third pair has not begun.
+    let line = whole.find('\n').unwrap() + 1;
+    fs::write(&journal, &whole[..line + 30]).unwrap();
+    fs::remove_dir_all(out.join("11")).unwrap();
+    let written = |name: &str| fs::metadata(out.join(name).join("disparity.pfm")).unwrap().modified().unwrap();
+    let before = ["9", "10"].map(written);
+    run(&[]).code(1).stderr(contains("--resume"));
+    run(&["--resume"]).success();
+    assert_eq!(["9", "10"].map(written), before, "nothing is redone");
+    assert_eq!(statuses(&journal), of(&[("10", "done"), ("11", "done"), ("9", "done")]));
+    assert_eq!(
+        records(&journal)[0]["trust"],
+        serde_json::from_str::<Value>(whole.lines().nth(1).unwrap()).unwrap()["trust"]
+    );
+    run(&["--resume", "--uniqueness", "30"]).code(1).stderr(contains("with other options"));
+    let finished = fs::read(&journal).unwrap();
+    run(&["--resume"]).success();
+    assert_eq!(fs::read(&journal).unwrap(), finished);
+
+    // What failed is tried again.
+    fs::rename(root.join("left/9.png"), root.join("9.png")).unwrap();
+    fs::write(root.join("left/9.png"), "no picture").unwrap();
+    let other = root.join("other");
+    let again = |code: i32| {
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "24", "-q", "--resume"];
+        batch(&arguments, &other).code(code);
+    };
+    again(1);
+    fs::rename(root.join("9.png"), root.join("left/9.png")).unwrap();
+    again(0);
+    let last = fs::read_to_string(other.join("report.jsonl")).unwrap();
+    assert!(last.lines().last().unwrap().starts_with("{\"name\":\"9\",\"status\":\"done\""), "{last}");
+}
+
+#[test]
+fn shares_of_a_batch_meet_in_one_folder() {
+    let temporary = folder();
+    let root = temporary.path();
+    for (number, name) in ["1", "2", "3"].into_iter().enumerate() {
+        small_pair(root, name, 10 * number as u32);
+    }
+    let (tree, out) = (root.to_str().unwrap(), root.join("out"));
+    for share in ["0/2", "1/2"] {
+        batch(&[tree, "--disparities", "24", "--shard", share], &out).success();
+    }
+    assert_eq!(statuses(&out.join("report-0-of-2.jsonl")), of(&[("1", "done"), ("3", "done")]));
+    assert_eq!(statuses(&out.join("report-1-of-2.jsonl")), of(&[("2", "done")]));
+    assert_eq!(names(&out), ["1", "2", "3", "batch.json", "report-0-of-2.jsonl", "report-1-of-2.jsonl"]);
+}
+
+#[test]
+fn what_is_no_batch_is_told() {
+    let temporary = folder();
+    let root = temporary.path();
+    let out = root.join("out");
+    let [left, _] = views("planes");
+    let fails = |arguments: &[&str], code: i32, told: &str| {
+        batch(arguments, &out).code(code).stdout("").stderr(contains(told));
+        assert!(!out.exists(), "{arguments:?}");
+    };
+    fails(&[], 2, "required");
+    fails(&["--left", "a*.png"], 2, "--right");
+    fails(&[left.to_str().unwrap()], 1, "neither a folder nor a list of pairs");
+    fails(&[root.to_str().unwrap()], 1, "no pairs: expected folders image_2");
+    fails(&["gone.csv"], 1, "gone.csv");
+    fails(&["gone.csv", "--shard", "2/2"], 2, "I from 0 to N-1");
+    fails(&["gone.csv", "--window", "4"], 2, "window");
+    let list = root.join("pairs.csv");
+    fs::write(&list, "left,right,name\na.png,b.png,x\nc.png,d.png,x\n").unwrap();
+    fails(&[list.to_str().unwrap()], 1, "have the same name 'x'");
+    fs::write(&list, "left,right,name\na.png,b.png,../x\n").unwrap();
+    fails(&[list.to_str().unwrap()], 1, "is no folder in the output folder");
+    fs::write(&list, "left,right\n").unwrap();
+    fails(&[list.to_str().unwrap()], 1, "no pairs");
+}
