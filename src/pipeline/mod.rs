@@ -276,12 +276,12 @@ async fn run_on(
         Some(_) => None,
         None => NoDepth::of(&seeding.seeds, &seeding.rectification.rows, size, factor),
     };
-    let trust = if no_depth.is_some() { 0.0 } else { trust(&dense, config, &seeding) * of_steps(repetition) };
     let dense = match config.method {
         Method::Hsad(_) => by_detail(dense, own),
         // Its confidences tell how alike the views look, and not how many neighbours agree.
         Method::Kamencay(_) => dense,
     };
+    let trust = if no_depth.is_some() { 0.0 } else { trust(&dense, config, &seeding) * of_steps(repetition) };
     let dense = in_proportion(dense, trust);
     enter(None);
     Ok(Some(Outcome {

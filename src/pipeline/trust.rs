@@ -15,10 +15,10 @@ use crate::{
 pub const TRUSTED: f32 = 0.5;
 
 /// Evidence of a map at which trust is 1, where confidences come from the support of neighbours.
-const FULL_BY_SUPPORT: f32 = 0.71;
+const FULL_BY_SUPPORT: f32 = 0.62;
 /// The same where confidences come from the margin of the costs alone, which is smaller: of luma, and of soft ranks.
-const FULL_BY_MARGIN: f32 = 0.52;
-const FULL_BY_MARGIN_OF_RANKS: f32 = 0.46;
+const FULL_BY_MARGIN: f32 = 0.49;
+const FULL_BY_MARGIN_OF_RANKS: f32 = 0.43;
 /// Weight of the pixels that contradict the coarse map.
 const CONTRADICTION: f32 = 2.0;
 /// Share of the coarse map on surfaces from which it confirms what it does not contradict, 0 to 1.
@@ -46,8 +46,9 @@ const SEEN: f64 = 0.05;
 /// twentieth of the picture 0.04.
 const IMBALANCE: f32 = 0.03;
 
-/// Trust in a map, 0 to 1: mean confidence, 0 where a pixel was filled, reduced by the share of the map that contradicts the coarse map, for a coarse map
-/// that shows little, for few seeds, and where much of what the other view should show was filled.
+/// Trust in a map, 0 to 1: mean confidence, which is less where the view has little detail, and 0 where a pixel was filled; reduced by the
+/// share of the map that contradicts the coarse map, for a coarse map that shows little, for few seeds, and where much of what the other
+/// view should show was filled.
 pub(super) fn trust(dense: &Dense, config: &Config, seeding: &Seeding) -> f32 {
     let around = seeding.coarse.around();
     let (mut known, mut sure, mut contradicted, mut filled) = (0u64, 0u64, 0u64, 0u64);
@@ -179,11 +180,11 @@ mod tests {
         assert!(seeding.coarse.coverage() > COVERED, "{}", seeding.coarse.coverage());
         let flat = |confidence: u8| Dense { disparity: Plane::filled((40, 10), 0), ..map(confidence) };
         let config = Preset::Balanced.config();
-        let expected = 102.0 / 255.0 * 0.6 / 0.71;
+        let expected = 102.0 / 255.0 * 0.6 / 0.62;
         assert!((trust(&flat(102), &config, &seeding) - expected).abs() < 1e-6);
-        for (preset, full) in [(Preset::Fast, 0.46), (Preset::Paper, 0.52)] {
+        for (preset, full) in [(Preset::Fast, 0.43), (Preset::Paper, 0.49)] {
             let by_margin = trust(&flat(102), &preset.config(), &seeding);
-            assert!((by_margin - expected * 0.71 / full).abs() < 1e-6, "{preset}");
+            assert!((by_margin - expected * 0.62 / full).abs() < 1e-6, "{preset}");
         }
         // Gaps of a fifth are those of any map, of a third are the most of what both views show.
         let gaps = |columns: u32, config: &Config| {

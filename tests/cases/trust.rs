@@ -71,6 +71,17 @@ fn confidences_of_blurred_views_are_low() {
     assert!(wrong.is_nan() || wrong < 0.02, "{wrong}");
 }
 
+/// Where both views are out of focus, neighbours agree on what is wrong: their costs have few independent pixels.
+#[test]
+fn views_out_of_focus_are_not_trusted() {
+    for scene in ["planes", "curved"] {
+        let pair = Pair::shipped(scene);
+        let blurred = pair.clone().with(|view, eye| changed(&view, Kind::Blur, 6.0, eye.into()));
+        let run = blurred.matched(&[]).ends(4, &["the map is not to be trusted"]).judges(&pair.truth);
+        assert!(run.wrong(&pair.truth) > 0.2 && run.trust() < 0.4, "{scene}: {}", run.trust());
+    }
+}
+
 #[test]
 fn unrelated_pictures_are_not_trusted() {
     let pair = layered((320, 240), &[wall(12.0, texture)]);
