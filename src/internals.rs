@@ -33,6 +33,7 @@ pub mod dense {
         config::{Direction, MAX_COST, WEIGHT_BITS},
         kernels::*,
         pyramid::{CellRange, CellTable, SIDE},
+        reprojection::DepthTable,
     };
 }
 

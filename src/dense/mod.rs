@@ -21,6 +21,7 @@ mod outputs;
 mod plan;
 pub(crate) mod pyramid;
 mod readback;
+pub(crate) mod reprojection;
 mod uploaded;
 mod word_copy;
 
@@ -40,4 +41,5 @@ pub use outputs::{Destination, Outputs};
 pub(crate) use plan::After;
 pub use pyramid::Pyramid;
 pub use readback::MapReadback;
+pub use reprojection::{MapSources, MapTextureOutput, PointCloud, PointDraw, Reprojection};
 pub(crate) use uploaded::{Masks, UploadedPair};

@@ -11,6 +11,19 @@ pub(crate) fn storage_buffer(gpu: &Gpu, label: &'static str, bytes: u64) -> Resu
     buffer_within(gpu, label, bytes, (bindable_bytes(gpu), BUFFER_LIMITS), wgpu::BufferUsages::STORAGE)
 }
 
+/// As [`storage_buffer`], with another usage: a buffer that kernels write and a renderer draws from.
+///
+/// # Errors
+/// [`Error::TooLarge`] if the device cannot bind the buffer.
+pub(crate) fn drawn_buffer(
+    gpu: &Gpu,
+    label: &'static str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer> {
+    buffer_within(gpu, label, bytes, (bindable_bytes(gpu), BUFFER_LIMITS), wgpu::BufferUsages::STORAGE | usage)
+}
+
 /// The largest storage buffer that the device can bind, in bytes.
 fn bindable_bytes(gpu: &Gpu) -> u64 {
     let limits = gpu.device.limits();

@@ -35,6 +35,7 @@ const PARTS: &[(&str, &str)] = parts![
     "map_pixels",
     "path_step",
     "pixel_cost",
+    "point_rule",
     "quotient",
     "selection",
     "support_rule",

@@ -25,7 +25,7 @@ macro_rules! limit {
 /// largest picture also depends on `max_buffer_size`, `max_storage_buffer_binding_size` and `max_texture_dimension_2d`.
 pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_bind_groups, 1),
-    limit!(max_bindings_per_bind_group, 6),
+    limit!(max_bindings_per_bind_group, 7),
     limit!(max_uniform_buffers_per_shader_stage, 2),
     limit!(max_uniform_buffer_binding_size, 96),
     limit!(max_storage_buffers_per_shader_stage, 4),

@@ -167,6 +167,7 @@ fn is_map(module: &Module, ty: naga::Handle<naga::Type>, format: TextureFormat) 
     let format = match format {
         TextureFormat::R32Sint => naga::StorageFormat::R32Sint,
         TextureFormat::R32Float => naga::StorageFormat::R32Float,
+        TextureFormat::R32Uint => naga::StorageFormat::R32Uint,
         _ => return false,
     };
     let class = naga::ImageClass::Storage { format, access: StorageAccess::STORE };

@@ -12,8 +12,10 @@ mod cell_select;
 mod cells;
 mod census;
 mod claim;
+mod confidence_texture;
 mod consistency;
 mod cost;
+mod depth_texture;
 mod fill;
 mod halve;
 mod lane_cost;
@@ -26,6 +28,8 @@ mod map_buffer;
 mod map_texture;
 mod pad;
 mod path;
+mod point_counts;
+mod points;
 mod project;
 mod residual;
 mod rows_per_thread;
@@ -55,9 +59,11 @@ pub(crate) use cells::{HALF_GRAIN, REACH, halved, halved_config};
 pub use census::Census;
 pub(crate) use census::HALO_ROWS;
 pub use claim::Claim;
+pub use confidence_texture::ConfidenceTexture;
 pub use consistency::{CheckedAgainst, Consistency};
 pub(in crate::dense) use cost::pixels_per_thread;
 pub use cost::{CostVolume, PIXELS_HARDWARE, PIXELS_SOFTWARE};
+pub use depth_texture::DepthTexture;
 pub use fill::{Fill, Surroundings, rays};
 pub use halve::Halve;
 pub use lane_cost::LaneCost;
@@ -70,6 +76,8 @@ pub use map_buffer::{MapBuffer, MapLayout};
 pub use map_texture::{MapRows, MapTexel, MapTexture};
 pub use pad::{Pad, PadParams};
 pub use path::Path;
+pub use point_counts::{ARGUMENTS, PointCounts, PointRule};
+pub use points::{PointLayout, PointSources, Points};
 pub use project::Project;
 pub use residual::{ComparedViews, MAX_RESIDUAL, Residual};
 pub use rows_per_thread::{ROWS_HARDWARE, ROWS_SOFTWARE};
@@ -158,6 +166,10 @@ pub fn stages() -> Vec<Stage> {
         Fill::stage(),
         Unseen::stage(),
         MapBack::stage(),
+        DepthTexture::stage(),
+        ConfidenceTexture::stage(),
+        PointCounts::stage(),
+        Points::stage(),
     ]);
     let refinement = Refinement { support: 5, majority: true, medians_before: 1, fill: true, medians_after: 1 };
     stages.extend(MapTexel::ALL.map(MapTexture::stage));

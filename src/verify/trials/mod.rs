@@ -9,9 +9,10 @@ mod rectify;
 
 pub use dense::{
     AgreementTrial, BitmapTrial, BlockMatchTrial, BoxMeanTrial, CellCostTrial, CellPathTrial, CellRangesTrial,
-    CellSelectTrial, CensusTrial, ClaimTrial, ConsistencyTrial, CostKernel, CostTrial, FillTrial, HalveTrial,
-    LanePathTrial, LaneSelectTrial, MapBackTrial, MapTextureTrial, MedianTrial, PadTrial, PathTrial, ProjectTrial,
-    ResidualTrial, SelectTrial, SoftRankTrial, SupportTrial, TangentTrial, UnseenTrial,
+    CellSelectTrial, CensusTrial, ClaimTrial, ConfidenceTextureTrial, ConsistencyTrial, CostKernel, CostTrial,
+    DepthTextureTrial, FillTrial, HalveTrial, LanePathTrial, LaneSelectTrial, MapBackTrial, MapTextureTrial,
+    MedianTrial, PadTrial, PathTrial, PointCountsTrial, PointsTrial, ProjectTrial, ResidualTrial, SelectTrial,
+    SoftRankTrial, SupportTrial, TangentTrial, UnseenTrial,
 };
 pub use features::{
     ColumnsTrial, DescriptorTrial, FeaturesTrial, HessianTrial, NonmaxTrial, OrientationTrial, RowsTrial,

@@ -4,6 +4,7 @@ mod blocks;
 mod cells;
 mod checks;
 mod costs;
+mod depths;
 mod filling;
 mod lanes;
 mod levels;
@@ -16,6 +17,7 @@ pub use blocks::BlockMatchTrial;
 pub use cells::{CellRangesTrial, HalveTrial};
 pub use checks::{AgreementTrial, ConsistencyTrial, UnseenTrial};
 pub use costs::{BoxMeanTrial, CensusTrial, CostKernel, CostTrial};
+pub use depths::{ConfidenceTextureTrial, DepthTextureTrial, PointCountsTrial, PointsTrial};
 pub use filling::{BitmapTrial, FillTrial, ProjectTrial, TangentTrial};
 pub use lanes::{LanePathTrial, LaneSelectTrial};
 pub use levels::{CellCostTrial, CellPathTrial, CellSelectTrial};
@@ -25,7 +27,7 @@ pub use planes::{PadTrial, SoftRankTrial};
 
 use crate::verify::trial::Subject;
 
-pub(super) const SUBJECTS: [&[Subject]; 10] = [
+pub(super) const SUBJECTS: [&[Subject]; 11] = [
     planes::SUBJECTS,
     blocks::SUBJECTS,
     cells::SUBJECTS,
@@ -35,5 +37,6 @@ pub(super) const SUBJECTS: [&[Subject]; 10] = [
     levels::SUBJECTS,
     checks::SUBJECTS,
     maps::SUBJECTS,
+    depths::SUBJECTS,
     filling::SUBJECTS,
 ];
