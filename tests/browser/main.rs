@@ -116,6 +116,7 @@ fn the_page_in_chromium() {
     settings::take_both_views_from_one_file(&mut browser);
     settings::limit_the_range(&mut browser);
     settings::know_the_camera(&mut browser);
+    settings::rectify_by_a_calibration(&mut browser);
     results::are_saved_as_the_command_saves_them(&mut browser);
     results::show_confidences(&mut browser);
     results::rectify_what_is_not(&mut browser);

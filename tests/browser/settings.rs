@@ -7,6 +7,8 @@ use hsad::{
     io::{Picture, png},
 };
 
+use serde_json::json;
+
 use super::{Browser, choose_preset, example, is_computed_here};
 
 /// Sets a field, as someone does who types.
@@ -118,6 +120,27 @@ fn has_ended(browser: &mut Browser, ways: &str) {
         thread::sleep(Duration::from_millis(20));
     }
     assert_eq!(browser.evaluate("ends.join()"), ways);
+}
+
+/// A calibration of pictures as they were taken rectifies the pair, whose depth is known then.
+pub fn rectify_by_a_calibration(browser: &mut Browser) {
+    let camera = |column: f64| {
+        json!({
+            "focal": [378, 378], "centre": [column, 127], "size": [340, 255], "model": "pinhole", "distortion": [0.01, 0, 0, 0],
+        })
+    };
+    let rig = json!({ "left": camera(169.5), "right": camera(183.5), "translation": [-0.1, 0, 0], "unit": "m" });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rig.json");
+    fs::write(&path, rig.to_string()).unwrap();
+    browser.evaluate("delete document.body.dataset.state");
+    browser.choose("#calibration", &[path]);
+    browser.wait_for("done");
+    assert_eq!(browser.evaluate("result.rectified"), "calibration");
+    assert_eq!(browser.evaluate("result.camera.at(-1)"), 0.1);
+    assert_eq!(browser.evaluate("result.files.includes('cloud.ply')"), true);
+    browser.evaluate("delete document.body.dataset.state; document.getElementById('uncalibrate').click()");
+    browser.wait_for("done");
 }
 
 /// A match that was cancelled ends before its end, and the next one is as good as ever.

@@ -102,7 +102,7 @@ function show(result) {
   visible(true);
   showMap(result, pixels);
   showFacts(result);
-  offerFiles(result, fail);
+  offerFiles(result, (error) => messages.failure(error, match, { label: "Back to the result", run: () => messages.done("") }));
   const image = (data) => new ImageData(new Uint8ClampedArray(data.buffer), width, height);
   cloud.show(image(picture), image(result.colors), chosen(), camera(result));
   // For scripts that drive the page, such as the tests.

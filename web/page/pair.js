@@ -11,8 +11,10 @@ const WIDE = 2.2;
 const sides = { left: {}, right: {} };
 /** How samples of more than 8 bits were stretched, and doubts about the files. */
 let loaded = { stretch: [], warnings: [] };
-/** The file that was taken last, if it was one. */
+/** The file that was taken last, with its side, if it was one. */
 let single;
+/** Takes that file again, with its views where `halves` says. */
+let retake;
 
 /** The pair as a task of the library has it; undefined if a picture is missing. */
 export function currentPair() {
@@ -42,13 +44,13 @@ function put(side, picture, name, file) {
 }
 
 /** Loads the file of one view, for a side, of both views, or two files in the order of their names. */
-async function take(files, side) {
+async function take(files, side, halves) {
   files = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   if (files.length > 2) throw new Error(`${files.length} files were dropped: one picture is needed for each side`);
   let named = files.map((file) => ({ file, name: file.name }));
-  single = named.length === 1 ? named[0] : undefined;
   side ??= missing() ?? "left";
-  let found = await library.decode(named, at("halves").value);
+  single = named.length === 1 ? { ...named[0], side } : undefined;
+  let found = await library.decode(named, halves);
   if (found.views.length === 1) {
     const other = sides[side === "left" ? "right" : "left"];
     if (other.file) {
@@ -94,7 +96,8 @@ export function exchange() {
 
 /** Listens for files; calls `changed` when pictures are there, and `failed` with an error. */
 export function listenForFiles(changed, failed) {
-  const taken = (files, side) => take(files, side).then(changed, failed);
+  const taken = (files, side, halves = at("halves").value) => take(files, side, halves).then(changed, failed);
+  retake = (halves) => single && taken([single.file], single.side, halves);
   for (const side of SIDES) {
     for (const input of at(side).querySelectorAll("input")) {
       input.onchange = () => {
@@ -103,7 +106,7 @@ export function listenForFiles(changed, failed) {
       };
     }
   }
-  at("halves").onchange = () => single && taken([single.file], undefined);
+  at("halves").onchange = () => retake();
   let inside = 0;
   const over = (change) => {
     inside = Math.max(0, inside + change);
@@ -121,8 +124,7 @@ export function listenForFiles(changed, failed) {
   });
 }
 
-/** Takes the only file again, as one with the left view on the left and the right view on the right. */
+/** Takes the only file as one with the left view on the left and the right view on the right. */
 export function splitInHalves() {
-  at("halves").value = "left-right";
-  at("halves").onchange();
+  retake("left-right");
 }

@@ -18,13 +18,17 @@ const LIBRARY: &str = "hsad_web";
 /// Files of the example pair and its camera.
 const EXAMPLE: [&str; 3] = ["left.png", "right.png", "meta.json"];
 
-/// Compiles the library for browsers and writes the bundle to `folder`.
+/// Compiles the library for browsers and writes the bundle to `folder`, in place of an earlier one.
 ///
 /// # Errors
 /// If the target cannot be added, the compilation fails, or a file cannot be written.
 pub fn bundle(folder: &Path) -> Result<()> {
     let web = Path::new(env!("CARGO_MANIFEST_DIR"));
     let wasm = compiled(web)?;
+    // Files of an earlier bundle would be served, too.
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("clearing {}", folder.display()))?;
+    }
     Bindgen::new()
         .input_path(&wasm)
         .web(true)
