@@ -14,6 +14,7 @@ use hsad::{
     eval::{self, Score},
     image::{Luma, Plane},
     io::{Calibration, Picture, figure, load, pfm, png},
+    pipeline::Way,
 };
 use serde_json::Value;
 
@@ -24,7 +25,6 @@ use super::{
     output::Output,
     products, summary,
     terminal::{self, Progress},
-    way::Way,
 };
 
 const LEFT: &[u8] = include_bytes!("../../data/curved/left.png");

@@ -2,7 +2,7 @@
 
 use hsad::{
     config::Config,
-    io::{Calibration, Picture},
+    io::Picture,
     pipeline::{Outcome, doubts},
 };
 
@@ -21,11 +21,6 @@ pub struct NotTrusted {
 impl NotTrusted {
     /// The exit code of a run that wrote such a map.
     pub const EXIT_CODE: i32 = 4;
-
-    /// `None` for a map that can be trusted. `calibration` is that of the disparities.
-    pub fn new(outcome: &Outcome, calibration: Option<&Calibration>) -> Option<Self> {
-        doubts::not_trusted(outcome, calibration).map(|reason| Self { reason })
-    }
 }
 
 /// A depth that was asked for and does not follow from the map. The files of the map were written all the same.
@@ -44,9 +39,4 @@ impl NoDepth {
 /// The warnings about a result.
 pub fn warnings(views: (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
     doubts::warnings(views, config, outcome).iter().map(|warning| in_words_of_options(warning)).collect()
-}
-
-/// A warning if the right camera looks to the side by its rows, see [`doubts::looks_to_the_side`].
-pub fn looks_to_the_side(outcome: &Outcome, calibration: &Calibration) -> Option<String> {
-    doubts::looks_to_the_side(outcome, calibration).map(|warning| in_words_of_options(&warning))
 }

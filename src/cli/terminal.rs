@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-use hsad::pipeline::Step;
+use hsad::pipeline::{Activity, Step};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::wording::in_options;
@@ -93,6 +93,15 @@ impl Progress {
     /// Shows the share of the dense step that is done, 0 to 1.
     pub fn share(&self, share: f32) {
         self.begin(format!("matching every pixel, {:.0} %", 100.0 * share));
+    }
+
+    /// Shows the activity of a task that begins.
+    pub fn activity(&self, activity: Activity) {
+        match activity {
+            Activity::Rectifying => self.begin("rectifying"),
+            Activity::LookingForMirrorImage => self.begin("looking for a mirror image"),
+            Activity::Step(step) => self.step(step),
+        }
     }
 
     /// Shows the pipeline step that begins.

@@ -1,7 +1,7 @@
 //! How the rows of a pair come to correspond: what `--rectify` and the calibration say.
 
 use clap::ValueEnum;
-use hsad::{Error, Result, calibration::StereoCalibration, image::Size, io::Calibration};
+use hsad::{Error, Result, image::Size, io::Calibration, pipeline::Way};
 
 use super::depth::Cameras;
 
@@ -17,19 +17,6 @@ pub enum Rectify {
     Calibrated,
     /// From matching interest points, without a calibration
     Uncalibrated,
-}
-
-/// How the rows of a pair come to correspond.
-pub enum Way {
-    /// They do, or the pair is refused.
-    AsIs,
-    /// By matching interest points, if need be.
-    AsNeeded,
-    Uncalibrated,
-    Calibrated(StereoCalibration),
-    /// By the calibration if that brings rows closer together, since the files are of the pair as it was taken and of the rectified
-    /// one; otherwise as needed.
-    Either(StereoCalibration),
 }
 
 /// A way, the geometry of the pair if its pictures are rectified, and notes.

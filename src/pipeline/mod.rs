@@ -12,9 +12,11 @@ mod reduction;
 mod search;
 mod taken;
 mod taken_pair;
+mod task;
 mod trust;
 mod upright;
 mod views;
+mod way;
 
 pub use back::WayBack;
 #[cfg(not(target_arch = "wasm32"))]
@@ -29,7 +31,9 @@ pub use reduction::reduction;
 #[cfg(not(target_arch = "wasm32"))]
 pub use taken_pair::rectify;
 pub use taken_pair::{TakenPair, rectify_async};
+pub use task::{Activity, Matched, Task};
 pub use trust::TRUSTED;
+pub use way::Way;
 
 use web_time::{Duration, Instant};
 

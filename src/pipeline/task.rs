@@ -1,0 +1,116 @@
+//! From two pictures, as someone has them, to a map and the doubts about it.
+
+use super::{
+    Mirrored, Outcome, RectifiedPair, Step, TRUSTED, doubts,
+    mirror::mirrored_async,
+    way::{Found, Way},
+};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::block_on;
+use crate::{
+    backend::Backend,
+    config::Config,
+    error::{Error, Result},
+    io::{Calibration, Picture},
+};
+
+/// A pair that shall be matched.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// What computes the map.
+    pub backend: &'a Backend,
+    /// The left and the right view.
+    pub views: (&'a Picture, &'a Picture),
+    /// The parameters.
+    pub config: &'a Config,
+    /// How the rows of the pair come to correspond.
+    pub way: &'a Way,
+    /// The geometry of the pair if its pictures are rectified already.
+    pub calibration: Option<Calibration>,
+    /// Called with what begins.
+    pub begin: &'a dyn Fn(Activity),
+    /// Called with the share of [`Step::Dense`] that a device has done, see [`super::run_with_progress`].
+    pub progress: &'a dyn Fn(f32),
+}
+
+/// What is done to a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// Its rows are brought to correspond.
+    Rectifying,
+    /// One view is looked at as a mirror image, since the pair was refused or its map is not to be trusted.
+    LookingForMirrorImage,
+    /// A step of the pipeline.
+    Step(Step),
+}
+
+/// A matched pair.
+#[derive(Clone, Debug)]
+pub struct Matched {
+    /// The map and what was found on the way.
+    pub outcome: Outcome,
+    /// The pair that was matched, if it was rectified first.
+    pub rectified: Option<RectifiedPair>,
+    /// The geometry of the disparities.
+    pub calibration: Option<Calibration>,
+    /// Doubts about the map, one sentence each; options stand between backticks.
+    pub warnings: Vec<String>,
+    /// Why the map is not to be trusted; `None` for a map that is, and with [`Config::force`].
+    pub not_trusted: Option<String>,
+}
+
+impl Task<'_> {
+    /// Matches the pair.
+    ///
+    /// # Errors
+    /// See [`super::run`]; [`Error::NotRectifiable`] also for a view that is the mirror image of the other.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn run(&self) -> Result<Matched> {
+        block_on(self.run_async())
+    }
+
+    /// The asynchronous [`Self::run`]. Work on the host blocks.
+    ///
+    /// # Errors
+    /// See [`Self::run`].
+    pub async fn run_async(&self) -> Result<Matched> {
+        let found = self.on_its_way().await;
+        let mirrored = self.mirrored(&found).await?;
+        let Found { outcome, rectified, mut warnings } = match (found, mirrored) {
+            (Err(_), Some(sides)) => return Err(Error::NotRectifiable { reason: doubts::mirrored(sides) }),
+            (found, _) => found?,
+        };
+        let views = rectified.as_ref().map_or(self.views, |pair| (&pair.pictures[0], &pair.pictures[1]));
+        let mut calibration = match &rectified {
+            Some(pair) => pair.rectification.calibration().copied(),
+            None => self.calibration,
+        };
+        let mut not_trusted = doubts::not_trusted(&outcome, calibration.as_ref());
+        match (mirrored, &mut not_trusted) {
+            (Some(sides), Some(reason)) => *reason = doubts::mirrored(sides),
+            _ => warnings.extend(doubts::warnings(views, self.config, &outcome)),
+        }
+        if self.config.force {
+            warnings.extend(not_trusted.take());
+        }
+        let as_given = calibration.filter(|_| rectified.is_none());
+        if let Some(doubt) = as_given.and_then(|calibration| doubts::looks_to_the_side(&outcome, &calibration)) {
+            warnings.push(doubt);
+            calibration = None;
+        }
+        Ok(Matched { outcome, rectified, calibration, warnings, not_trusted })
+    }
+
+    /// How one view mirrors the other, which is found out where the pair was refused or its map is not to be trusted.
+    async fn mirrored(&self, found: &Result<Found>) -> Result<Option<Mirrored>> {
+        let is_doubtful = match found {
+            Ok(Found { outcome, .. }) => outcome.trust < TRUSTED && outcome.no_depth.is_none(),
+            Err(error) => matches!(error, Error::NotRectified { .. } | Error::NotRectifiable { .. }),
+        };
+        if !is_doubtful {
+            return Ok(None);
+        }
+        (self.begin)(Activity::LookingForMirrorImage);
+        mirrored_async(self.backend, self.views).await
+    }
+}

@@ -1,0 +1,229 @@
+//! How the rows of a pair come to correspond: as it is, from its matches, or by its calibration.
+
+use super::{
+    Outcome, RectifiedPair, TRUSTED, TakenPair,
+    doubts::of_rectified,
+    rectified::rectify_by_async,
+    run_rectified, run_unless, run_with_progress,
+    taken_pair::rectify_async,
+    task::{Activity, Task},
+};
+use crate::{
+    calibration::StereoCalibration,
+    config::Config,
+    dense::View,
+    error::{Error, Result},
+    seeding::{Rectification, Verdict},
+};
+
+/// How the rows of a pair come to correspond.
+#[derive(Clone, Debug)]
+pub enum Way {
+    /// They do, or the pair is refused.
+    AsIs,
+    /// By matching interest points, if need be.
+    AsNeeded,
+    /// By matching interest points.
+    Uncalibrated,
+    /// By the calibration of the pair as it was taken.
+    Calibrated(StereoCalibration),
+    /// By the calibration if that brings rows closer together, since the files are of the pair as it was taken and of the rectified
+    /// one; otherwise as needed.
+    Either(StereoCalibration),
+}
+
+/// What matching gave, and the rectified pair that was matched, if one was.
+pub(super) struct Found {
+    pub outcome: Outcome,
+    pub rectified: Option<RectifiedPair>,
+    pub warnings: Vec<String>,
+}
+
+impl Task<'_> {
+    /// Matches the pair on its way.
+    pub(super) async fn on_its_way(&self) -> Result<Found> {
+        match self.way {
+            Way::AsIs => Ok(as_taken(self.as_it_is(self.config.force).await?)),
+            Way::AsNeeded => self.as_needed().await,
+            Way::Uncalibrated => {
+                (self.begin)(Activity::Rectifying);
+                self.along_rows_of(rectify_async(self.backend, self.views).await?).await
+            }
+            Way::Calibrated(stereo) => self.along_rows_of(self.rectified_by(stereo).await?).await,
+            Way::Either(_) if !self.config.align => self.as_needed().await,
+            Way::Either(stereo) => {
+                let pair = self.rectified_by(stereo).await?;
+                if !pair.is_better_than_taken() {
+                    return self.as_needed().await;
+                }
+                let mut found = self.along_rows_of(pair).await?;
+                found.warnings.push(
+                    "the calibration is of pictures as they were taken and of rectified ones: these were rectified by it, since their \
+                     rows correspond better then; `rectify` never takes them as rectified"
+                        .into(),
+                );
+                Ok(found)
+            }
+        }
+    }
+
+    async fn rectified_by(&self, stereo: &StereoCalibration) -> Result<RectifiedPair> {
+        (self.begin)(Activity::Rectifying);
+        rectify_by_async(self.backend, self.views, stereo).await
+    }
+
+    async fn as_it_is(&self, force: bool) -> Result<Outcome> {
+        let config = Config { force, ..self.config.clone() };
+        run_with_progress(self.backend, self.views, &config, |step| (self.begin)(Activity::Step(step)), self.progress)
+            .await
+    }
+
+    /// As [`Self::as_it_is`]; `None` if the lens distorts the rows, which no warp of the rows of one view mends, and nothing is lost
+    /// by a rectification: without a calibration.
+    async fn as_it_is_unless_distorted(&self) -> Result<Option<Outcome>> {
+        let config = Config { force: false, ..self.config.clone() };
+        let is_unfit = |rows: &Rectification| rows.is_distorted() && self.calibration.is_none();
+        let begin = |step| (self.begin)(Activity::Step(step));
+        run_unless(self.backend, self.views, &config, is_unfit, begin, self.progress).await
+    }
+
+    /// Matches a rectified pair.
+    async fn along_rows_of(&self, pair: RectifiedPair) -> Result<Found> {
+        let begin = |step| (self.begin)(Activity::Step(step));
+        let outcome = run_rectified(self.backend, &pair, self.config, begin, self.progress).await;
+        let outcome = outcome.map_err(|error| match error {
+            Error::NotRectified { diagnosis } if pair.rectification.calibration().is_some() => {
+                let diagnosis =
+                    format!(
+                        "the calibration does not fit the pictures, or left and right are mixed up: after the rectification {diagnosis}"
+                    );
+                Error::NotRectified { diagnosis }
+            }
+            error => error,
+        })?;
+        let warnings = of_rectified(&pair).into_iter().collect();
+        Ok(Found { outcome, rectified: Some(pair), warnings })
+    }
+
+    /// Matches the pair as it is, or rectified from its matches if its rows do not correspond.
+    ///
+    /// With [`Config::force`], or without [`Config::align`], a pair that cannot be rectified, or must not be, is matched or refused
+    /// as with [`Way::AsIs`].
+    async fn as_needed(&self) -> Result<Found> {
+        let force = self.config.force;
+        if !self.config.align {
+            return Ok(as_taken(self.as_it_is(force).await?));
+        }
+        let looked = self.first_look().await?;
+        let as_is = match looked.as_ref().and_then(TakenPair::rows) {
+            Some(rows) if rows.is_distorted() => Ok(None),
+            Some(rows) => Err(Error::NotRectified { diagnosis: rows.to_string() }),
+            None => self.as_it_is_unless_distorted().await,
+        };
+        let why = match &as_is {
+            Err(error @ Error::SizesDiffer { .. }) => error.to_string(),
+            Err(Error::NotRectified { diagnosis }) => format!("the pair is not rectified: {diagnosis}"),
+            Ok(None) => "the lens distorts the pictures".into(),
+            Ok(Some(outcome)) if has_unknown_rows(outcome) => {
+                "nothing tells whether the rows of the views correspond".into()
+            }
+            _ => {
+                return match as_is? {
+                    Some(outcome) if self.can_lean() && has_leaning_columns(&outcome) => {
+                        self.with_upright_columns(outcome).await
+                    }
+                    outcome => self.taken_or(outcome).await,
+                };
+            }
+        };
+        (self.begin)(Activity::Rectifying);
+        let was_looked_at = looked.is_some();
+        let pair = match looked {
+            Some(pair) => pair.rectify_async(self.backend).await,
+            None => rectify_async(self.backend, self.views).await,
+        };
+        let refused = match pair {
+            Ok(pair) if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 => {
+                return Ok(as_taken(self.as_it_is(force).await?));
+            }
+            Ok(pair) => {
+                let mut found = self.along_rows_of(pair).await?;
+                found
+                    .warnings
+                    .insert(0, format!("{why}; disparities are those of the pair rectified from its matches"));
+                return Ok(found);
+            }
+            Err(Error::NotRectifiable { reason }) => reason,
+            Err(error) => return Err(error),
+        };
+        let as_is = if was_looked_at { self.as_it_is_unless_distorted().await } else { as_is };
+        let outcome = match as_is {
+            Err(Error::NotRectified { .. }) if force => self.as_it_is(true).await?,
+            Err(Error::NotRectified { diagnosis }) => {
+                let diagnosis = format!("no warp that matches tell helps, since {refused}; {diagnosis}");
+                return Err(Error::NotRectified { diagnosis });
+            }
+            Err(Error::SizesDiffer { left, right }) => {
+                let reason = format!("{refused} (the left view is {left} and the right view {right} pixels)");
+                return Err(Error::NotRectifiable { reason });
+            }
+            as_is => return self.taken_or(as_is?).await,
+        };
+        Ok(as_taken(outcome))
+    }
+
+    /// The pair, if a first look tells that it is not to be matched as it was taken: rows differ by more than a small warp mends, or the
+    /// lens distorts them. With a calibration, which is of a rectified pair then, nobody looks.
+    async fn first_look(&self) -> Result<Option<TakenPair>> {
+        if self.calibration.is_some() {
+            return Ok(None);
+        }
+        (self.begin)(Activity::Rectifying);
+        let pair = TakenPair::new_async(self.backend, self.views).await?;
+        let is_unfit = pair.rows().is_some_and(|rows| rows.is_distorted() || rows.rows_differ());
+        Ok(is_unfit.then_some(pair))
+    }
+
+    /// The outcome of the pair as it was taken, if it was matched; else it is matched now.
+    async fn taken_or(&self, outcome: Option<Outcome>) -> Result<Found> {
+        Ok(as_taken(match outcome {
+            Some(outcome) => outcome,
+            None => self.as_it_is(self.config.force).await?,
+        }))
+    }
+
+    /// Whether the pair may be matched with the columns of the right view upright: a range that was asked for is one of the columns as
+    /// they are, and the map of the right view is too.
+    fn can_lean(&self) -> bool {
+        self.config.range.is_none() && self.config.least.is_none() && self.config.reference == View::Left
+    }
+
+    /// The map found with the columns of the right view upright, if it deserves as much trust as that of the columns as they are;
+    /// disparities are those of the pair as it was taken.
+    async fn with_upright_columns(&self, as_is: Outcome) -> Result<Found> {
+        (self.begin)(Activity::Rectifying);
+        let pair = match rectify_async(self.backend, self.views).await {
+            Ok(pair) => pair,
+            Err(Error::NotRectifiable { .. }) => return Ok(as_taken(as_is)),
+            Err(error) => return Err(error),
+        };
+        let upright = self.along_rows_of(pair).await?;
+        let restored = upright.rectified.and_then(|pair| pair.restored(&as_is, &upright.outcome));
+        Ok(as_taken(restored.filter(|restored| restored.trust >= as_is.trust).unwrap_or(as_is)))
+    }
+}
+
+/// Whether most surfaces of a map share a slant, as where the columns of the right view lean.
+fn has_leaning_columns(outcome: &Outcome) -> bool {
+    outcome.seeding.rectification.lean != 0.0 && outcome.no_depth.is_none()
+}
+
+/// The outcome of a pair that was matched as it was taken.
+fn as_taken(outcome: Outcome) -> Found {
+    Found { outcome, rectified: None, warnings: Vec::new() }
+}
+
+/// Whether a map is not to be trusted since nothing tells whether rows correspond.
+fn has_unknown_rows(outcome: &Outcome) -> bool {
+    outcome.seeding.rectification.verdict == Verdict::Unknown && outcome.trust < TRUSTED
+}
