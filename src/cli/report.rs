@@ -2,7 +2,6 @@
 
 use hsad::{
     config::Config,
-    io::depth_png::{METRES_PER_VALUE, Unheld},
     report::{self, Run},
 };
 use serde_json::{Value, json};
@@ -23,6 +22,7 @@ impl CompletedJob {
             backend,
             calibration: job.calibration.as_ref(),
             cloud: cloud.as_ref().map(|cloud| &cloud.0),
+            depth_png: *depth_png,
             rectified: rectified.as_ref(),
             mapped_back: back.is_some(),
             no_depth: no_depth.as_ref().map(|missing| missing.reason.as_str()),
@@ -32,7 +32,6 @@ impl CompletedJob {
             outcome,
             total: *total,
         });
-        value["depth_png"] = depth_png.map(depth_in_png).into();
         value["parameters"] = parameters(&job.config, job.strongest);
         value
     }
@@ -43,9 +42,4 @@ pub fn parameters(config: &Config, strongest: Option<usize>) -> Value {
     let mut parameters = report::parameters(config);
     parameters["strongest"] = json!(strongest);
     parameters
-}
-
-/// How the values of `depth.png` become metres, and how many depths they cannot hold.
-fn depth_in_png(Unheld { beyond, nearer }: Unheld) -> Value {
-    json!({ "metres_per_value": METRES_PER_VALUE, "left_out": { "beyond_65.535_m": beyond, "nearer_than_half_a_value": nearer } })
 }

@@ -17,7 +17,7 @@ pub mod color;
 pub mod csv;
 #[cfg(feature = "pictures")]
 mod decoded;
-#[cfg(feature = "files")]
+#[cfg(feature = "pictures")]
 pub mod depth_png;
 #[cfg(feature = "files")]
 pub mod disparities;

@@ -12,6 +12,7 @@ use crate::{
     image::Size,
     io::{
         Calibration,
+        depth_png::{METRES_PER_VALUE, Unheld},
         disparity_png::Encoding,
         load::Stretch,
         ply::{LeftOut, PointFilter},
@@ -33,6 +34,8 @@ pub struct Run<'a> {
     pub calibration: Option<&'a Calibration>,
     /// The point cloud, if there is one.
     pub cloud: Option<&'a Cloud>,
+    /// What the depth in millimetres lacks, if there is one.
+    pub depth_png: Option<Unheld>,
     /// The pair that was matched, if it was rectified first.
     pub rectified: Option<&'a RectifiedPair>,
     /// Whether the map was taken back to the view as it was taken.
@@ -77,13 +80,17 @@ pub fn run(run: &Run<'_>) -> Value {
         "cloud": run.cloud.map(cloud),
         "rectified": run.rectified.map(rectified),
         "mapped_back": run.mapped_back,
-        "no_depth": run.no_depth,
+        "depth_png": run.depth_png.map(depth_png),
         "not_trusted": run.not_trusted,
         "disparity_png": disparity_png(&run.outcome.dense.disparity),
         "warnings": run.warnings,
     });
     for (name, figure) in outcome(run.config, run.outcome) {
         value[name] = figure;
+    }
+    // The reason in words says more than its kind.
+    if let Some(reason) = run.no_depth {
+        value["no_depth"] = reason.into();
     }
     value["seconds"]["total"] = json!(run.total.as_secs_f64());
     value
@@ -99,6 +106,11 @@ fn cloud(cloud: &Cloud) -> Value {
         "min_confidence": min_confidence,
         "left_out": { "beyond_max_depth": beyond, "below_min_confidence": unsure },
     })
+}
+
+/// How the values of a depth PNG become metres, and how many depths they cannot hold.
+fn depth_png(Unheld { beyond, nearer }: Unheld) -> Value {
+    json!({ "metres_per_value": METRES_PER_VALUE, "left_out": { "beyond_65.535_m": beyond, "nearer_than_half_a_value": nearer } })
 }
 
 /// How the values of a disparity PNG become disparities: times the one, plus the other.
