@@ -31,7 +31,15 @@ pub fn are_saved_as_the_command_saves_them(browser: &mut Browser) {
     browser.evaluate("delete document.body.dataset.state; document.getElementById('example').click()");
     browser.wait_for("done");
     browser.download_to(&path("page"));
-    let names = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", "depth.pfm", "cloud.ply"];
+    let names = [
+        "disparity.pfm",
+        "disparity.png",
+        "disparity-color.png",
+        "confidence.png",
+        "depth.pfm",
+        "depth.png",
+        "cloud.ply",
+    ];
     for (index, name) in names.iter().chain(["report.json"].iter()).enumerate() {
         browser.evaluate(&format!("document.querySelectorAll('#save button')[{index}].click()"));
         let start = Instant::now();
@@ -55,6 +63,7 @@ pub fn are_saved_as_the_command_saves_them(browser: &mut Browser) {
         "height",
         "stretch",
         "calibration",
+        "depth_png",
         "cloud",
         "rectified",
         "mapped_back",

@@ -9,7 +9,8 @@ const OFFERED = [
   ["disparity.png", "PNG", "Disparities as 16-bit grey, 256 per pixel, 0 where there is none; negative ones by an offset in its text"],
   ["disparity-color.png", "Colours", "The map in false colours"],
   ["confidence.png", "Confidence", "Confidences as 8-bit grey"],
-  ["depth.pfm", "Depth", "Depths in metres, floats"],
+  ["depth.pfm", "Depth PFM", "Depths in metres, floats"],
+  ["depth.png", "Depth PNG", "Depths in millimetres as 16-bit grey, 0 where there is none"],
   ["cloud.ply", "PLY", "The point cloud in metres, of measured pixels"],
   ["report.json", "Report", "Parameters, figures and doubts as JSON"],
 ];

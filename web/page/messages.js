@@ -45,7 +45,7 @@ export function progress({ step, share }) {
   const { title, items, bar } = matching;
   if (step) {
     const current = STEPS.findIndex(([name]) => name === step);
-    title.textContent = step === "rectifying" ? "Rectifying" : "Matching";
+    title.textContent = { rectifying: "Rectifying", mirror: "Looking for a mirror image" }[step] ?? "Matching";
     items.forEach((item, index) => (item.className = index < current ? "done" : index === current ? "now" : ""));
     bar.removeAttribute("value");
   }

@@ -8,7 +8,7 @@ use hsad::{
     io::{
         Calibration,
         calibration::depth_map,
-        color, disparity_png, pfm,
+        color, depth_png, disparity_png, pfm,
         ply::{self, Point, PointFilter},
         png,
     },
@@ -24,7 +24,7 @@ use super::{
 /// The files of any pair.
 const FILES: [&str; 5] = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", "report.json"];
 /// The files of a pair with depth.
-const DEPTH_FILES: [&str; 2] = ["depth.pfm", "cloud.ply"];
+const DEPTH_FILES: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
 
 #[wasm_bindgen]
 impl Matched {
@@ -48,12 +48,12 @@ impl Matched {
 impl Matched {
     /// The geometry, if depth follows from the disparities.
     fn geometry(&self) -> Option<&Calibration> {
-        self.calibration.as_ref().filter(|_| self.outcome.no_depth.is_none() || self.task.config.force)
+        self.matched.calibration.as_ref().filter(|_| self.matched.outcome.no_depth.is_none() || self.task.config.force)
     }
 
     /// Writes a file; `None` if there is no such file.
     fn write(&self, name: &str, out: &mut Vec<u8>) -> Result<Option<io::Result<()>>, Error> {
-        let dense = &self.outcome.dense;
+        let dense = &self.matched.outcome.dense;
         Ok(Some(match (name, self.geometry()) {
             ("disparity.pfm", _) => pfm::write_disparities(out, &dense.disparity),
             ("disparity.png", _) => disparity_png::write(out, &dense.disparity),
@@ -64,6 +64,9 @@ impl Matched {
             ("confidence.png", _) => png::write_grey8(out, &dense.confidence),
             ("report.json", geometry) => writeln!(out, "{:#}", self.report(geometry)?),
             ("depth.pfm", Some(calibration)) => pfm::write(out, &depth_map(&dense.disparity, calibration)),
+            ("depth.png", Some(calibration)) => {
+                depth_png::write(out, &depth_map(&dense.disparity, calibration)).map(drop)
+            }
             ("cloud.ply", Some(calibration)) => ply::write(out, &self.points(calibration)?.0),
             _ => return Ok(None),
         }))
@@ -71,20 +74,22 @@ impl Matched {
 
     fn report(&self, geometry: Option<&Calibration>) -> Result<report::Value, Error> {
         let cloud = geometry.map(|calibration| self.points(calibration)).transpose()?.map(|(_, cloud)| cloud);
+        let map = &self.matched.outcome.dense.disparity;
         let mut report = report::run(&Run {
             names: self.task.names.each_ref().map(String::as_str),
             size: self.picture.size(),
             stretch: self.task.stretch,
             backend: &self.backend,
-            calibration: self.calibration.as_ref(),
+            calibration: self.matched.calibration.as_ref(),
             cloud: cloud.as_ref(),
-            rectified: self.rectified.as_ref(),
+            depth_png: geometry.map(|calibration| depth_png::millimetres(&depth_map(map, calibration)).1),
+            rectified: self.matched.rectified.as_ref(),
             mapped_back: false,
             no_depth: None,
-            not_trusted: self.not_trusted.as_deref(),
-            warnings: &self.warnings,
+            not_trusted: self.matched.not_trusted.as_deref(),
+            warnings: &self.matched.warnings,
             config: &self.task.config,
-            outcome: &self.outcome,
+            outcome: &self.matched.outcome,
             total: self.total,
         });
         report["files"] = self.files().into();
@@ -93,8 +98,8 @@ impl Matched {
 
     /// The points of the cloud, in coordinates of the left camera as it stood, in metres.
     fn points(&self, calibration: &Calibration) -> Result<(Vec<Point>, Cloud), Error> {
-        let (dense, filter) = (&self.outcome.dense, PointFilter::new(calibration));
-        let (points, left_out) = match &self.rectified {
+        let (dense, filter) = (&self.matched.outcome.dense, PointFilter::new(calibration));
+        let (points, left_out) = match &self.matched.rectified {
             Some(pair) => {
                 let (kept, left_out) = filter.apply(dense, calibration);
                 let positions = pair.points_in_metres(&kept, View::Left, None);

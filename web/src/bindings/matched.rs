@@ -7,7 +7,7 @@ use hsad::{
     dense::FILLED,
     disparity::{NONE, SCALE, coverage},
     io::{Calibration, Picture, color},
-    pipeline::{Outcome, RangeSource, RectifiedPair, TRUSTED},
+    pipeline::{self, RangeSource, TRUSTED},
 };
 use wasm_bindgen::prelude::*;
 
@@ -20,12 +20,8 @@ pub struct Matched {
     pub(super) task: Task,
     /// The picture whose pixels have the disparities.
     pub(super) picture: Picture,
-    /// The geometry of the disparities.
-    pub(super) calibration: Option<Calibration>,
-    pub(super) outcome: Outcome,
-    pub(super) rectified: Option<RectifiedPair>,
-    pub(super) warnings: Vec<String>,
-    pub(super) not_trusted: Option<String>,
+    /// The map, and the doubts about it.
+    pub(super) matched: pipeline::Matched,
     pub(super) total: Duration,
 }
 
@@ -38,17 +34,17 @@ impl Matched {
 
     /// Disparity of each pixel of the picture, in 1/`scale` px, or `none`.
     pub fn disparities(&self) -> Vec<i32> {
-        self.outcome.dense.disparity.data().to_vec()
+        self.matched.outcome.dense.disparity.data().to_vec()
     }
 
     /// Confidence of each disparity: 16 to 255 where it was measured, 1 to 15 where it was filled, 0 for none.
     pub fn confidences(&self) -> Vec<u8> {
-        self.outcome.dense.confidence.data().to_vec()
+        self.matched.outcome.dense.confidence.data().to_vec()
     }
 
     /// The map in false colours, as RGBA.
     pub fn colors(&self) -> Vec<u8> {
-        let colors = color::disparity_colors(&self.outcome.dense.disparity, self.color_limits());
+        let colors = color::disparity_colors(&self.matched.outcome.dense.disparity, self.color_limits());
         colors.data().iter().flat_map(|&[red, green, blue]| [red, green, blue, 255]).collect()
     }
 
@@ -63,7 +59,7 @@ impl Matched {
     /// pixels, and the baseline in metres; empty if it is not known.
     pub fn camera(&self) -> Vec<f64> {
         let values = |c: &Calibration| vec![c.focal, c.cx, c.cy, c.doffs, c.baseline];
-        self.calibration.as_ref().map_or(Vec::new(), values)
+        self.matched.calibration.as_ref().map_or(Vec::new(), values)
     }
 
     /// Number of disparity steps per pixel.
@@ -81,19 +77,19 @@ impl Matched {
     /// Smallest disparity of the searched range, in pixels.
     #[wasm_bindgen(getter)]
     pub fn first(&self) -> i32 {
-        self.outcome.range.min
+        self.matched.outcome.range.min
     }
 
     /// Largest disparity of the searched range, in pixels.
     #[wasm_bindgen(getter)]
     pub fn last(&self) -> i32 {
-        self.outcome.range.last()
+        self.matched.outcome.range.last()
     }
 
     /// Where the range comes from: `asked`, `found` or `assumed`.
     #[wasm_bindgen(getter)]
     pub fn source(&self) -> String {
-        match self.outcome.range_source {
+        match self.matched.outcome.range_source {
             RangeSource::Asked => "asked",
             RangeSource::Found(_) => "found",
             RangeSource::Fallback(_) => "assumed",
@@ -104,19 +100,19 @@ impl Matched {
     /// Number of interest points matched between the views.
     #[wasm_bindgen(getter)]
     pub fn matches(&self) -> usize {
-        self.outcome.seeding.seeds.len()
+        self.matched.outcome.seeding.seeds.len()
     }
 
     /// Diagnosis of the rectification, as text.
     #[wasm_bindgen(getter)]
     pub fn rectification(&self) -> String {
-        self.outcome.seeding.rectification.to_string()
+        self.matched.outcome.seeding.rectification.to_string()
     }
 
     /// How the pair was rectified before it was matched: `calibration`, `matches`, or empty.
     #[wasm_bindgen(getter)]
     pub fn rectified(&self) -> String {
-        match &self.rectified {
+        match &self.matched.rectified {
             None => "",
             Some(pair) if pair.rectification.calibration().is_some() => "calibration",
             Some(_) => "matches",
@@ -127,7 +123,7 @@ impl Matched {
     /// Trust in the map, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn trust(&self) -> f32 {
-        self.outcome.trust
+        self.matched.outcome.trust
     }
 
     /// The trust from which on a map is trusted.
@@ -139,24 +135,24 @@ impl Matched {
     /// Why the map is not to be trusted; `undefined` if it is, and where the match was forced.
     #[wasm_bindgen(getter, js_name = notTrusted)]
     pub fn not_trusted(&self) -> Option<String> {
-        self.not_trusted.clone()
+        self.matched.not_trusted.clone()
     }
 
     /// Doubts about the map, one sentence each, with options between backticks.
     pub fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        self.matched.warnings.clone()
     }
 
     /// Share of pixels with a disparity, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn coverage(&self) -> f64 {
-        coverage(&self.outcome.dense.disparity)
+        coverage(&self.matched.outcome.dense.disparity)
     }
 
     /// Share of pixels with a measured, not filled, disparity, 0 to 1.
     #[wasm_bindgen(getter)]
     pub fn measured(&self) -> f64 {
-        self.outcome.dense.measured()
+        self.matched.outcome.dense.measured()
     }
 
     /// The largest confidence of a filled pixel.
@@ -173,12 +169,12 @@ impl Matched {
 
     /// Wall-clock time of each step, in order, in milliseconds.
     pub fn times(&self) -> Vec<f64> {
-        self.outcome.times.iter().map(|(_, time)| 1e3 * time.as_secs_f64()).collect()
+        self.matched.outcome.times.iter().map(|(_, time)| 1e3 * time.as_secs_f64()).collect()
     }
 }
 
 impl Matched {
     fn color_limits(&self) -> (i32, i32) {
-        color::disparity_range(&self.outcome.dense.disparity).unwrap_or((0, 0))
+        color::disparity_range(&self.matched.outcome.dense.disparity).unwrap_or((0, 0))
     }
 }

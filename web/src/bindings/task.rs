@@ -4,15 +4,18 @@ use std::path::Path;
 
 use hsad::{
     Error, Options, Result, Size,
-    calibration::StereoCalibration,
     config::Config,
     io::{
         Calibration,
         calibration::{self, Hints, Loaded},
         load::Stretch,
     },
+    pipeline::Way,
     report::Value,
 };
+
+/// The way of a pair, and its geometry if its pictures are rectified.
+type Geometry = (Way, Option<Calibration>);
 
 /// A task: how to match a pair, and what its report tells of the files.
 pub struct Task {
@@ -24,17 +27,10 @@ pub struct Task {
     pub stretch: Option<Stretch>,
     /// Doubts about the files.
     pub warnings: Vec<String>,
-    /// What is known of the cameras.
-    pub cameras: Cameras,
-}
-
-/// What is known of the cameras of a pair.
-pub enum Cameras {
-    Unknown,
-    /// The pictures are rectified.
-    Rectified(Calibration),
-    /// The pictures are as they were taken.
-    Taken(Box<StereoCalibration>),
+    /// How the rows of the pair come to correspond.
+    pub way: Way,
+    /// The geometry of the pair if its pictures are rectified.
+    pub calibration: Option<Calibration>,
 }
 
 impl Task {
@@ -54,13 +50,14 @@ impl Task {
         let texts = |list: &Value| -> Vec<String> { list.as_array().into_iter().flatten().map(text_of).collect() };
         let names = texts(&task["names"]).try_into().unwrap_or_else(|_| ["left".into(), "right".into()]);
         let mut warnings = texts(&task["warnings"]);
-        let cameras = cameras(&task["calibration"], &names, sizes, &mut warnings)?;
+        let (way, calibration) = cameras(&task["calibration"], &names, sizes, &mut warnings)?;
         Ok(Self {
             config: options(&task["options"])?.config()?,
             names,
             stretch: stretch(&task["stretch"]),
             warnings,
-            cameras,
+            way,
+            calibration,
         })
     }
 }
@@ -82,7 +79,7 @@ fn stretch(ends: &Value) -> Option<Stretch> {
     Some(Stretch { low: low?, high: high? })
 }
 
-fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut Vec<String>) -> Result<Cameras> {
+fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut Vec<String>) -> Result<Geometry> {
     if let Some(files) = given["files"].as_array() {
         let files: Vec<[String; 2]> =
             files.iter().map(|file| [text_of(&file["name"]), text_of(&file["text"])]).collect();
@@ -95,20 +92,25 @@ fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut 
             .map_err(|error| Error::Format { path: texts[0].0.into(), reason: error.to_string() });
     }
     let Some((focal, baseline)) = given["focal"].as_f64().zip(given["baseline"].as_f64()) else {
-        return Ok(Cameras::Unknown);
+        return Ok((Way::AsNeeded, None));
     };
     let doffs = given["doffs"].as_f64().unwrap_or(0.0);
-    Calibration::centred(focal, baseline, doffs, sizes[0]).map(Cameras::Rectified)
+    Ok((Way::AsNeeded, Some(Calibration::centred(focal, baseline, doffs, sizes[0])?)))
 }
 
-/// As rectified if the files know rectified pictures of this size, otherwise as taken.
-fn of_files(loaded: &Loaded, sizes: [Size; 2]) -> Result<Cameras> {
-    match loaded.for_rectified(sizes[0]) {
-        Ok(calibration) => Ok(Cameras::Rectified(calibration)),
-        Err(error) if loaded.stereo.rectified().is_some() => Err(error),
-        Err(_) => {
-            loaded.stereo.check_sizes(sizes)?;
-            Ok(Cameras::Taken(loaded.stereo.into()))
-        }
+/// As with `hsad match --calib`: the calibration of rectified pictures of this size, that of pictures as they were taken, or the better
+/// one of both.
+fn of_files(loaded: &Loaded, sizes: [Size; 2]) -> Result<Geometry> {
+    let stereo = &loaded.stereo;
+    let as_rectified = loaded.for_rectified(sizes[0]);
+    // Files of a rectified pair alone have the same cameras as `stereo`.
+    if stereo.rectified().is_some() {
+        return Ok((Way::AsNeeded, Some(as_rectified?)));
+    }
+    match (as_rectified, stereo.check_sizes(sizes)) {
+        (Ok(calibration), Ok(())) => Ok((Way::Either(*stereo), Some(calibration))),
+        (Ok(calibration), Err(_)) => Ok((Way::AsNeeded, Some(calibration))),
+        (Err(_), Ok(())) => Ok((Way::Calibrated(*stereo), None)),
+        (Err(_), Err(error)) => Err(error),
     }
 }
