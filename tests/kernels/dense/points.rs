@@ -22,7 +22,7 @@ fn by_hand() {
     };
     // 30 m px over 10, 15 and 30 px are 3, 2 and 1 m, of which a pixel shows 0.01 m, 2 / 300 m and 1 / 300 m.
     let by_pixel = [0.01, (2.0_f64 / 300.0) as f32, (1.0_f64 / 300.0) as f32];
-    let positions = vec![
+    let positions = [
         [-0.5 * by_pixel[0], -by_pixel[0], 3.0],
         [1.5 * by_pixel[1], -by_pixel[1], 2.0],
         [0.5 * by_pixel[2], 0.0, 1.0],
