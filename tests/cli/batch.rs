@@ -11,13 +11,14 @@ use serde_json::Value;
 
 use crate::common::{folder, grey_png, hsad, names, noise, views};
 
-/// A small part of a shipped scene as two pictures in `folder`.
+/// A part of a shipped scene, from row `row` on, as two pictures in `folder`.
 fn small_pair(folder: &Path, name: &str, row: u32) -> [PathBuf; 2] {
     let both = ["left", "right"].map(|side| folder.join(side).join(format!("{name}.png")));
     for (path, view) in both.iter().zip(views("planes")) {
         let picture = hsad::io::load::load(&view).expect("a shipped view").luma();
         fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
-        grey_png(path, &hsad::image::Plane::from_fn((160, 60), |x, y| picture.get(x, y + row)));
+        let size = (picture.width(), picture.height() - 40);
+        grey_png(path, &hsad::image::Plane::from_fn(size, |x, y| picture.get(x, y + row)));
     }
     both
 }
@@ -50,8 +51,7 @@ fn every_pair_has_the_files_of_match_and_bad_ones_are_passed_over() {
     let root = temporary.path();
     let [left, right] = small_pair(root, "a", 0);
     small_pair(root, "b", 40);
-    grey_png(&root.join("noise.png"), &noise(160, 60, 3));
-    grey_png(&root.join("narrow.png"), &noise(70, 60, 4));
+    grey_png(&root.join("noise.png"), &noise(340, 215, 3));
     fs::write(root.join("broken.png"), "no picture").unwrap();
     let list = root.join("pairs.csv");
     let rows = "left,right,name\nleft/a.png,right/a.png,\nbroken.png,right/a.png,broken\nleft/b.png,right/b.png,deep/b\n\
@@ -59,7 +59,7 @@ fn every_pair_has_the_files_of_match_and_bad_ones_are_passed_over() {
     fs::write(&list, rows).unwrap();
     let (list, out) = (list.to_str().unwrap(), root.join("out"));
     let told =
-        batch(&[list, "--disparities", "24", "--jobs", "2"], &out).code(1).stderr(contains("2 of 5 pairs failed"));
+        batch(&[list, "--disparities", "64", "--jobs", "2"], &out).code(1).stderr(contains("2 of 5 pairs failed"));
     // Standard output, which is no terminal, has the records as they come.
     let printed = String::from_utf8(told.get_output().stdout.clone()).unwrap();
     assert_eq!(printed, fs::read_to_string(out.join("report.jsonl")).unwrap());
@@ -73,7 +73,7 @@ fn every_pair_has_the_files_of_match_and_bad_ones_are_passed_over() {
     assert!(!out.join("broken").exists() && !out.join("gone").exists());
 
     let single = root.join("single");
-    hsad().arg("match").args([&left, &right]).args(["--disparities", "24", "-o"]).arg(&single).assert().success();
+    hsad().arg("match").args([&left, &right]).args(["--disparities", "64", "-o"]).arg(&single).assert().success();
     assert_eq!(names(&single), names(&out.join("a")));
     for file in names(&single).iter().filter(|name| *name != "report.json") {
         assert_eq!(fs::read(single.join(file)).unwrap(), fs::read(out.join("a").join(file)).unwrap(), "{file}");
@@ -90,7 +90,7 @@ fn a_batch_goes_on_where_it_ended() {
     let patterns = ["left", "right"].map(|side| root.join(side).join("*.png").display().to_string());
     let out = root.join("out");
     let run = |more: &[&str]| {
-        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "24", "-q", "--jobs", "1"];
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--jobs", "1"];
         batch(&[&arguments[..], more].concat(), &out)
     };
     run(&[]).success().stdout("").stderr("");
@@ -125,7 +125,7 @@ fn a_batch_goes_on_where_it_ended() {
     fs::write(root.join("left/9.png"), "no picture").unwrap();
     let other = root.join("other");
     let again = |code: i32| {
-        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "24", "-q", "--resume"];
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--resume"];
         batch(&arguments, &other).code(code);
     };
     again(1);
@@ -144,7 +144,7 @@ fn shares_of_a_batch_meet_in_one_folder() {
     }
     let (tree, out) = (root.to_str().unwrap(), root.join("out"));
     for share in ["0/2", "1/2"] {
-        batch(&[tree, "--disparities", "24", "--shard", share], &out).success();
+        batch(&[tree, "--disparities", "64", "--shard", share], &out).success();
     }
     assert_eq!(statuses(&out.join("report-0-of-2.jsonl")), of(&[("1", "done"), ("3", "done")]));
     assert_eq!(statuses(&out.join("report-1-of-2.jsonl")), of(&[("2", "done")]));
