@@ -1,5 +1,7 @@
 //! Rectification of a pair from its own matches.
 
+use glam::DAffine2;
+
 use super::{
     rectified::{RectifiedPair, config, enlarged, larger, warped},
     reduction::geometry_reduction,
@@ -81,14 +83,23 @@ impl TakenPair {
     pub async fn rectify_async(self, backend: &Backend) -> Result<RectifiedPair> {
         let Self { views, small, factor, glance: Glance { map: start, .. } } = self;
         let config = config();
-        let mut points = match_points(backend, [&small[0].luma, &small[1].luma], &config, start).await?;
-        points.retain(|point| small[0].shows(point.left) && small[1].shows(point.right));
+        let mut points = points_between(backend, [&small[0], &small[1]], &config, start).await?;
         let sizes = views.each_ref().map(|view| view.picture.size());
         let fit = |points: &[Correspondence]| {
             let points: Vec<Correspondence> = points.iter().map(|point| enlarged(point, factor)).collect();
             (Uncalibrated::new(&points, sizes, factor), points)
         };
         let (mut found, mut in_views) = fit(&points);
+        if found.is_err() {
+            // Matching turns and scales the second view, which leaves other points than to turn and scale the first one.
+            let exchanged = points_between(backend, [&small[1], &small[0]], &config, start.inverse()).await?;
+            let exchanged = exchanged.iter().map(|point| Correspondence { left: point.right, right: point.left });
+            let both: Vec<Correspondence> = exchanged.chain(points.iter().copied()).collect();
+            let (better, better_in_views) = fit(&both);
+            if better.is_ok() {
+                (points, found, in_views) = (both, better, better_in_views);
+            }
+        }
         for round in 0..ROUNDS {
             if found.as_ref().map_or(true, |found| round == 0 && found.evidence.inliers >= FEW) {
                 break;
@@ -125,6 +136,18 @@ pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<Rectifi
 /// See [`rectify`].
 pub async fn rectify_async(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
     TakenPair::new_async(backend, views).await?.rectify_async(backend).await
+}
+
+/// Matched points of two views, the second one turned and scaled like the first, from `start` on.
+async fn points_between(
+    backend: &Backend,
+    views: [&Seen; 2],
+    config: &WideBaselineConfig,
+    start: DAffine2,
+) -> Result<Vec<Correspondence>> {
+    let mut points = match_points(backend, views.map(|view| &view.luma), config, start).await?;
+    points.retain(|point| views[0].shows(point.left) && views[1].shows(point.right));
+    Ok(points)
 }
 
 /// Points found along the rows of a first rectification by `points`: where views are alike, many more points match.

@@ -45,8 +45,8 @@ use crate::{error::Result, image::Size};
 
 /// Largest ratio of areas around the matches that were one.
 const LARGEST_AREA: f64 = 16.0;
-/// Largest mean of the inliers' row errors after the rectification, in pixels of the detection: good pairs have up to 0.45, a plane seen
-/// obliquely 0.7.
+/// Largest mean of the inliers' row errors after the rectification, in pixels of the detection in the view that is enlarged most: good pairs
+/// have up to 0.45, a plane seen obliquely 0.7.
 const LARGEST_ERROR: f64 = 0.6;
 /// Every so many points one is left out of the fit, to measure the residual.
 const LEFT_OUT: usize = 5;
@@ -169,7 +169,7 @@ impl Uncalibrated {
             return Err(Refusal::Distorted { area: distortion.area });
         }
         let fit = row_errors(&maps, inliers, &frame);
-        if fit.mean > LARGEST_ERROR * frame.pixels_per_detected() {
+        if fit.mean > LARGEST_ERROR * frame.pixels_per_detected() * shape::enlargement(&maps, inliers, &frame) {
             return Err(evidence.without_rows().map_or(Refusal::Rows(fit.mean), Refusal::Relation));
         }
         let layout = match model {

@@ -61,6 +61,17 @@ pub(super) fn area(map: &DMat3, place: DVec2) -> f64 {
     by_x.perp_dot(by_y)
 }
 
+/// How much larger than in the view that it enlarges most, `maps` from units to pixels of the rectified plane show what is around the
+/// points, in the mean; at least 1. Errors of a match in that view are enlarged by as much.
+pub(super) fn enlargement(maps: &[DMat3; 2], points: &[Correspondence], frame: &Frame) -> f64 {
+    let pixels = frame.map_to_pixels(0).x_axis.x;
+    let of = |view: usize| {
+        let places = points.iter().map(|point| [point.left, point.right][view]);
+        places.map(|place| area(&maps[view], place).abs().sqrt() / pixels).sum::<f64>() / points.len().max(1) as f64
+    };
+    of(0).max(of(1)).max(1.0)
+}
+
 /// Places all over a view, in units, from corner to corner.
 pub(super) fn grid(half: DVec2) -> impl Iterator<Item = DVec2> {
     let step = |i: u32| 2.0 * f64::from(i) / f64::from(GRID - 1) - 1.0;
@@ -81,6 +92,17 @@ pub(super) fn edge(frame: &Frame, view: usize) -> impl Iterator<Item = DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_view_that_is_enlarged_most_counts() {
+        let frame = Frame::new([(800, 600).into(); 2], 2);
+        let point = Correspondence { left: DVec2::new(0.5, -0.25), right: DVec2::ZERO };
+        let of = |scales: [f64; 2]| {
+            let maps = scales.map(|scale| DMat3::from_scale(DVec2::splat(400.0 * scale)));
+            enlargement(&maps, &[point; 3], &frame)
+        };
+        assert_eq!([[1.0, 1.0], [0.5, 0.8], [1.0, 2.5], [3.0, 1.5]].map(of), [1.0, 1.0, 2.5, 3.0]);
+    }
 
     #[test]
     fn distortion_by_hand() {

@@ -172,6 +172,16 @@ fn columns_that_lean_or_are_stretched_are_set_upright() {
     }
 }
 
+/// A match is as precise in a view of few pixels as in one of many, and its errors are enlarged with the view.
+#[test]
+fn rows_of_a_small_scale_are_judged_by_its_own_pixels() {
+    for zooms in [[1.0, 0.35], [0.35, 1.0]] {
+        let points = Rig { zooms, depths: [1.0, 4.0], ..SIDE_BY_SIDE }.points(400, 0.55);
+        let found = Uncalibrated::new(&points, [SIZE; 2], 1);
+        assert!(found.is_ok(), "{zooms:?}: {}", found.unwrap_err());
+    }
+}
+
 #[test]
 fn columns_of_a_cropped_view_stay() {
     let points = SIDE_BY_SIDE.matched();
