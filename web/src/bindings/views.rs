@@ -54,7 +54,7 @@ pub struct Loaded {
 
 #[wasm_bindgen]
 impl Loaded {
-    /// Decodes a file with one view, or a multi-picture file (MPO) with both. `halves` tells where both views lie in a picture:
+    /// Decodes a file with one view, or one that tells of both: an MPO, or a JPS with a descriptor. `halves` tells where both views lie in a picture:
     /// `left-right`, `right-left`, `left-on-top` or `right-on-top`; empty if it has one. `name` is named in errors.
     pub fn one(bytes: &[u8], name: &str, halves: &str) -> Result<Self, JsValue> {
         let path = Path::new(name);
@@ -69,8 +69,11 @@ impl Loaded {
         let unseen = Unseen::default();
         let both = match halves {
             Some(halves) => load::decode_halves(bytes, path, halves, &unseen).map(Some),
-            // Phones write such lists with a picture and its brightness, which are no pair.
-            None => load::decode_both(bytes, path, &unseen).or(Ok(None)),
+            None => match load::decode_both(bytes, path, &unseen) {
+                // Phones write such lists with a picture and its brightness, which are no pair.
+                Err(_) if !is_of_pairs(path) => Ok(None),
+                both => both,
+            },
         };
         match both.map_err(thrown)? {
             Some(pair) => Ok(pair.into()),
@@ -108,4 +111,10 @@ impl From<LoadedPair> for Loaded {
     fn from(LoadedPair { left, right, stretch, warnings }: LoadedPair) -> Self {
         Self { views: vec![left, right], stretch, warnings }
     }
+}
+
+/// Whether a file has both views by its name.
+fn is_of_pairs(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| ["mpo", "jps"].iter().any(|of_pairs| extension.eq_ignore_ascii_case(of_pairs)))
 }
