@@ -18,7 +18,7 @@ export function showFacts(result) {
   const [rows, ...agreeing] = result.rectification.split(/ (?=\()/);
   const help = made("details", "help-text", made("summary", "", "what is this?"), made("p", "", TRUST), made("p", "", CONFIDENCE));
   const list = [
-    ["Trust", `${result.trust.toFixed(2)} of 1`, help, result.notTrusted ? "large bad" : "large"],
+    ["Trust", `${result.trust.toFixed(2)} of 1`, "", result.notTrusted ? "large bad" : "large"],
     ["Time", seconds(result.milliseconds), steps],
     ["Range", `${result.first} to ${result.last} px`, SOURCES[result.source](result)],
     ["Rows", RECTIFIED[result.rectified] ?? rows.replace("rows correspond as they are, 95 %", "agree"), agreeing.join(" ").replace(/[()]/g, "")],
@@ -28,8 +28,8 @@ export function showFacts(result) {
   at("facts").replaceChildren(
     ...list.flatMap(([name, value, detail, className = ""]) => {
       const fact = made("dd", className, value);
-      if (detail) fact.append(detail instanceof Node ? detail : made("small", "", detail));
-      return [made("dt", "", name), fact];
+      if (detail) fact.append(made("small", "", detail));
+      return [made("dt", "", name), fact, ...(name === "Trust" ? [made("dd", "", help)] : [])];
     }),
   );
   showDoubts(result);
