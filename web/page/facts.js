@@ -4,7 +4,7 @@ import { at, made } from "./dom.js";
 import { STEPS } from "./messages.js";
 
 const TRUST = `How far the map can be believed, 0 to 1, told from the map alone. On 242 maps with known depth, those with more than 30 % wrong
-  pixels stayed below 0.5 and those with less than 10 % wrong at 0.5 or above, but for two; between these, trust promises nothing.`;
+  pixels stayed below 0.5 and those with less than 10 % wrong at 0.5 or above, but for one; between these, trust promises nothing.`;
 const CONFIDENCE = `Each pixel has a confidence too: 255 is sure, from 16 on it was measured, 1 to 15 was filled in from its surroundings, 0 is
   doubtful.`;
 const SOURCES = { asked: () => "as asked", found: ({ matches }) => `found from ${matches} matches`, assumed: () => "assumed: too few matches" };
