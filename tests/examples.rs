@@ -53,6 +53,35 @@ fn embed_draws_the_picture_and_its_disparities() {
     assert!(2 * colors > width * height, "only {colors} pixels differ from the first");
 }
 
+/// The first camera sees the picture as it was where there are points; the turned ones see the points elsewhere.
+#[test]
+fn cloud_draws_the_points_from_several_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frame.png");
+    run("cloud", &[path.to_str().unwrap()]);
+    let frame = load::load(&path).unwrap();
+    let left = load::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("data/curved/left.png")).unwrap();
+    let Size { width, height } = left.size();
+    assert_eq!(frame.size(), (3 * width, height));
+    let (mut seen, mut same, mut moved) = (0, 0, [0, 0]);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let near = |at: u32| {
+            let pair = frame.rgb(at, y).into_iter().zip(left.rgb(x, y));
+            pair.fold(0, |most, (drawn, taken)| most.max(drawn.abs_diff(taken))) <= 2
+        };
+        if frame.rgb(x, y) != [0; 3] {
+            seen += 1;
+            same += u32::from(near(x));
+            for (number, moved) in moved.iter_mut().enumerate() {
+                *moved += u32::from(!near((number as u32 + 1) * width + x));
+            }
+        }
+    }
+    assert!(10 * seen > 7 * width * height, "{seen} pixels are drawn");
+    assert!(1000 * same > 995 * seen, "{same} of {seen} are the picture's");
+    assert!(moved.iter().all(|&moved| 2 * moved > seen), "{moved:?} of {seen}");
+}
+
 /// Range and brightness from the features of some frames serve the later frames, whose coverage is larger.
 #[test]
 fn stream_follows_the_cameras() {

@@ -7,6 +7,8 @@
 //! read back.
 #![expect(clippy::print_stderr, reason = "it prints errors")]
 
+mod renderer;
+
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
@@ -18,135 +20,62 @@ use hsad::{
     disparity::DisparityRange,
     gpu::Gpu,
     image::Size,
-    io::{Picture, atomic, load, png},
+    io::{atomic, load, png},
     luma::Source,
     wgpu::{self, TextureFormat, TextureUsages},
 };
+use renderer::{AnyError, Renderer};
 
-type AnyError = Box<dyn std::error::Error>;
-
-/// The application's device.
-struct Renderer {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-}
-
-impl Renderer {
-    async fn new() -> Result<Self, AnyError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("renderer"),
-            // hsad needs these limits and no features. Larger pictures need larger limits, here for the frame's width.
-            required_limits: wgpu::Limits {
-                max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
-                ..wgpu::Limits::downlevel_defaults()
-            },
-            ..Default::default()
-        };
-        let (device, queue) = adapter.request_device(&descriptor).await?;
-        Ok(Self { device, queue })
-    }
-
-    fn texture(&self, Size { width, height }: Size, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
-    }
-
-    /// Uploads a picture to an sRGB texture, as renderers do.
-    fn upload(&self, picture: &Picture) -> wgpu::Texture {
-        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-        let texture = self.texture(picture.size(), TextureFormat::Rgba8UnormSrgb, usage);
-        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * picture.width()), ..Default::default() };
-        self.queue.write_texture(texture.as_image_copy(), picture.rgba(), layout, texture.size());
-        texture
-    }
-
-    /// Pipeline and bind group that draw two textures side by side.
-    fn drawing(
-        &self,
-        textures: [&wgpu::TextureView; 2],
-        format: TextureFormat,
-    ) -> (wgpu::RenderPipeline, wgpu::BindGroup) {
-        let module = self.device.create_shader_module(wgpu::include_wgsl!("draw.wgsl"));
-        let entry = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                // Not every device can filter 32-bit floats.
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let entries = [entry(0), entry(1)];
-        let layout =
-            self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
-        let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("draw"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("corner"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("color"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(format.into())],
-            }),
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            multiview_mask: None,
-            cache: None,
-        });
-        let resource = wgpu::BindingResource::TextureView;
-        let entries = [0, 1].map(|i| wgpu::BindGroupEntry { binding: i, resource: resource(textures[i as usize]) });
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
-        (pipeline, self.device.create_bind_group(&descriptor))
-    }
-
-    /// Reads the colours of a frame, after all submitted work is done.
-    fn read_back(&self, frame: &wgpu::Texture) -> Result<hsad::image::Plane<[u8; 3]>, AnyError> {
-        let (width, height) = (frame.width(), frame.height());
-        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(row) * u64::from(height),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(row), ..Default::default() };
-        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(frame.as_image_copy(), to, frame.size());
-        self.queue.submit([encoder.finish()]);
-        // An error of the mapping is reported by `get_mapped_range` below.
-        buffer.map_async(wgpu::MapMode::Read, .., |_| ());
-        self.device.poll(wgpu::PollType::wait_indefinitely())?;
-        let bytes = buffer.get_mapped_range(..)?;
-        Ok(hsad::image::Plane::from_fn((width, height), |x, y| {
-            let at = (y * row + 4 * x) as usize;
-            [bytes[at], bytes[at + 1], bytes[at + 2]]
-        }))
-    }
+/// Pipeline and bind group that draw two textures side by side.
+fn drawing(
+    device: &wgpu::Device,
+    textures: [&wgpu::TextureView; 2],
+    format: TextureFormat,
+) -> (wgpu::RenderPipeline, wgpu::BindGroup) {
+    let module = device.create_shader_module(wgpu::include_wgsl!("draw.wgsl"));
+    let entry = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            // Not every device can filter 32-bit floats.
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    };
+    let entries = [entry(0), entry(1)];
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("draw"),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("corner"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("color"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(format.into())],
+        }),
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        multiview_mask: None,
+        cache: None,
+    });
+    let resource = wgpu::BindingResource::TextureView;
+    let entries = [0, 1].map(|i| wgpu::BindGroupEntry { binding: i, resource: resource(textures[i as usize]) });
+    let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
+    (pipeline, device.create_bind_group(&descriptor))
 }
 
 fn main() -> ExitCode {
@@ -192,7 +121,7 @@ fn run() -> Result<(), AnyError> {
     let matcher = Matcher::new(&gpu, size, &config)?;
     let inputs = matcher.inputs(Source::Texture(&left), Source::Texture(&right))?;
     let outputs = matcher.outputs(Destination::Texture(&disparities), None)?;
-    let (pipeline, textures) = renderer.drawing([&left, &disparities], frame.format());
+    let (pipeline, textures) = drawing(device, [&left, &disparities], frame.format());
 
     // Once per frame.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
