@@ -81,7 +81,7 @@ impl Kernel {
             entries: &entries,
         });
         let bytes = bound.iter().map(|bound| bound.bytes()).sum();
-        Dispatch { kernel: self.clone(), bind_group, groups, bytes }
+        Dispatch { kernel: self.clone(), bind_group, groups, bytes, operations: None }
     }
 
     fn name(&self) -> &'static str {
@@ -96,6 +96,7 @@ pub struct Dispatch {
     bind_group: wgpu::BindGroup,
     groups: Groups,
     bytes: u64,
+    operations: Option<u64>,
 }
 
 /// A dispatch in figures.
@@ -108,6 +109,9 @@ pub struct DispatchSize {
     /// Bytes that are read and written at least, if nothing stays in caches: each bound resource once, but of a volume of path costs
     /// what the dispatch follows, and matching costs once per path.
     pub bytes: u64,
+    /// Additions, minima, comparisons and bit operations of 32 bits that the equations ask for, at least, where there are some per pixel
+    /// and disparity; counted in the equations, not in the code that a compiler makes.
+    pub operations: Option<u64>,
 }
 
 /// The number of workgroups of a dispatch, along x, y and z.
@@ -129,6 +133,11 @@ impl Dispatch {
         Self { bytes, ..self }
     }
 
+    /// States the operations that the equations ask for.
+    pub(crate) fn counting(self, operations: u64) -> Self {
+        Self { operations: Some(operations), ..self }
+    }
+
     /// The dispatch in figures.
     pub(crate) fn size(&self) -> DispatchSize {
         let workgroup = u64::from(self.kernel.pipeline.stage.workgroup());
@@ -136,7 +145,7 @@ impl Dispatch {
             Groups::Known(groups) => Some(groups.iter().map(|&side| u64::from(side)).product::<u64>() * workgroup),
             Groups::Indirect(_) => None,
         };
-        DispatchSize { kernel: self.name(), threads, bytes: self.bytes }
+        DispatchSize { kernel: self.name(), threads, bytes: self.bytes, operations: self.operations }
     }
 
     /// Records the dispatch, in a compute pass of its own.

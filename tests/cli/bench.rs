@@ -26,6 +26,8 @@ fn a_table_and_json_that_a_later_run_is_compared_with() {
     // bytes per pixel.
     let (threads, bytes) = (&named("path").unwrap()["threads"], &named("path").unwrap()["bytes"]);
     assert_eq!((threads, bytes), (&48.into(), &(2 * 64 * 48 * (2 * 32 + 8)).into()));
+    assert_eq!(named("path").unwrap()["operations"], 2 * 64 * 48 * 32 * 7);
+    assert!(named("path").unwrap()["of_integers"].as_f64().is_some_and(|share| share > 0.0));
     assert!(named("path").unwrap()["of_copies"].as_f64().is_some_and(|share| share > 0.0));
     assert!(
         report["copied_bytes_per_s"].as_f64().unwrap() > 1e8

@@ -29,14 +29,20 @@ struct Sum {
     /// Threads of the dispatch with the fewest.
     threads: Option<u64>,
     bytes: u64,
+    operations: Option<u64>,
     /// Milliseconds, where they are known.
     time: Option<f64>,
 }
 
 impl Sum {
     /// Share of the device's rate of memory, 0 to 1 and more where caches hold what is read.
-    fn share_of(&self, rates: &Rates) -> Option<f64> {
+    fn share_of_copies(&self, rates: &Rates) -> Option<f64> {
         self.time.map(|time| self.bytes as f64 / (time / 1e3) / rates.copied)
+    }
+
+    /// Share of the device's rate of integers, where operations are counted.
+    fn share_of_integers(&self, rates: &Rates) -> Option<f64> {
+        self.time.zip(self.operations).map(|(time, count)| count as f64 / (time / 1e3) / rates.operations)
     }
 }
 
@@ -58,15 +64,16 @@ impl Figures {
     /// The kernels in the order of first execution.
     fn sums(&self) -> Vec<Sum> {
         let mut sums: Vec<Sum> = Vec::new();
-        for (number, &DispatchSize { kernel, threads, bytes }) in self.dispatches.iter().enumerate() {
+        for (number, &DispatchSize { kernel, threads, bytes, operations }) in self.dispatches.iter().enumerate() {
             let time = self.kernels.as_ref().and_then(|kernels| kernels.get(number));
             let time = time.map(|&(_, time)| milliseconds(time));
             match sums.iter_mut().find(|sum| sum.kernel == kernel) {
-                None => sums.push(Sum { kernel, dispatches: 1, threads, bytes, time }),
+                None => sums.push(Sum { kernel, dispatches: 1, threads, bytes, operations, time }),
                 Some(sum) => {
                     sum.dispatches += 1;
                     sum.threads = sum.threads.min(threads);
                     sum.bytes += bytes;
+                    sum.operations = sum.operations.zip(operations).map(|(sum, operations)| sum + operations);
                     sum.time = sum.time.zip(time).map(|(sum, time)| sum + time);
                 }
             }
@@ -96,19 +103,22 @@ impl Figures {
         if all.is_none() {
             text += "  no times of kernels: the device has no timestamps\n";
         }
-        let [kernel, time, share, of_copies] = ["kernel", "ms", "share", "of copies"];
+        let [kernel, time, share, of_copies, of_integers] = ["kernel", "ms", "share", "of copies", "of integers"];
         let [dispatches, threads, bytes] = ["dispatches", "threads", "MB"];
-        text += &format!("  {kernel:<20}{dispatches:>10}{threads:>12}{bytes:>10}{time:>10}{share:>9}{of_copies:>11}\n");
+        text += &format!(
+            "  {kernel:<20}{dispatches:>10}{threads:>12}{bytes:>10}{time:>10}{share:>9}{of_copies:>11}{of_integers:>13}\n"
+        );
         for sum in &sums {
             let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".into());
             let time = or_dash(sum.time.map(|time| format!("{time:.3}")));
             let share = or_dash(sum.time.zip(all).map(|(time, all)| format!("{:.1} %", 100.0 * time / all)));
-            let of_copies = rates.and_then(|rates| sum.share_of(rates));
-            let of_copies = or_dash(of_copies.map(|share| format!("{:.0} %", 100.0 * share)));
+            let percent = |share: Option<f64>| or_dash(share.map(|share| format!("{:.0} %", 100.0 * share)));
+            let of_copies = percent(rates.and_then(|rates| sum.share_of_copies(rates)));
+            let of_integers = percent(rates.and_then(|rates| sum.share_of_integers(rates)));
             let threads = or_dash(sum.threads.map(|threads| threads.to_string()));
             let (kernel, dispatches, bytes) = (sum.kernel, sum.dispatches, sum.bytes as f64 / 1e6);
             text += &format!(
-                "  {kernel:<20}{dispatches:>10}{threads:>12}{bytes:>10.2}{time:>10}{share:>9}{of_copies:>11}\n"
+                "  {kernel:<20}{dispatches:>10}{threads:>12}{bytes:>10.2}{time:>10}{share:>9}{of_copies:>11}{of_integers:>13}\n"
             );
         }
         text
@@ -124,7 +134,9 @@ impl Figures {
                 "threads": sum.threads,
                 "bytes": sum.bytes,
                 "ms": sum.time,
-                "of_copies": rates.and_then(|rates| sum.share_of(rates)),
+                "operations": sum.operations,
+                "of_copies": rates.and_then(|rates| sum.share_of_copies(rates)),
+                "of_integers": rates.and_then(|rates| sum.share_of_integers(rates)),
             })
         };
         json!({

@@ -32,7 +32,8 @@ use super::{
 ///
 /// Matches the scene built into this program, enlarged or repeated to each size such that its disparities are among those that
 /// are searched. Times are of dense matching alone, from two views on the device to a map on the device: no files, no seeding.
-/// 'of copies' compares the bytes that a kernel reads and writes with the rate at which this device copies memory.
+/// 'of copies' compares the bytes that a kernel reads and writes with the rate at which this device copies memory, 'of integers' the
+/// operations that its equations ask for with the rate at which it adds and takes minima.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad bench

@@ -4,14 +4,14 @@ use super::{
     cells::{HALF_GRAIN, Ranges},
     map_buffer::MapBuffer,
     pad::PadParams,
-    selection::{ResultKind, selection_constants},
+    selection::{ResultKind, SELECTION_OPERATIONS, selection_constants},
     tile_block_match,
 };
 use crate::{
     dense::config::{DenseConfig, DenseParameters, View},
     disparity::{DisparityRange, SCALE},
     error::Result,
-    gpu::{Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, Windows, WordTexture, shader_struct},
+    gpu::{Bindable, Binding, Dispatch, Gpu, Kernel, ROW_BITS, ShaderType, Stage, Windows, WordTexture, shader_struct},
     image::Size,
 };
 
@@ -64,6 +64,9 @@ impl Tile {
         if side > LARGEST_HELD && self.height > 1 { (side + 1).saturating_sub(self.height) } else { 0 }
     }
 }
+
+/// Operations per pixel and disparity: an absolute difference (2), running sums of columns and rows (4), and the selection.
+const MATCH_OPERATIONS: u64 = 6 + SELECTION_OPERATIONS;
 
 shader_struct! {
     /// Uniforms of both kernels of block matching.
@@ -188,7 +191,10 @@ impl BlockMatch {
         let groups = [layout.width.div_ceil(4 * quads * across), layout.rows.div_ceil(height * down), 1];
         // The binding needs a texture even without winners of the other view.
         let confirming_words = confirming.map_or(planes, |confirming| confirming.words);
-        self.kernel.dispatch(&params, &[&planes.view, &ranges.buffer, &confirming_words.view, matches.buffer], groups)
+        let bound: [&dyn Bindable; 4] = [&planes.view, &ranges.buffer, &confirming_words.view, matches.buffer];
+        let dispatch = self.kernel.dispatch(&params, &bound, groups);
+        // The device alone knows the ranges of cells.
+        if ranges.columns > 1 { dispatch } else { dispatch.counting(MATCH_OPERATIONS * layout.pixel_disparities()) }
     }
 }
 
@@ -245,6 +251,11 @@ impl Layout {
             tiled_rows: rows.next_multiple_of(tile.height),
             tiled_words: width.div_ceil(4).next_multiple_of(tile.quads),
         })
+    }
+
+    /// Pixels of the band times disparities.
+    fn pixel_disparities(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.rows) * u64::from(self.range.count)
     }
 
     /// Width of the picture, in pixels.

@@ -7,6 +7,10 @@ use crate::{
 };
 
 const WORKGROUP: [u32; 2] = [8, 8];
+/// Operations per disparity: differing bits of two census transforms (2 each), differences of luma and gradient with their limits and
+/// weights (4 each), their sum and its limit (4).
+pub(super) const COST_OPERATIONS: u64 = 16;
+
 /// Pixels of a row per thread on lavapipe, and on other devices: GPUs prefer many threads with few registers.
 pub const PIXELS_SOFTWARE: u32 = 16;
 /// See [`PIXELS_SOFTWARE`].
@@ -110,6 +114,7 @@ impl CostVolume {
             pixel_words: band.words(),
             ..bytemuck::Zeroable::zeroed()
         };
-        self.kernel.dispatch(&params, &[reference, other, volume], groups(band.width, band.rows, self.pixels))
+        let groups = groups(band.width, band.rows, self.pixels);
+        self.kernel.dispatch(&params, &[reference, other, volume], groups).counting(COST_OPERATIONS * band.values())
     }
 }

@@ -1,6 +1,9 @@
 //! The matching cost of each pixel and disparity, with threads across disparities. `shaders/dense/lane_cost.wgsl`.
 
-use super::{cost::pixel_constants, volume_band::VolumeBand};
+use super::{
+    cost::{COST_OPERATIONS, pixel_constants},
+    volume_band::VolumeBand,
+};
 use crate::{
     dense::config::{Cost, View},
     gpu::{Binding, Dispatch, Gpu, Kernel, ShaderType, Stage, shader_struct},
@@ -49,6 +52,6 @@ impl LaneCost {
         let quads = band.words() / 4;
         let params = Params { width: band.width, first_row: band.first_row, min_disparity: band.range.min, quads };
         let groups = [(band.width * quads).div_ceil(WORKGROUP), band.rows, 1];
-        self.0.dispatch(&params, &[reference, other, volume], groups)
+        self.0.dispatch(&params, &[reference, other, volume], groups).counting(COST_OPERATIONS * band.values())
     }
 }

@@ -3,7 +3,7 @@
 use super::{
     lanes::Lanes,
     line_buffers::{LineBuffers, PathVolumes},
-    path::penalty_constants,
+    path::{STEP_OPERATIONS, penalty_constants},
     volume_band::VolumeBand,
 };
 use crate::{
@@ -107,6 +107,7 @@ impl LanePath {
         let most_lines = paths.iter().map(lines).max().unwrap_or(0);
         let groups = [most_lines.div_ceil(self.lanes.per_workgroup()), paths.len() as u32, 1];
         let dispatch = self.kernel.dispatch(&params, &[reference, costs, volumes], groups);
-        dispatch.moving(paths.len() as u64 * band.followed_bytes())
+        let paths = paths.len() as u64;
+        dispatch.moving(paths * band.followed_bytes()).counting(paths * STEP_OPERATIONS * band.values())
     }
 }

@@ -2,7 +2,11 @@
 //! `shaders/dense/lane_select.wgsl`.
 
 use super::{
-    lanes::Lanes, line_buffers::PathVolumes, map_buffer::MapBuffer, select::Selection, selection::selection_constants,
+    lanes::Lanes,
+    line_buffers::PathVolumes,
+    map_buffer::MapBuffer,
+    select::Selection,
+    selection::{SELECTION_OPERATIONS, selection_constants},
     volume_band::VolumeBand,
 };
 use crate::{
@@ -30,6 +34,8 @@ shader_struct! {
 pub struct LaneSelect {
     kernel: Kernel,
     lanes: Lanes,
+    /// Number of paths.
+    paths: u32,
     uniqueness: u32,
 }
 
@@ -50,7 +56,7 @@ impl LaneSelect {
     /// Compiles the kernel.
     pub fn new(gpu: &Gpu, lanes: Lanes, selection: Selection) -> Self {
         let kernel = Kernel::new(gpu, &Self::stage(selection, lanes.threads));
-        Self { kernel, lanes, uniqueness: selection.uniqueness }
+        Self { kernel, lanes, paths: selection.stored, uniqueness: selection.uniqueness }
     }
 
     /// Selects the disparities of `band` by the path costs in `paths`. `matches` must be cleared to 0 before; results are
@@ -75,6 +81,7 @@ impl LaneSelect {
             key_offset: matches.layout.key_offset(),
         };
         let groups = [band.width.div_ceil(self.lanes.per_workgroup()), band.rows, 1];
-        self.kernel.dispatch(&params, &[paths, matches.buffer], groups)
+        let operations = u64::from(self.paths) + SELECTION_OPERATIONS;
+        self.kernel.dispatch(&params, &[paths, matches.buffer], groups).counting(operations * band.values())
     }
 }

@@ -8,6 +8,9 @@ use crate::{
 
 const WORKGROUP: u32 = 16;
 
+/// Operations of a step per disparity: three minima, P1, the matching cost, M, and the minimum that becomes the next M.
+pub(super) const STEP_OPERATIONS: u64 = 7;
+
 shader_struct! {
     /// Uniforms of both path kernels, as `path.wgsl` and `select.wgsl` declare them.
     pub(super) struct Params {
@@ -101,6 +104,7 @@ impl Path {
         goes_on: bool,
     ) -> Dispatch {
         let params = Params::new(band, direction, start, goes_on);
-        self.0.dispatch(&params, &[reference, costs, paths], params.groups()).moving(band.followed_bytes())
+        let dispatch = self.0.dispatch(&params, &[reference, costs, paths], params.groups());
+        dispatch.moving(band.followed_bytes()).counting(STEP_OPERATIONS * band.values())
     }
 }

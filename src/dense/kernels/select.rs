@@ -3,8 +3,8 @@
 use super::{
     line_buffers::{LineBuffers, PathVolumes},
     map_buffer::MapBuffer,
-    path::{Params, line_constants},
-    selection::{ResultKind, selection_constants},
+    path::{Params, STEP_OPERATIONS, line_constants},
+    selection::{ResultKind, SELECTION_OPERATIONS, selection_constants},
     volume_band::VolumeBand,
 };
 use crate::{
@@ -72,6 +72,8 @@ impl Select {
             key_offset: matches.layout.key_offset(),
             ..Params::new(band, direction, 0, false)
         };
-        self.kernel.dispatch(&params, &[reference, costs, paths, matches.buffer], params.groups())
+        let operations = STEP_OPERATIONS + u64::from(self.selection.stored) + SELECTION_OPERATIONS;
+        let dispatch = self.kernel.dispatch(&params, &[reference, costs, paths, matches.buffer], params.groups());
+        dispatch.counting(operations * band.values())
     }
 }

@@ -14,6 +14,9 @@ pub enum ResultKind {
     Winners,
 }
 
+/// Operations per disparity besides sums: the key, the winner's minimum, and three for the rival's.
+pub(super) const SELECTION_OPERATIONS: u64 = 5;
+
 /// The constants of `shaders/shared/selection.wgsl`, for keys with `index_bits` bits for the disparity's index.
 pub(super) fn selection_constants(
     interpolation: Interpolation,

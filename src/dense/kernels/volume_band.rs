@@ -28,6 +28,11 @@ impl VolumeBand {
         u64::from(self.rows) * (2 * 4 * u64::from(self.row_words()) + transforms)
     }
 
+    /// Values of the band: one per pixel and disparity.
+    pub(super) fn values(&self) -> u64 {
+        4 * u64::from(self.rows) * u64::from(self.row_words())
+    }
+
     /// Words per row.
     pub fn row_words(&self) -> u32 {
         self.width * self.words()
