@@ -16,10 +16,12 @@ pub fn fits_desktops_and_phones(browser: &mut Browser) {
         assert_eq!(browser.evaluate(&inside), true, "#{id} is not inside a desktop's window");
     }
     assert_eq!(words(browser, "wheel"), [true, false], "words for a mouse");
+    assert_eq!(browser.evaluate(CAMERAS), "", "a camera on a desktop");
 
     browser.resize(390, 844, true);
     assert_eq!(browser.evaluate(ACROSS), "", "wider than a phone");
     assert_eq!(words(browser, "wheel"), [false, true], "words for fingers");
+    assert_eq!(browser.evaluate(CAMERAS), "environment,environment", "cameras of a phone");
     swipes(browser);
     browser.resize(1440, 900, false);
 }
@@ -28,6 +30,10 @@ pub fn fits_desktops_and_phones(browser: &mut Browser) {
 const ACROSS: &str = "[document.documentElement, ...document.querySelectorAll('body *')]
     .filter((part) => part.scrollWidth > innerWidth || part.getBoundingClientRect().right > innerWidth + 0.5)
     .map(({ id, tagName }) => id || tagName).join()";
+
+/// The cameras that take pictures, of the inputs that are seen.
+const CAMERAS: &str = "[...document.querySelectorAll('.take input')]
+    .filter((input) => input.parentElement.clientWidth > 0).map((input) => input.getAttribute('capture')).join()";
 
 /// Whether the page shows a word of those for a mouse, and 'pinch', one of those for fingers.
 fn words(browser: &mut Browser, word: &str) -> [bool; 2] {

@@ -119,6 +119,7 @@ fn the_page_in_chromium() {
     settings::rectify_by_a_calibration(&mut browser);
     results::are_saved_as_the_command_saves_them(&mut browser);
     results::show_confidences(&mut browser);
+    results::explain_trust(&mut browser);
     results::rectify_what_is_not(&mut browser);
     keyboard::everything_has_a_name_and_an_order(&mut browser);
     keyboard::arrows_read_the_map_and_turn_the_cloud(&mut browser);

@@ -118,6 +118,14 @@ pub fn show_confidences(browser: &mut Browser) {
     browser.evaluate("document.querySelector('input[value=disparity]').click()");
 }
 
+/// What trust means is told next to it.
+pub fn explain_trust(browser: &mut Browser) {
+    browser.evaluate("document.querySelector('.help-text summary').click()");
+    let facts = browser.evaluate("document.getElementById('facts').innerText");
+    let facts = facts.as_str().unwrap();
+    assert!(facts.contains("How far the map can be believed") && facts.contains("255 is sure"), "{facts}");
+}
+
 /// A pair whose rows are off by 40 px is rectified from its matches, and the page says so.
 pub fn rectify_what_is_not(browser: &mut Browser) {
     browser.evaluate("choose('left', [view('left'), view('right', 40)])");
