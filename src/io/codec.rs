@@ -7,18 +7,31 @@ use ::image::{
 };
 
 use super::{
-    MAX_PIXELS, check_pixels,
+    MAX_PIXELS, check_pixels, claims,
     decoded::{Decoded, MAX_BYTES_PER_PIXEL, explain, float_image, most_bytes, unsupported},
-    jpeg, malformed, pfm, read_whole, tiff,
+    jpeg, malformed, pfm, read_if, tiff,
 };
-use crate::error::Result;
+use crate::{
+    error::{Result, shown},
+    memory,
+};
+
+/// Bytes per pixel of a picture that becomes RGBA of 8 bits, besides its samples, and of what codecs keep of it.
+const PREPARED_BYTES_PER_PIXEL: u64 = 8;
 
 /// First bytes of a BigTIFF, little and big endian, which the `image` crate decodes but does not recognise.
 const BIG_TIFF: [&[u8]; 2] = [b"II+\0", b"MM\0+"];
 
-/// Reads the bytes of a picture file, up to the length of the largest uncompressed picture.
+/// Reads the bytes of a picture file, up to the length of the largest uncompressed picture; of any other file the first few.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    read_whole(path, MAX_PIXELS * MAX_BYTES_PER_PIXEL)
+    read_if(path, MAX_PIXELS * MAX_BYTES_PER_PIXEL, is_picture)
+}
+
+/// Whether a file that begins so may be a picture: devices and other files without an end are not read.
+fn is_picture(head: &[u8]) -> bool {
+    let heads: [&[u8]; 9] =
+        [b"\x89PNG", b"\xff\xd8", b"P", b"BM", b"II*\0", b"MM\0*", BIG_TIFF[0], BIG_TIFF[1], b"RIFF"];
+    heads.iter().any(|known| head.starts_with(known))
 }
 
 /// Decodes a picture in its stored sample format, rotated upright. Grey of 32 and more bits becomes RGB of 32-bit
@@ -55,13 +68,18 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
         }
         Some(_) => {}
     }
+    let claimed = claims::size(bytes).map_err(|reason| malformed(path, reason))?;
+    // Colour profiles and texts are expanded before the size is asked for.
     let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_PIXELS * MAX_BYTES_PER_PIXEL);
+    limits.max_alloc = Some(claimed.map_or(MAX_PIXELS * MAX_BYTES_PER_PIXEL, |size| most_bytes(size, bytes)));
     reader.limits(limits);
 
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     check_pixels((width, height), path)?;
+    let needed = decoder.total_bytes() + PREPARED_BYTES_PER_PIXEL * u64::from(width) * u64::from(height);
+    let what = || format!("reading {} ({width}x{height} pixels)", shown(path));
+    memory::check(needed, memory::Left::now(), what, "scale the picture down, or raise the limit")?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(most_bytes((width, height), bytes));
     decoder.set_limits(limits).map_err(damaged)?;

@@ -12,6 +12,8 @@
 pub mod atomic;
 pub mod calibration;
 #[cfg(feature = "pictures")]
+mod claims;
+#[cfg(feature = "pictures")]
 mod codec;
 pub mod color;
 pub mod csv;
@@ -60,10 +62,10 @@ mod unseen;
 pub use calibration::Calibration;
 pub use picture::Picture;
 
-use std::{fs::File, io::Read, path::Path};
+use std::{fs::File, io::Read, path::Path, sync::mpsc, thread, time::Duration};
 
 use crate::{
-    error::{Error, Result},
+    error::{Error, Result, shown},
     image::Size,
     luma::MAX_SIDE,
 };
@@ -73,12 +75,60 @@ use crate::{
 /// The limit is needed because a file of a few kilobytes can claim any number of pixels.
 pub const MAX_PIXELS: u64 = 1 << 27;
 
+/// Bytes by which the kind of a file is told.
+const HEAD: u64 = 16;
+
+/// Time after which the log says that a pipe has no bytes yet.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A wait for the first bytes of a pipe.
+struct Waiting {
+    /// Ends the wait when it is dropped; `None` for a file that is no pipe.
+    _bytes_came: Option<mpsc::Sender<()>>,
+}
+
+impl Waiting {
+    fn new(path: &Path) -> Self {
+        #[cfg(unix)]
+        let is_pipe =
+            std::fs::metadata(path).is_ok_and(|found| std::os::unix::fs::FileTypeExt::is_fifo(&found.file_type()));
+        #[cfg(not(unix))]
+        let is_pipe = false;
+        if !is_pipe {
+            return Self { _bytes_came: None };
+        }
+        let (sender, bytes_came) = mpsc::channel();
+        let path = path.to_path_buf();
+        let tell = move || {
+            if bytes_came.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+                log::warn!("{} is a pipe, and nobody writes to it yet: waiting", shown(&path));
+            }
+        };
+        // Without a thread the wait is silent.
+        let is_told = thread::Builder::new().name("waiting".into()).spawn(tell).is_ok();
+        Self { _bytes_came: is_told.then_some(sender) }
+    }
+}
+
 /// Reads a file of 1 to `limit` bytes.
 fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
+    read_if(path, limit, |_| true)
+}
+
+/// Reads a file of 1 to `limit` bytes, or only its first [`HEAD`] bytes unless these are `wanted`.
+///
+/// A pipe is waited for, which the log says after a while.
+fn read_if(path: &Path, limit: u64, wanted: impl FnOnce(&[u8]) -> bool) -> Result<Vec<u8>> {
     let failed = |source| Error::Io { path: path.into(), source };
+    let waiting = Waiting::new(path);
     let mut bytes = Vec::new();
     // The file length that the system reports is not used: it is meaningless for pipes and devices.
-    File::open(path).map_err(failed)?.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
+    let mut file = File::open(path).map_err(failed)?;
+    file.by_ref().take(HEAD.min(limit + 1)).read_to_end(&mut bytes).map_err(failed)?;
+    drop(waiting);
+    if wanted(&bytes) {
+        file.take((limit + 1).saturating_sub(HEAD)).read_to_end(&mut bytes).map_err(failed)?;
+    }
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty: it was not written, or not copied"));
     }

@@ -19,6 +19,8 @@ mod eval_paper;
 #[path = "../exif/mod.rs"]
 mod exif;
 mod features;
+#[cfg(target_os = "linux")]
+mod inputs;
 #[cfg(unix)]
 mod interruption;
 #[cfg(target_os = "linux")]

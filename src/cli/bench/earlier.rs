@@ -1,6 +1,11 @@
 //! Figures of an earlier run.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{self, Read},
+    path::Path,
+};
 
 use anyhow::anyhow;
 use serde_json::Value;
@@ -11,7 +16,7 @@ pub struct Earlier(BTreeMap<String, f64>);
 impl Earlier {
     /// Reads the JSON of `hsad bench`.
     pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(file).map_err(|error| anyhow!("{}: {error}", hsad::shown(file)))?;
+        let text = read_text(file).map_err(|error| anyhow!("{}: {error}", hsad::shown(file)))?;
         let unknown = || anyhow!("{}: no figures of hsad bench --json", hsad::shown(file));
         let report: Value = serde_json::from_str(&text).map_err(|_| unknown())?;
         let case = |case: &Value| {
@@ -28,4 +33,12 @@ impl Earlier {
     pub fn median(&self, case: &str) -> Option<f64> {
         self.0.get(case).copied()
     }
+}
+/// Longest file of figures that is read, in bytes: devices have no end.
+const MAX_BYTES: u64 = 1 << 26;
+
+fn read_text(file: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    fs::File::open(file)?.take(MAX_BYTES).read_to_string(&mut text)?;
+    Ok(text)
 }
