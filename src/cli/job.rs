@@ -94,11 +94,18 @@ impl Job {
             } else {
                 [self.left, self.right] = pair.pictures.clone();
             }
-            if calibration.is_none() && self.calibration.is_some() {
-                let reason = "no depth and no point cloud: the pair was rectified from its matches, which tell no baseline; the calibration \
-                              is that of a rectified pair, and this one is not";
-                no_depth = Some(reason.to_string());
-            }
+        }
+        if calibration.is_none() && self.calibration.is_some() {
+            let reason = match &rectified {
+                Some(_) => {
+                    "no depth and no point cloud: the pair was rectified from its matches, which tell no baseline; the calibration is that \
+                     of a rectified pair, and this one is not"
+                }
+                None => {
+                    "no depth and no point cloud: the calibration is that of a rectified pair, and the rows of this one say otherwise"
+                }
+            };
+            no_depth = Some(reason.to_string());
         }
         self.calibration = calibration;
         let (backend, total) = (backend.clone(), start.elapsed());

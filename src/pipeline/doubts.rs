@@ -61,7 +61,7 @@ pub fn looks_to_the_side(outcome: &Outcome, calibration: &Calibration) -> Option
     let found = &outcome.seeding.rectification;
     let off = calibration.focal * calibration.focal * found.rows.parameters()[3];
     // The distortion of a lens looks like a turn, too.
-    let is_turned = found.rows.kind() == RowKind::Projective && !found.is_distorted();
+    let is_turned = found.rows.kind() == RowKind::Projective && !found.is_distorted() && outcome.no_depth.is_none();
     (is_turned && off.abs() > ASIDE).then(|| {
         format!(
             "the pictures are not those of a rectified pair: by its rows the right camera looks {:.1} degrees to the side, so that \

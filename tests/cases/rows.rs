@@ -188,6 +188,18 @@ fn a_camera_that_turned_to_the_side_is_named() {
     pair.matched(&[]).never_says(&["on the spot"]);
 }
 
+/// Rows of a right camera that looks to the side are aligned, and the constant of the disparities remains.
+#[test]
+fn a_right_camera_that_looks_to_the_side_tells_no_depth() {
+    let pair = Pair::shipped("planes").with_right(|right| resampled(right, panned(0.02)));
+    let calibration = ["--focal", "378", "--baseline", "0.1", "--doffs", "14"];
+    let run = pair.matched(&calibration).ends(5, &["by its rows the right camera looks 1.", "--no-align", "no depth"]);
+    assert!(!run.has("depth.pfm") && !run.has("cloud.ply"));
+    pair.matched(&[]).ends(0, &[]).never_says(&["to the side"]);
+    let run = Pair::shipped("planes").matched(&calibration).ends(0, &[]).never_says(&["to the side"]);
+    assert!(run.has("depth.pfm"));
+}
+
 #[test]
 fn a_mirror_image_is_named() {
     let pair = Pair::shipped("planes");

@@ -47,7 +47,7 @@ fn a_constant_that_is_not_known_is_told() {
     let pair = Pair::shipped("planes");
     let smaller = pair.clone().with_right(|right| cropped(&scaled(right, 0.95), [0, 0, 8, 3]));
     let told = "the constant of the disparities is unknown";
-    let run = smaller.matched(&["--focal", "378", "--baseline", "0.1"]).ends(0, &[told, "no depth"]);
+    let run = smaller.matched(&["--focal", "378", "--baseline", "0.1"]).ends(5, &[told, "no depth"]);
     assert_eq!(run.report()["rectified"]["disparity_constant_known"], false);
     let warnings = run.report()["warnings"].to_string();
     assert!(warnings.contains(told) && !run.has("depth.pfm") && !run.has("cloud.ply"), "{warnings}");
