@@ -14,6 +14,9 @@ struct Params {
     grey: u32,
     // 1: the texture's format decodes sRGB, so that texels are linear and are encoded again.
     linear: u32,
+    // Column and row of the texture where the picture begins.
+    first_column: u32,
+    first_row: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -22,7 +25,7 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> luma: array<u32>;
 
 fn luma_at(x: u32, y: u32) -> u32 {
-    return luma_of(texel_bytes(textureLoad(picture, vec2u(x, y), 0), params.grey != 0u, params.linear != 0u));
+    return luma_of(texel_bytes(textureLoad(picture, vec2u(params.first_column + x, params.first_row + y), 0), params.grey != 0u, params.linear != 0u));
 }
 
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)

@@ -9,7 +9,8 @@
 struct Params {
     width: u32,
     rows: u32,
-    // Row of the picture of the first row of `pixels`.
+    // Column and row of the texture of the first pixel of `pixels`.
+    first_column: u32,
     first_row: u32,
     // 1: the texture has the red channel only, which stands for all three.
     grey: u32,
@@ -25,7 +26,7 @@ struct Params {
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x < params.width && id.y < params.rows {
-        let texel = textureLoad(picture, vec2u(id.x, params.first_row + id.y), 0);
+        let texel = textureLoad(picture, vec2u(params.first_column + id.x, params.first_row + id.y), 0);
         let bytes = texel_bytes(texel, params.grey != 0u, params.linear != 0u);
         pixels[id.y * params.width + id.x] = bytes.r | (bytes.g << 8u) | (bytes.b << 16u) | 0xff000000u;
     }

@@ -63,11 +63,13 @@ impl ReferenceColours {
         source: &Source<'_>,
         colours: &Colours,
     ) -> Result<Option<Vec<Dispatch>>> {
-        let texture = source.texture().and_then(|(view, format)| Some((view, TexelFormat::new(format)?)));
-        let Some((view, texel)) = texture else { return Ok(None) };
+        let texture =
+            source.texture().ok().and_then(|(view, format, origin)| Some((view, TexelFormat::new(format)?, origin)));
+        let Some((view, texel, [column, row])) = texture else { return Ok(None) };
         let dispatches = guarded(&self.gpu, name, || {
             let kernel = RgbaTexture::new(&self.gpu);
-            let band = |(first_row, size, pixels)| kernel.prepare(size, first_row, texel, view, pixels);
+            let band =
+                |(first_row, size, pixels)| kernel.prepare(size, texel, (view, [column, row + first_row]), pixels);
             Ok(colours.bands().map(band).collect::<Vec<_>>())
         })
         .await

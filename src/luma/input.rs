@@ -22,15 +22,21 @@ pub enum Source<'a> {
     Texture(&'a wgpu::TextureView),
     /// A view in another of the texture's view formats, which differs in sRGB alone. wgpu does not tell a view's format.
     TextureAs(&'a wgpu::TextureView, wgpu::TextureFormat),
+    /// A rectangle of the view's first mip level, of the size of the pair, from this column and row on: both views of a pair in one
+    /// texture, or a part of a frame. The view is one as in [`Self::Texture`], of mip level 0.
+    Part(&'a wgpu::TextureView, [u32; 2]),
 }
 
 impl<'a> Source<'a> {
-    /// The view and its format; `None` for packed luma.
-    pub(crate) fn texture(&self) -> Option<(&'a wgpu::TextureView, wgpu::TextureFormat)> {
+    /// The view, its format, and column and row where the picture begins; the buffer of packed luma where it is none.
+    pub(crate) fn texture(
+        &self,
+    ) -> std::result::Result<(&'a wgpu::TextureView, wgpu::TextureFormat, [u32; 2]), &'a wgpu::Buffer> {
         match *self {
-            Source::Luma(_) => None,
-            Source::Texture(view) => Some((view, view.texture().format())),
-            Source::TextureAs(view, format) => Some((view, format)),
+            Source::Luma(buffer) => Err(buffer),
+            Source::Texture(view) => Ok((view, view.texture().format(), [0; 2])),
+            Source::TextureAs(view, format) => Ok((view, format, [0; 2])),
+            Source::Part(view, first) => Ok((view, view.texture().format(), first)),
         }
     }
 }
@@ -67,24 +73,20 @@ impl Input {
         source: Source<'_>,
         luma: &wgpu::Buffer,
     ) -> Result<Self> {
-        let (view, format) = match source {
-            Source::Luma(from) => {
+        let (view, format, first) = match source.texture() {
+            Ok(texture) => texture,
+            Err(from) => {
                 check_buffer(name, from, packed_bytes(size), wgpu::BufferUsages::COPY_SRC)?;
                 let (from, to, bytes) = (from.clone(), luma.clone(), packed_bytes(size));
                 return Self(Conversion::Copy { from, to, bytes }).tried(gpu, name).await;
             }
-            Source::Texture(view) => (view, view.texture().format()),
-            Source::TextureAs(view, format) => {
-                let own = view.texture().format();
-                if format.remove_srgb_suffix() != own.remove_srgb_suffix() {
-                    let value = format!("a view in the format {format:?}");
-                    let expected =
-                        format!("the texture has {own:?}: a view's format is that, with or without the suffix Srgb");
-                    return Err(Error::Resource { name, value, expected });
-                }
-                (view, format)
-            }
         };
+        let own = view.texture().format();
+        if format.remove_srgb_suffix() != own.remove_srgb_suffix() {
+            let value = format!("a view in the format {format:?}");
+            let expected = format!("the texture has {own:?}: a view's format is that, with or without the suffix Srgb");
+            return Err(Error::Resource { name, value, expected });
+        }
         let Some(texel) = TexelFormat::new(format) else {
             return Err(Error::Resource {
                 name,
@@ -92,8 +94,11 @@ impl Input {
                 expected: format!("it must be one of {:?}", TexelFormat::ALL),
             });
         };
-        check_texture(name, view.texture(), size, wgpu::TextureUsages::TEXTURE_BINDING)?;
-        let dispatch = guarded(gpu, name, || Ok(LumaTexture::new(gpu).prepare(size, texel, view, luma)))
+        match source {
+            Source::Part(..) => check_part(name, view.texture(), first, size)?,
+            _ => check_texture(name, view.texture(), size, wgpu::TextureUsages::TEXTURE_BINDING)?,
+        }
+        let dispatch = guarded(gpu, name, || Ok(LumaTexture::new(gpu).prepare(size, texel, (view, first), luma)))
             .await
             .map_err(|error| refused(name, error))?;
         Self(Conversion::Run(dispatch)).tried(gpu, name).await
@@ -120,4 +125,16 @@ impl Input {
             Conversion::Run(dispatch) => dispatch.record(encoder),
         }
     }
+}
+
+/// Refuses a rectangle that lies outside a texture, and what [`check_texture`] refuses of the whole texture.
+fn check_part(name: &'static str, texture: &wgpu::Texture, first: [u32; 2], size: Size) -> Result<()> {
+    let whole = Size::new(texture.width(), texture.height());
+    check_texture(name, texture, whole, wgpu::TextureUsages::TEXTURE_BINDING)?;
+    let ends = [first[0].checked_add(size.width), first[1].checked_add(size.height)];
+    if ends[0].is_some_and(|end| end <= whole.width) && ends[1].is_some_and(|end| end <= whole.height) {
+        return Ok(());
+    }
+    let value = format!("{size} pixels from column {} and row {} on", first[0], first[1]);
+    Err(Error::Resource { name, value, expected: format!("the texture has {whole} pixels") })
 }

@@ -50,7 +50,7 @@ fn resources_that_will_not_do() {
     );
     input(Source::Luma(&elsewhere.buffer(BYTES, BufferUsages::COPY_SRC)), &["device"]);
     input(Source::Texture(&texture(TextureFormat::Rg8Unorm, SIZE, readable)), &["format Rg8Unorm", "R16Float"]);
-    input(Source::Texture(&texture(TextureFormat::R32Float, SIZE, readable)), &["format R32Float", "Bgra8UnormSrgb"]);
+    input(Source::Texture(&texture(TextureFormat::R32Uint, SIZE, readable)), &["format R32Uint", "Bgra8UnormSrgb"]);
     input(Source::TextureAs(&good, TextureFormat::R16Float), &["format R16Float", "the texture has Rgba8Unorm"]);
     input(Source::Texture(&texture(rgba, Size::new(30, 40), readable)), &["30x40 pixels", "the pair has 40x30"]);
     let written = TextureUsages::STORAGE_BINDING;

@@ -7,4 +7,5 @@ mod errors;
 mod rectifying;
 mod results;
 mod sharing;
+mod sources;
 mod sparse;

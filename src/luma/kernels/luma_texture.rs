@@ -14,6 +14,8 @@ shader_struct! {
         height: u32,
         grey: u32,
         linear: u32,
+        first_column: u32,
+        first_row: u32,
     }
 }
 
@@ -30,9 +32,11 @@ impl TexelFormat {
     /// The accepted formats.
     ///
     /// - 8-bit formats, sRGB or not: luma is computed from the stored bytes, as if they came from a file.
-    /// - 16-bit floats: grey or colour levels as displayed, 0 to 1. Values outside are clamped; NaN gives an unspecified
-    ///   luma. Linear light must be tone-mapped and encoded for display first.
-    pub const ALL: [wgpu::TextureFormat; 7] = [
+    /// - 16-bit levels, `R16Unorm`, which needs the feature `TEXTURE_FORMAT_16BIT_NORM`: rounded to 8 bits.
+    /// - Floats: grey or colour levels as displayed, 0 to 1. Values outside are clamped; NaN gives an unspecified
+    ///   luma. Linear light must be tone-mapped and encoded for display first. Of a 32-bit float that lies halfway between two bytes
+    ///   devices take either.
+    pub const ALL: [wgpu::TextureFormat; 10] = [
         wgpu::TextureFormat::Rgba8Unorm,
         wgpu::TextureFormat::Rgba8UnormSrgb,
         wgpu::TextureFormat::Bgra8Unorm,
@@ -40,7 +44,13 @@ impl TexelFormat {
         wgpu::TextureFormat::R8Unorm,
         wgpu::TextureFormat::R16Float,
         wgpu::TextureFormat::Rgba16Float,
+        wgpu::TextureFormat::R16Unorm,
+        wgpu::TextureFormat::R32Float,
+        wgpu::TextureFormat::Rgba32Float,
     ];
+
+    /// Those of [`Self::ALL`] that every device has, of 8 and 16 bits.
+    pub(crate) const USUAL: [wgpu::TextureFormat; 7] = *Self::ALL.first_chunk().expect("seven of ten");
 
     /// The conversion of `format`; `None` if it is not in [`Self::ALL`].
     pub fn new(format: wgpu::TextureFormat) -> Option<Self> {
@@ -68,15 +78,16 @@ impl LumaTexture {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Converts the texels of `picture`, a view of `size` pixels and this format, to packed `luma`.
+    /// Converts the texels of `picture`, a view of this format, from column and row `first` on, `size` pixels, to packed `luma`.
     pub fn prepare(
         &self,
         Size { width, height }: Size,
         format: TexelFormat,
-        picture: &wgpu::TextureView,
+        (picture, [first_column, first_row]): (&wgpu::TextureView, [u32; 2]),
         luma: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = Params { width, height, grey: format.grey.into(), linear: format.srgb.into() };
+        let (grey, linear) = (format.grey.into(), format.srgb.into());
+        let params = Params { width, height, grey, linear, first_column, first_row };
         let groups = [width.div_ceil(4).div_ceil(WORKGROUP[0]), height.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[picture, luma], groups)
     }

@@ -12,6 +12,7 @@ shader_struct! {
     struct Params {
         width: u32,
         rows: u32,
+        first_column: u32,
         first_row: u32,
         grey: u32,
         linear: u32,
@@ -38,17 +39,17 @@ impl RgbaTexture {
         Self(Kernel::new(gpu, &stage()))
     }
 
-    /// Converts the texels of `picture`, a view of this format, from row `first_row` on to `pixels`, one `u32` per pixel
+    /// Converts the texels of `picture`, a view of this format, from column and row `first` on to `pixels`, one `u32` per pixel
     /// with red in its lowest byte.
     pub fn prepare(
         &self,
         Size { width, height: rows }: Size,
-        first_row: u32,
         format: TexelFormat,
-        picture: &wgpu::TextureView,
+        (picture, [first_column, first_row]): (&wgpu::TextureView, [u32; 2]),
         pixels: &wgpu::Buffer,
     ) -> Dispatch {
-        let params = Params { width, rows, first_row, grey: format.grey.into(), linear: format.srgb.into() };
+        let params =
+            Params { width, rows, first_column, first_row, grey: format.grey.into(), linear: format.srgb.into() };
         let groups = [width.div_ceil(WORKGROUP[0]), rows.div_ceil(WORKGROUP[1]), 1];
         self.0.dispatch(&params, &[picture, pixels], groups)
     }

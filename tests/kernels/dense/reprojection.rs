@@ -129,7 +129,7 @@ fn what_does_not_fit_is_named() {
     };
     let (format, filter) = (wgpu::TextureFormat::Rgba8Unorm, PointFilter::new(&calibration));
     let vertices = PointDraw::Vertices;
-    assert!(points(wgpu::TextureFormat::R32Float, filter, vertices, 9).contains("the reference view"));
+    assert!(points(wgpu::TextureFormat::R32Uint, filter, vertices, 9).contains("the reference view"));
     assert!(points(format, PointFilter { max_depth: 0.0, ..filter }, vertices, 9).contains("the largest depth"));
     assert!(points(format, filter, vertices, 0).contains("capacity is 0"));
     assert!(points(format, filter, PointDraw::Instances(0), 9).contains("the vertices of a point"));

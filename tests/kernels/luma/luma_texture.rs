@@ -63,9 +63,11 @@ fn equals_the_twin_at_every_size() {
     for Size { width, height } in SIZES {
         let channels = [1, 2, 3, 4].map(|seed| picture((width, height), seed));
         let mut dice = Dice::new("halves", width);
-        for format in TexelFormat::ALL {
+        // The others are read in `tests/embedding/sources.rs`.
+        for format in &TexelFormat::ALL[..7] {
             let bytes = |x, y| channels.each_ref().map(|channel| channel.get(x, y));
             let mut half = || dice.below(0x3e00) as u16;
+            let format = *format;
             let texels = match format {
                 TextureFormat::R8Unorm => Texels::Grey(channels[0].clone()),
                 TextureFormat::R16Float => Texels::GreyHalf(Plane::from_fn((width, height), |_, _| half())),
