@@ -32,11 +32,6 @@ impl RowKind {
         }
     }
 
-    /// Whether the right view needs no turn and no scale: its columns stay.
-    pub(crate) const fn keeps_columns(self) -> bool {
-        matches!(self, Self::AsIs | Self::Shift)
-    }
-
     /// The name of the kind.
     pub const fn name(self) -> &'static str {
         match self {

@@ -72,11 +72,6 @@ impl Model {
         }
     }
 
-    /// Whether columns of both views stay.
-    const fn keeps_columns(self) -> bool {
-        matches!(self, Self::Right(kind) if kind.keeps_columns())
-    }
-
     /// Number of parameters that points determine.
     const fn parameters(self) -> usize {
         match self {
@@ -261,10 +256,11 @@ struct Chosen {
 impl Chosen {
     fn new(found: &Fundamental, inliers: &[Correspondence], frame: &Frame) -> Self {
         let (model, maps) = cheapest(found, inliers, frame);
-        let upright = columns(&maps, inliers, frame);
-        let keeps_columns = model.keeps_columns() && upright == DMat3::IDENTITY;
+        let right = columns(&maps, inliers, frame) * maps[1];
+        let stays = [DVec3::new(1.0, 0.0, frame.offset().x), DVec3::Z];
+        let keeps_columns = model != Model::Both && [right.row(0), right.row(2)] == stays;
         let in_pixels = frame.map_to_pixels(0);
-        Self { model, maps: [in_pixels * maps[0], in_pixels * upright * maps[1]], keeps_columns }
+        Self { model, maps: [in_pixels * maps[0], in_pixels * right], keeps_columns }
     }
 }
 

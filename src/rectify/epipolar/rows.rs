@@ -13,6 +13,9 @@ use crate::rectify::{Correspondence, RowKind, cholesky::solved};
 /// the last one is the precision of a match.
 const WIDTHS: [f64; 5] = [30.0, 10.0, 3.0, 1.0, PRECISION];
 
+/// Largest distance by which turn and scale may move columns that stay as they are, in pixels of the detection.
+const STAYS: f64 = 1.0;
+
 /// The parameters `p0` to `p4` of a left row, `y = (p0 x + p1 y + p2) / (1 + p3 x + p4 y)`, in units of a frame.
 pub(super) type Parameters = [f64; 5];
 
@@ -26,11 +29,17 @@ pub(super) fn fundamental([p0, p1, p2, p3, p4]: Parameters) -> Fundamental {
     Fundamental(DMat3::from_cols(DVec3::ZERO, DVec3::new(p3, p4, 1.0), -DVec3::new(p0, p1, p2)))
 }
 
-/// The homography of the right view that brings its rows to the left ones. Columns that need no turn stay those of the picture; others
-/// follow from a turn and a scale alone at the centre of the view, so that the surroundings of the centre are not sheared.
+/// The homography of the right view that brings its rows to the left ones. Columns that turn and scale hardly move stay those of the
+/// picture; others follow from a turn and a scale alone at the centre of the view, so that the surroundings of the centre are not sheared.
 pub(super) fn homography(kind: RowKind, [p0, p1, p2, p3, p4]: Parameters, frame: &Frame) -> DMat3 {
-    if kind.keeps_columns() {
-        return DMat3::from_translation(DVec2::new(frame.offset().x, p2));
+    let half = frame.half(1);
+    let moved = p0.abs() * half.y + (p1 - 1.0).abs() * half.x;
+    if kind <= RowKind::Affine && moved * frame.unit <= STAYS {
+        return DMat3::from_cols(
+            DVec3::new(1.0, p0, 0.0),
+            DVec3::new(0.0, p1, 0.0),
+            DVec3::new(frame.offset().x, p2, 1.0),
+        );
     }
     let (by_x, by_y) = (p0 - p2 * p3, p1 - p2 * p4);
     DMat3::from_cols(DVec3::new(by_y, p0, p3), DVec3::new(-by_x, p1, p4), DVec3::new(0.0, p2, 1.0))

@@ -184,6 +184,13 @@ fn rows_of_a_small_scale_are_judged_by_its_own_pixels() {
 
 #[test]
 fn columns_of_a_cropped_view_stay() {
+    // Rolled by less than moves columns.
+    let rolled = Rig::turned([0.0, 0.0, 0.1]).matched().into_iter();
+    let cropped = rolled.map(|point| Correspondence { right: point.right - DVec2::new(10.0, 0.0), ..point });
+    let found = Uncalibrated::new(&cropped.collect::<Vec<_>>(), [SIZE, Size::new(790, 600)], 1).unwrap();
+    let moved = found.rectified(1, DVec2::new(123.0, 45.0)).unwrap();
+    assert!(found.model == Model::Right(RowKind::Affine) && found.keeps_columns, "{:?}", found.model);
+    assert!((moved.x - 123.0).abs() < 1e-9, "{moved}");
     let points = SIDE_BY_SIDE.matched();
     for (left, top, right, below) in [(0.0, 0.0, 10, 5), (10.0, 5.0, 0, 0), (0.0, 5.0, 10, 0), (10.0, 0.0, 0, 5)] {
         let cut = |point: &Correspondence| Correspondence { right: point.right - DVec2::new(left, top), ..*point };
