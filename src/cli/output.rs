@@ -16,6 +16,7 @@ use serde_json::Value;
 use super::{
     earlier_set::{EarlierSet, FolderLock},
     interruption::{self, remove_empty},
+    terminal,
 };
 
 /// Staged output files. Unless [`Self::finish`] is reached, no file appears, and the folders that were created for
@@ -183,11 +184,30 @@ impl Output {
     }
 }
 
+/// Whether the path of a file stands for standard output: `-`.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Writes a text to a file, whole, or to standard output for `-`.
+///
+/// # Errors
+/// [`Error::Io`] with the path.
+pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    if is_stdout(path) {
+        return terminal::print(text).map_err(|source| Error::Io { path: path.into(), source });
+    }
+    atomic::write_whole(path, |out| out.write_all(text.as_bytes()))
+}
+
 /// Checks, before any work, whether a file can be written.
 ///
 /// # Errors
 /// [`Error::Io`] with its path.
 pub fn check_writable(path: &Path) -> Result<()> {
+    if is_stdout(path) {
+        return Ok(());
+    }
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     // An existing path may be a pipe or /dev/stdout, next to which no temporary file can be made.
     let tried = if path.is_dir() {

@@ -93,6 +93,12 @@ impl Verify {
 
     /// Runs all cases, prints one row per case, and writes the arrays of failed cases.
     pub fn run(self) -> anyhow::Result<()> {
+        if self.device == DeviceChoice::Cpu {
+            bail!(
+                "the CPU twins are no GPU: they are what hsad verify compares a device with, or a driver such as lavapipe; name one of \
+                 those that hsad devices lists"
+            );
+        }
         let cases = self.cases()?;
         // A folder that stays empty is removed again when `folder` is dropped.
         let folder = Output::open(&self.output)?;

@@ -95,6 +95,13 @@ fn scores_a_folder_of_scenes_in_every_form() {
     let told = contains("Non-occluded pixels").and(contains("All pixels")).and(contains("\n  mean of 2 "));
     command.assert().success().stdout(told.and(contains("bad-0.5")).and(contains("density")));
 
+    // Standard output has the table alone.
+    let mut command = eval(&[&path("scenes")]);
+    let printed = command.args(["--csv", "-"]).assert().success().stderr("").get_output().stdout.clone();
+    let (printed, written) = (String::from_utf8(printed).unwrap(), fs::read_to_string(&csv).unwrap());
+    assert_eq!(printed.lines().next(), written.lines().next());
+    assert_eq!(printed.lines().count(), 5, "{printed}");
+
     assert_eq!(column(&csv, "scene"), ["aa", "aa", "b", "b"]);
     assert_eq!(column(&csv, "region"), ["non-occluded", "all", "non-occluded", "all"]);
     assert_eq!(column(&csv, "pixels"), ["2880", "3072", "2880", "3072"]);

@@ -40,7 +40,11 @@ fn what_cannot_be_verified_is_told() {
     hsad().args(["verify", "--only", "nonsense"]).assert().code(2).stderr(contains("there are luma"));
     hsad().args(["verify", "--size", "17"]).assert().code(2).stderr(contains("as in 311x239"));
     hsad().args(["verify", "--size", "5000x2"]).assert().code(2).stderr(contains("1 to 4096 px"));
-    hsad().args(["verify", "--device", "cpu"]).assert().code(1).stderr(contains("the CPU twins are no GPU"));
+    hsad()
+        .args(["verify", "--device", "cpu"])
+        .assert()
+        .code(1)
+        .stderr(contains("the CPU twins are no GPU: they are what hsad verify compares a device with"));
 }
 
 /// `hsad verify` needs a device, so the message does not offer the CPU.

@@ -4,10 +4,7 @@ mod supplied_matches;
 mod table;
 mod views;
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use hsad::{
@@ -27,7 +24,7 @@ use crate::cli::{
         scenes,
     },
     options::{FeatureOptions, RunOptions, with_default},
-    output::{Output, check_writable},
+    output::{Output, check_writable, is_stdout, write_text},
     report,
     terminal::{self, Progress},
     wording::in_options,
@@ -116,7 +113,7 @@ pub struct Features {
     /// Only write the changed second views to this folder, for other programs
     #[arg(long, value_name = "DIR", conflicts_with_all = ["matches", "csv", "json"])]
     write_views: Option<PathBuf>,
-    /// Write the figures to this file as CSV, one line per pair and condition; shares are 0 to 1
+    /// Write the figures to this file (- for standard output, without the tables) as CSV, one line per pair and condition; shares are 0 to 1
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Write the figures, their means and the parameters to this file as JSON
@@ -150,6 +147,8 @@ enum Finder {
 impl Features {
     /// Scores all pairs under all conditions; failures do not stop the others and are returned at the end.
     pub fn run(mut self) -> anyhow::Result<()> {
+        // Nothing else goes to standard output then.
+        self.run.quiet |= [&self.csv, &self.json].into_iter().flatten().any(|file| is_stdout(file));
         self.first.sort_unstable();
         self.first.dedup();
         let mut config = WideBaselineConfig { adapt: !self.plain, ..WideBaselineConfig::default() };
@@ -365,7 +364,7 @@ impl Features {
     /// Writes the files of `--csv` and `--json`.
     fn write_figures(&self, table: &Table, finder: &Finder, failed: &[String]) -> Result<()> {
         if let Some(path) = &self.csv {
-            write_whole(path, |out| out.write_all(table.csv().as_bytes()))?;
+            write_text(path, &table.csv())?;
         }
         if let Some(path) = &self.json {
             let mut report = json!({
@@ -385,7 +384,7 @@ impl Features {
             if let (Some(report), Some(figures)) = (report.as_object_mut(), table.json().as_object_mut()) {
                 report.append(figures);
             }
-            write_whole(path, |out| writeln!(out, "{report:#}"))?;
+            write_text(path, &format!("{report:#}\n"))?;
         }
         Ok(())
     }

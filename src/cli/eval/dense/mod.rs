@@ -7,19 +7,18 @@ mod table;
 
 use std::{
     fmt::{self, Display, Formatter},
-    io::Write,
     path::PathBuf,
 };
 
 use clap::Args;
-use hsad::{Error, dense::View, io::atomic::write_whole};
+use hsad::{Error, dense::View};
 use serde_json::{Value, json};
 
 use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
     eval::{change::Change, report_failures, saved_results, scenes},
     options::{FigureOptions, MatchOptions, RunOptions},
-    output::{Output, check_writable, write_json},
+    output::{Output, check_writable, is_stdout, write_text},
     report, terminal,
     wording::in_options,
 };
@@ -77,7 +76,8 @@ pub struct Dense {
     /// Ignore the results of an earlier run in the output folder
     #[arg(long, requires = "output")]
     fresh: bool,
-    /// Write all figures to FILE as CSV, one line per scene, method and region; shares are 0 to 1
+    /// Write all figures to FILE (- for standard output, without the tables) as CSV, one line per scene, method and region; shares are
+    /// 0 to 1
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Write all figures, their means, the parameters and the failures to FILE as JSON
@@ -118,7 +118,9 @@ struct Results {
 
 impl Dense {
     /// Scores all scenes by all methods; a failure does not stop the others and is returned at the end.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(mut self) -> anyhow::Result<()> {
+        // Nothing else goes to standard output then.
+        self.run.quiet |= [&self.csv, &self.json].into_iter().flatten().any(|file| is_stdout(file));
         let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
         if self.condition.is_some() && config.reference == View::Right {
             return Err(Error::Parameter {
@@ -144,14 +146,14 @@ impl Dense {
         let methods: Vec<&str> =
             backend.iter().map(|_| OURS).chain(self.supplied.iter().map(|maps| &*maps.name)).collect();
         if let Some(file) = &self.csv {
-            write_whole(file, |out| out.write_all(record::csv(&results.records).as_bytes()))?;
+            write_text(file, &record::csv(&results.records))?;
         }
         if let Some(file) = &self.json {
             let mut report = results.report(&methods);
             report["condition"] = self.condition.as_ref().map(|change| &*change.name).into();
             report["device"] = backend.as_ref().map(report::device).into();
             report["parameters"] = backend.as_ref().map(|_| report::parameters(&config, strongest)).into();
-            write_whole(file, |out| write_json(out, &report))?;
+            write_text(file, &format!("{report:#}\n"))?;
         }
         if !self.run.quiet {
             self.print_results(&results, &methods)?;
