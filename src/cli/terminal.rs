@@ -21,7 +21,7 @@ pub fn error(error: &anyhow::Error) {
 
 /// Why work failed, in words of the command line.
 pub fn described(error: &anyhow::Error) -> String {
-    error.downcast_ref().map_or_else(|| error.to_string(), in_options)
+    error.downcast_ref().map_or_else(|| format!("{error:#}"), in_options)
 }
 
 /// Prints one line about a doubt that the result itself does not show.

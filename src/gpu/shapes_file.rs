@@ -12,8 +12,11 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    io::atomic::write_whole,
+    io::{atomic::write_whole, read_whole},
 };
+
+/// Longest file that is read, in bytes.
+const MOST: u64 = 1 << 12;
 
 /// The file in which the shapes for an adapter are kept between runs of a program: what `hsad tune` measures.
 ///
@@ -53,9 +56,10 @@ impl ShapesFile {
     /// # Errors
     /// [`Error::Io`] for a file that exists and cannot be read.
     pub fn read(&self) -> Result<Option<Shapes>> {
-        let bytes = match fs::read(&self.path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            read => read.map_err(|error| self.failed(error))?,
+        let bytes = match read_whole(&self.path, MOST) {
+            Err(Error::Io { source, .. }) if source.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(Error::Format { .. }) => return Ok(None),
+            read => read?,
         };
         let text = String::from_utf8_lossy(&bytes);
         let kept = text.strip_prefix(&self.key).and_then(|text| text.strip_prefix('\n'));

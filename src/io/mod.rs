@@ -110,8 +110,11 @@ impl Waiting {
     }
 }
 
-/// Reads a file of 1 to `limit` bytes.
-fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
+/// Reads a file of 1 to `limit` bytes. A pipe is waited for, which the log says after a while.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Format`] for an empty file and a longer one.
+pub fn read_whole(path: &Path, limit: u64) -> Result<Vec<u8>> {
     read_if(path, limit, |_| true)
 }
 

@@ -119,6 +119,32 @@ fn a_batch_goes_on_where_it_ended() {
     let finished = fs::read(&journal).unwrap();
     run(&["--resume"]).success();
     assert_eq!(fs::read(&journal).unwrap(), finished);
+    // What was removed since is made again, whole or in part.
+    fs::remove_dir_all(out.join("9")).unwrap();
+    fs::remove_file(out.join("10/confidence.png")).unwrap();
+    run(&["--resume"]).success();
+    assert!(out.join("9/disparity.pfm").exists() && out.join("10/confidence.png").exists());
+
+    // The same name for other pictures.
+    let list = root.join("others.csv");
+    fs::write(&list, "name,left,right\n9,left/10.png,right/10.png\n").unwrap();
+    let before = fs::read(out.join("9/disparity.pfm")).unwrap();
+    batch(&[list.to_str().unwrap(), "--disparities", "64", "-q", "--resume"], &out)
+        .code(1)
+        .stderr(contains("'9' of this folder are of other pictures"));
+    // Results of `hsad match` of other pictures, which no journal has.
+    let [left, right] = ["left", "right"].map(|side| root.join(side).join("11.png"));
+    let foreign = root.join("foreign");
+    hsad()
+        .arg("match")
+        .args([&left, &right])
+        .args(["-q", "--disparities", "64", "-o"])
+        .arg(foreign.join("9"))
+        .assert()
+        .success();
+    batch(&["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--resume"], &foreign)
+        .success();
+    assert_eq!(fs::read(foreign.join("9/disparity.pfm")).unwrap(), before);
 
     // What failed is tried again.
     fs::rename(root.join("left/9.png"), root.join("9.png")).unwrap();

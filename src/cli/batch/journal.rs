@@ -2,18 +2,29 @@
 
 use std::{
     collections::HashMap,
-    fs::{self, File, OpenOptions},
+    fs::{File, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use hsad::{
+    Error,
+    io::{
+        atomic::{try_lock, write_whole},
+        read_whole,
+    },
+};
 use serde_json::{Value, json};
 
-use super::record::Record;
+use super::{pair::Pair, record::Record};
 
 /// The file that tells later runs how the pairs of a folder are matched.
 const BATCH: &str = "batch.json";
+
+/// Longest journal, and longest description of options, that are read, in bytes.
+const MOST: u64 = 1 << 32;
+const MOST_OPTIONS: u64 = 1 << 20;
 
 /// The journal of this run, or of this shard.
 pub struct Journal {
@@ -27,31 +38,50 @@ pub struct Earlier(HashMap<String, Record>);
 
 impl Earlier {
     /// The record of a pair, unless its work failed: it is tried again.
-    pub fn finished(&self, name: &str) -> Option<&Record> {
-        self.0.get(name).filter(|record| !record.has_failed())
+    ///
+    /// # Errors
+    /// A record of other pictures by the same name.
+    pub fn finished(&self, pair: &Pair) -> Result<Option<&Record>> {
+        match self.0.get(&pair.name).filter(|record| !record.has_failed()) {
+            Some(record) if !record.is_of(pair) => bail!(
+                "the results '{}' of this folder are of other pictures than {}: name another folder (-o)",
+                pair.name,
+                hsad::shown(&pair.left)
+            ),
+            found => Ok(found),
+        }
     }
 }
 
 impl Journal {
-    /// Opens the journal `name` in `folder`, with what an earlier run has recorded there. `recipe` describes how pairs are matched.
+    /// Opens the journal `name` in `folder`, with what an earlier run has recorded there; no other run has it open. `recipe` describes how
+    /// pairs are matched.
     ///
     /// # Errors
-    /// A folder of another batch, a journal that is there without `resume`, and the errors of files.
+    /// A folder of another batch, a journal that is there without `resume` or that another run writes, and the errors of files.
     pub fn open(folder: &Path, name: &str, recipe: &str, resume: bool) -> Result<(Self, Earlier)> {
-        check_recipe(folder, recipe)?;
         let path = folder.join(name);
-        let mut earlier = Earlier::default();
-        if path.exists() {
-            if !resume {
-                bail!(
-                    "{}: an earlier run has recorded pairs there: go on with it (--resume), or name another folder (-o)",
-                    hsad::shown(&path)
-                );
-            }
-            earlier = read(&path).with_context(|| hsad::shown(&path).to_string())?;
+        let told = |what: &str| anyhow!("{}: {what}", hsad::shown(&path));
+        let is_known = path.exists();
+        if is_known && !path.is_file() {
+            return Err(told("it is no file"));
         }
-        let file =
-            OpenOptions::new().create(true).append(true).open(&path).with_context(|| hsad::shown(&path).to_string())?;
+        check_recipe(folder, recipe)?;
+        let file = OpenOptions::new().create(true).append(true).open(&path);
+        let file = file.map_err(|source| Error::Io { path: path.clone(), source })?;
+        if try_lock(&file).is_err_and(|error| error.kind() == io::ErrorKind::WouldBlock) {
+            return Err(told("another run of hsad is at work there: name another folder (-o), or wait for its end"));
+        }
+        if is_known && !resume {
+            return Err(told(
+                "an earlier run has recorded pairs there: go on with it (--resume), or name another folder (-o)",
+            ));
+        }
+        let earlier = read(&path).map_err(|error| {
+            told(&format!(
+                "{error:#}; remove the line, or the journal: pairs whose files are there are not matched again"
+            ))
+        })?;
         Ok((Self { path, file }, earlier))
     }
 
@@ -62,7 +92,7 @@ impl Journal {
     pub fn add(&mut self, record: &Record) -> hsad::Result<()> {
         let line = format!("{}\n", record.to_json());
         let written = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data());
-        written.map_err(|source| hsad::Error::Io { path: self.path.clone(), source })
+        written.map_err(|source| Error::Io { path: self.path.clone(), source })
     }
 }
 
@@ -70,11 +100,11 @@ impl Journal {
 fn check_recipe(folder: &Path, recipe: &str) -> Result<()> {
     let path = folder.join(BATCH);
     let here = json!({ "version": env!("CARGO_PKG_VERSION"), "options": recipe });
-    let known = match fs::read(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Ok(hsad::io::atomic::write_whole(&path, |out| writeln!(out, "{here:#}"))?);
+    let known = match read_whole(&path, MOST_OPTIONS) {
+        Err(Error::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
+            return Ok(write_whole(&path, |out| writeln!(out, "{here:#}"))?);
         }
-        read => read.with_context(|| hsad::shown(&path).to_string())?,
+        read => read?,
     };
     if serde_json::from_slice::<Value>(&known).ok().as_ref() != Some(&here) {
         bail!(
@@ -87,7 +117,10 @@ fn check_recipe(folder: &Path, recipe: &str) -> Result<()> {
 
 /// Reads the records of a journal, and cuts off a line that was not written whole.
 fn read(path: &Path) -> Result<Earlier> {
-    let text = fs::read(path)?;
+    if path.metadata()?.len() == 0 {
+        return Ok(Earlier::default());
+    }
+    let text = read_whole(path, MOST)?;
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     if whole < text.len() {
         OpenOptions::new().write(true).open(path)?.set_len(whole as u64)?;
@@ -103,18 +136,29 @@ fn read(path: &Path) -> Result<Earlier> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
+    fn pair(name: &str) -> Pair {
+        Pair { name: name.into(), left: "left.png".into(), right: Some("right.png".into()), calibration: None }
+    }
+
     fn record(name: &str, status: &str) -> Record {
-        Record::from_json(json!({ "name": name, "status": status })).expect("a record")
+        let value = json!({ "name": name, "status": status, "left": "left.png", "right": "right.png" });
+        Record::from_json(value).expect("a record")
     }
 
     #[test]
     fn a_journal_goes_on_after_a_line_that_was_not_written_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let open = |recipe: &str, resume| Journal::open(folder.path(), "report.jsonl", recipe, resume);
+        let is_finished =
+            |earlier: &Earlier, name: &str| earlier.finished(&pair(name)).expect("the same pictures").is_some();
         let (mut journal, earlier) = open("quickly", false).expect("a new journal");
-        assert!(earlier.finished("a").is_none());
+        assert!(!is_finished(&earlier, "a"));
+        let second = open("quickly", true).map(|_| ()).expect_err("two at once").to_string();
+        assert!(second.contains("another run"), "{second}");
         journal.add(&record("a", "done")).expect("a file");
         journal.add(&record("b", "failed")).expect("a file");
         journal.file.write_all(b"{\"name\": \"c\", \"sta").expect("a file");
@@ -123,13 +167,14 @@ mod tests {
         assert!(open("quickly", false).is_err(), "an earlier run's");
         assert!(open("slowly", true).is_err(), "other options");
         let (mut journal, earlier) = open("quickly", true).expect("the same batch");
-        let finished = ["a", "b", "c"].map(|name| earlier.finished(name).is_some());
-        assert_eq!(finished, [true, false, false]);
+        assert_eq!(["a", "b", "c"].map(|name| is_finished(&earlier, name)), [true, false, false]);
+        let other = Pair { left: "other.png".into(), ..pair("a") };
+        assert!(earlier.finished(&other).is_err(), "other pictures");
         journal.add(&record("c", "done")).expect("a file");
         drop(journal);
         let text = fs::read_to_string(folder.path().join("report.jsonl")).expect("a file");
         assert_eq!(text.lines().count(), 3, "{text}");
         let (_, earlier) = open("quickly", true).expect("the same batch");
-        assert!(earlier.finished("c").is_some());
+        assert!(is_finished(&earlier, "c"));
     }
 }

@@ -2,14 +2,17 @@
 
 use std::{
     collections::HashMap,
-    fs,
     path::{Path, PathBuf},
 };
 
 use anyhow::{Context, Result, anyhow, bail};
+use hsad::io::read_whole;
 use serde_json::Value;
 
 use super::pair::Pair;
+
+/// Longest list that is read, in bytes.
+const MOST: u64 = 1 << 30;
 
 /// Fields of a pair. `left` is needed; `right` is not where `left` has both views.
 const FIELDS: [&str; 4] = ["name", "left", "right", "calib"];
@@ -28,13 +31,15 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 /// # Errors
 /// The file, or the line, and what is wrong with it.
 pub fn read(path: &Path) -> Result<Vec<Pair>> {
-    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    let rows = if has_extension(path, "csv") { csv_rows(&text) } else { json_rows(&text) };
+    let bytes = read_whole(path, MOST)?;
+    let text = String::from_utf8(bytes).map_err(|_| anyhow!("{}: the list is no text in UTF-8", hsad::shown(path)))?;
+    let text = text.trim_start_matches('\u{feff}');
+    let rows = if has_extension(path, "csv") { csv_rows(text) } else { json_rows(text) };
     let folder = path.parent().unwrap_or(Path::new(""));
     rows.and_then(|rows| {
         rows.into_iter().map(|(line, row)| pair(&row, folder).with_context(|| format!("line {line}"))).collect()
     })
-    .map_err(|error| anyhow!("{}: {error:#}", path.display()))
+    .map_err(|error| anyhow!("{}: {error:#}", hsad::shown(path)))
 }
 
 /// The texts of a line by their fields; an empty text is none.
@@ -58,8 +63,10 @@ fn json_rows(text: &str) -> Result<Vec<(u64, Row)>> {
     let row = |(line, text): (u64, &str)| {
         let value: Value = serde_json::from_str(text).with_context(|| format!("line {line}"))?;
         let object = value.as_object().ok_or_else(|| anyhow!("line {line}: expected an object with left and right"))?;
-        // Other fields are the user's own.
-        let known = object.iter().filter(|(field, value)| FIELDS.contains(&field.as_str()) && !value.is_null());
+        if let Some(unknown) = object.keys().find(|field| !FIELDS.contains(&field.as_str())) {
+            bail!("line {line}: the fields are {}: '{unknown}' is none of them", FIELDS.join(", "));
+        }
+        let known = object.iter().filter(|(_, value)| !value.is_null());
         let text = |(field, value): (&String, &Value)| {
             let text = value.as_str().ok_or_else(|| anyhow!("line {line}: {field} must be a text"))?;
             Ok((field.clone(), text.to_owned()))
@@ -80,6 +87,8 @@ fn pair(row: &Row, folder: &Path) -> Result<Pair> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn listed(name: &str, text: &str) -> Result<Vec<Pair>> {
@@ -110,7 +119,7 @@ mod tests {
         let csv =
             "name,left,right,calib\n,a/l1.png,a/r1.png,\n# a remark\n\"second, and last\", /b/l2.mpo ,,calib.txt\n";
         assert_eq!(listed("pairs.csv", csv).expect("a list"), expected);
-        let json = "{\"left\": \"a/l1.png\", \"right\": \"a/r1.png\", \"taken\": 3}\n\n\
+        let json = "{\"left\": \"a/l1.png\", \"right\": \"a/r1.png\"}\n\n\
                     {\"name\": \"second, and last\", \"left\": \"/b/l2.mpo\", \"right\": null, \"calib\": \"calib.txt\"}\n";
         assert_eq!(listed("pairs.jsonl", json).expect("a list"), expected);
     }
@@ -124,6 +133,7 @@ mod tests {
             ("a.jsonl", "{\"left\": 3}\n", "line 1: left must be a text"),
             ("a.jsonl", "{\"left\": \"a\"}\n[]\n", "line 2: expected an object"),
             ("a.jsonl", "{\"left\": \"a\"\n", "line 1"),
+            ("a.jsonl", "\u{feff}{\"left\": \"a\", \"calb\": \"b\"}\n", "'calb' is none of them"),
         ] {
             let error = listed(name, text).expect_err(told).to_string();
             assert!(error.contains(told), "{told}: {error}");

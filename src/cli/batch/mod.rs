@@ -5,6 +5,7 @@ mod list;
 mod pair;
 mod patterns;
 mod record;
+mod results;
 mod shard;
 mod tally;
 mod tree;
@@ -22,9 +23,10 @@ use std::{
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 
-use super::{options::RunOptions, recipe::Recipe, view_files::HalvesOptions};
+use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
 use journal::Journal;
 use pair::Pair;
+use results::Results;
 use shard::Shard;
 use tally::Tally;
 use work::Work;
@@ -95,7 +97,8 @@ impl Shortfall {
 impl Batch {
     /// Matches all pairs.
     pub fn run(self) -> Result<()> {
-        self.recipe.config()?;
+        let (config, strongest) = self.recipe.config()?;
+        let parameters = parameters(&config, strongest);
         let pairs = self.pairs()?;
         pair::check_names(&pairs)?;
         let shard = |&(number, _): &(usize, Pair)| self.shard.is_none_or(|shard| shard.has(number));
@@ -104,21 +107,22 @@ impl Batch {
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
         let recipe = format!("{:?} {:?}", self.recipe, self.halves);
         let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
-        let (finished, open): (Vec<_>, Vec<_>) =
-            pairs.into_iter().partition(|pair| earlier.finished(&pair.name).is_some());
-        let mut tally = Tally::new(finished.len() + open.len(), self.run.quiet);
-        finished.iter().filter_map(|pair| earlier.finished(&pair.name)).for_each(|record| tally.count_earlier(record));
+        let results = Results { folder: &self.output, resumes: self.resume, parameters };
+        let mut tally = Tally::new(pairs.len(), self.run.quiet);
+        let mut open = Vec::new();
+        for pair in pairs {
+            // Results that were removed since are made again.
+            match earlier.finished(&pair)?.filter(|_| results.report_of(&pair).is_some()) {
+                Some(record) => tally.count_earlier(record),
+                None => open.push(pair),
+            }
+        }
 
         let cached = if open.is_empty() { None } else { Some(self.run.open()?) };
         let start = Instant::now();
         if let Some(cached) = &cached {
-            let work = Work {
-                backend: &cached.backend,
-                recipe: &self.recipe,
-                halves: self.halves.halves(),
-                folder: &self.output,
-                resumes: self.resume,
-            };
+            let halves = self.halves.halves();
+            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, results: &results };
             self.work_on(&open, &work, journal, &mut tally)?;
             cached.save();
         }

@@ -45,6 +45,12 @@ pub struct Times {
     pub written: Duration,
 }
 
+/// Whether a record, or a report of `hsad match`, names the pictures of `pair`.
+pub fn is_of(value: &Value, pair: &Pair) -> bool {
+    let [left, right] = pair.files().map(|path| path.display().to_string());
+    value["left"] == left && value["right"] == right
+}
+
 impl Record {
     fn new(pair: &Pair, status: Status, exit_code: i32, reason: Option<&str>) -> Self {
         let [left, right] = pair.files().map(|path| path.display().to_string());
@@ -121,6 +127,11 @@ impl Record {
 
     pub fn status(&self) -> Status {
         Status::ALL.into_iter().find(|status| self.0["status"] == status.name()).unwrap_or(Status::Failed)
+    }
+
+    /// Whether the record is of the pictures of `pair`.
+    pub fn is_of(&self, pair: &Pair) -> bool {
+        is_of(&self.0, pair)
     }
 
     pub fn has_failed(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Pairs from the folders of the benchmarks and of recordings.
 
 use std::{
+    ffi::OsStr,
     fs,
     path::{Path, PathBuf},
 };
@@ -29,6 +30,9 @@ const FILES: [[&str; 2]; 6] = [
     ["view1.png", "view5.png"],
 ];
 
+/// Extensions of pictures: other files lie among them.
+const PICTURES: [&str; 12] = ["png", "jpg", "jpeg", "ppm", "pgm", "pnm", "pfm", "bmp", "tif", "tiff", "webp", "jps"];
+
 /// Calibration in the folder of a pair.
 const CALIBRATION: &str = "calib.txt";
 
@@ -39,7 +43,7 @@ const EXPECTED: &str = "expected folders image_2 and image_3 (KITTI), cam0/data 
 /// The pairs in `folder`, in the order of their names.
 ///
 /// # Errors
-/// A folder that cannot be read or has no pairs, and a left view without a right one.
+/// A folder that cannot be read or has no pairs, a view without the other one, and a name that is no text.
 pub fn pairs(folder: &Path) -> Result<Vec<Pair>> {
     if let Some([left, right]) = FOLDERS
         .map(|both| both.map(|one| folder.join(one)))
@@ -48,42 +52,56 @@ pub fn pairs(folder: &Path) -> Result<Vec<Pair>> {
     {
         return same_names(&left, &right);
     }
-    let of_scene = |scene: &PathBuf| {
+    let mut pairs = Vec::new();
+    for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
         let both = FILES.map(|both| both.map(|file| scene.join(file)));
-        let [left, right] = both.into_iter().find(|both| both.iter().all(|file| file.is_file()))?;
+        let Some([left, right]) = both.into_iter().find(|both| both.iter().any(|file| file.is_file())) else {
+            continue;
+        };
+        for (file, partner) in [(&left, &right), (&right, &left)] {
+            check_partner(file, partner)?;
+        }
         let calibration = Some(scene.join(CALIBRATION)).filter(|file| file.is_file());
-        let name = scene.file_name()?.to_str()?.to_owned();
-        Some(Pair { name, left, right: Some(right), calibration })
-    };
-    let pairs: Vec<_> = entries(folder)?.iter().filter_map(of_scene).collect();
+        pairs.push(Pair { name: text(scene.file_name(), &scene)?, left, right: Some(right), calibration });
+    }
     if pairs.is_empty() {
-        bail!("{}: no pairs: {EXPECTED}", folder.display());
+        bail!("{}: no pairs: {EXPECTED}", hsad::shown(folder));
     }
     Ok(pairs)
 }
 
+/// Checks that a file that is there has its partner.
+fn check_partner(file: &Path, partner: &Path) -> Result<()> {
+    if file.is_file() && !partner.is_file() {
+        bail!("{} has no partner {}", hsad::shown(file), hsad::shown(partner));
+    }
+    Ok(())
+}
+
+/// A name as text, which lists and reports are.
+fn text(name: Option<&OsStr>, path: &Path) -> Result<String> {
+    let name = name.and_then(OsStr::to_str).map(String::from);
+    name.with_context(|| format!("{}: the name is no text in UTF-8: rename it", hsad::shown(path)))
+}
+
 /// The pairs of files with the same name in two folders.
 fn same_names(left: &Path, right: &Path) -> Result<Vec<Pair>> {
+    let is_picture = |file: &PathBuf| {
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        file.is_file() && PICTURES.contains(&extension.as_str())
+    };
+    let partner = |file: &Path, folder: &Path| folder.join(file.file_name().unwrap_or_default());
+    for file in entries(right)?.iter().filter(|&file| is_picture(file)) {
+        check_partner(file, &partner(file, left))?;
+    }
     let mut pairs = Vec::new();
-    for file in entries(left)?.into_iter().filter(|file| file.is_file()) {
-        let (Some(file_name), Some(stem)) = (file.file_name(), file.file_stem().and_then(|stem| stem.to_str())) else {
-            continue;
-        };
-        // Lists and notes lie among the pictures.
-        if ["csv", "txt", "yaml", "yml", "json"]
-            .iter()
-            .any(|other| file.extension().is_some_and(|found| found == *other))
-        {
-            continue;
-        }
-        let partner = right.join(file_name);
-        if !partner.is_file() {
-            bail!("{} has no partner {}", file.display(), partner.display());
-        }
-        pairs.push(Pair { name: stem.into(), left: file.clone(), right: Some(partner), calibration: None });
+    for file in entries(left)?.into_iter().filter(is_picture) {
+        let right = partner(&file, right);
+        check_partner(&file, &right)?;
+        pairs.push(Pair { name: text(file.file_stem(), &file)?, left: file, right: Some(right), calibration: None });
     }
     if pairs.is_empty() {
-        bail!("{}: no pictures", left.display());
+        bail!("{}: no pictures", hsad::shown(left));
     }
     Ok(pairs)
 }
@@ -92,7 +110,7 @@ fn same_names(left: &Path, right: &Path) -> Result<Vec<Pair>> {
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let read =
         fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>());
-    let mut entries = read.with_context(|| folder.display().to_string())?;
+    let mut entries = read.with_context(|| hsad::shown(folder).to_string())?;
     entries.sort();
     Ok(entries)
 }
@@ -129,6 +147,14 @@ mod tests {
         assert!(names(&["a.png"]).expect_err("no pairs").to_string().contains("no pairs: expected folders image_2"));
         let error = names(&["left/1.png", "left/2.png", "right/1.png"]).expect_err("no partner").to_string();
         assert!(error.contains("2.png has no partner"), "{error}");
+        for views in [
+            ["left/1.png", "right/1.png", "right/2.png"],
+            ["a/im0.png", "a/im1.png", "b/im0.png"],
+            ["a/left.png", "a/right.png", "b/right.png"],
+        ] {
+            assert!(names(&views).expect_err("no partner").to_string().contains("has no partner"), "{views:?}");
+        }
+        assert_eq!(names(&["left/1.png", "right/1.png", "left/.DS_Store", "left/Thumbs.db"]).expect("pairs"), ["1"]);
         assert!(pairs(Path::new("/nonexistent")).is_err());
     }
 }

@@ -1,14 +1,12 @@
 //! The work on a pair: as `hsad match` does it, on a device that is open.
 
-use std::{fs, path::Path, time::Instant};
+use std::{path::Path, time::Instant};
 
 use anyhow::Result;
 use hsad::{Backend, Error, io::load::Halves};
-use serde_json::Value;
 
 use super::{
     super::{
-        earlier_set::REPORT,
         exit_code,
         output::Output,
         recipe::{Prepared, Recipe},
@@ -17,6 +15,7 @@ use super::{
     },
     pair::Pair,
     record::{Record, Times},
+    results::Results,
 };
 
 /// What all pairs share.
@@ -24,10 +23,7 @@ pub struct Work<'a> {
     pub backend: &'a Backend,
     pub recipe: &'a Recipe,
     pub halves: Option<Halves>,
-    /// The output folder.
-    pub folder: &'a Path,
-    /// Whether an earlier run may have written results that it could not record.
-    pub resumes: bool,
+    pub results: &'a Results<'a>,
 }
 
 impl Work<'_> {
@@ -36,8 +32,8 @@ impl Work<'_> {
     /// # Errors
     /// [`hsad::Error::DeviceLost`], after which no pair can be matched; whatever else is wrong with a pair is in its record.
     pub fn on(&self, pair: &Pair) -> hsad::Result<Record> {
-        let folder = self.folder.join(&pair.name);
-        if let Some(report) = self.resumes.then(|| report_in(&folder)).flatten() {
+        let folder = self.results.folder.join(&pair.name);
+        if let Some(report) = self.results.report_of(pair) {
             return Ok(Record::found(pair, &report));
         }
         self.matched(pair, &folder).or_else(|error| match error.downcast::<Error>() {
@@ -67,10 +63,4 @@ impl Work<'_> {
 
 fn failed(pair: &Pair, error: &anyhow::Error) -> Record {
     Record::failed(pair, exit_code(error), &described(error))
-}
-
-/// The report of a set of results in `folder`: files appear all at once, so that all are there.
-fn report_in(folder: &Path) -> Option<Value> {
-    let bytes = fs::read(folder.join(REPORT)).ok()?;
-    serde_json::from_slice(&bytes).ok()
 }

@@ -1,14 +1,13 @@
 //! Figures of an earlier run.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    io::{self, Read},
-    path::Path,
-};
+use std::{collections::BTreeMap, path::Path};
 
 use anyhow::anyhow;
+use hsad::io::read_whole;
 use serde_json::Value;
+
+/// Longest file that is read, in bytes: devices have no end.
+const MOST: u64 = 1 << 26;
 
 /// Medians of an earlier run, by the names of the cases.
 pub struct Earlier(BTreeMap<String, f64>);
@@ -16,9 +15,9 @@ pub struct Earlier(BTreeMap<String, f64>);
 impl Earlier {
     /// Reads the JSON of `hsad bench`.
     pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text = read_text(file).map_err(|error| anyhow!("{}: {error}", hsad::shown(file)))?;
+        let bytes = read_whole(file, MOST)?;
         let unknown = || anyhow!("{}: no figures of hsad bench --json", hsad::shown(file));
-        let report: Value = serde_json::from_str(&text).map_err(|_| unknown())?;
+        let report: Value = serde_json::from_slice(&bytes).map_err(|_| unknown())?;
         let case = |case: &Value| {
             let number = |name: &str| case[name].as_u64();
             let (width, height) = (number("width")?, number("height")?);
@@ -33,12 +32,4 @@ impl Earlier {
     pub fn median(&self, case: &str) -> Option<f64> {
         self.0.get(case).copied()
     }
-}
-/// Longest file of figures that is read, in bytes: devices have no end.
-const MAX_BYTES: u64 = 1 << 26;
-
-fn read_text(file: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    fs::File::open(file)?.take(MAX_BYTES).read_to_string(&mut text)?;
-    Ok(text)
 }
