@@ -25,9 +25,19 @@ fn scene(name: &str) -> std::path::PathBuf {
 }
 
 /// Enlarges a picture: each pixel becomes a block of `factor` x `factor`.
+/// The picture enlarged with linear interpolation: pixels that are only repeated are found and not trusted.
 fn enlarged(picture: &Picture, factor: u32) -> Picture {
     let Size { width, height } = picture.size();
-    Picture::from_fn((factor * width, factor * height), |x, y| picture.get(x / factor, y / factor))
+    Picture::from_fn((factor * width, factor * height), |x, y| {
+        let (left, top) = (x / factor, y / factor);
+        let (right, bottom) = ((left + 1).min(width - 1), (top + 1).min(height - 1));
+        let mixed = |a: u32, b: u32, part: u32| (a * (factor - part) + b * part) / factor;
+        std::array::from_fn(|channel| {
+            let at = |x, y| u32::from(picture.get(x, y)[channel]);
+            let row = |y| mixed(at(left, y), at(right, y), x % factor);
+            mixed(row(top), row(bottom), y % factor) as u8
+        })
+    })
 }
 
 /// The async functions also work natively, with the device polled by the caller.
