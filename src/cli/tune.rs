@@ -13,7 +13,7 @@ use hsad::{
 use serde_json::{Value, json};
 
 use super::{
-    bench::{Case, least_times},
+    bench::{Case, Scene, least_times},
     demo,
     output::{check_writable, write_json},
     terminal::{self, Progress},
@@ -139,9 +139,10 @@ impl Tune {
         print(&described(&gpu))?;
         let progress = Progress::new(self.quiet);
         let mut shapes = gpu.shapes();
+        let scene = demo::views()?;
         let mut reports = Vec::new();
         for part in &PARTS {
-            let measured = self.measure(part, &gpu, shapes, &progress)?;
+            let measured = self.measure(part, (&gpu, shapes), &scene, &progress)?;
             shapes = measured.chosen();
             progress.suspend(|| print(&measured.text()))?;
             reports.push(measured.report());
@@ -170,19 +171,18 @@ impl Tune {
     fn measure(
         &self,
         part: &'static Part,
-        gpu: &Gpu,
-        present: Shapes,
+        (gpu, present): (&Gpu, Shapes),
+        scene: &Scene,
         progress: &Progress,
     ) -> anyhow::Result<Measured> {
         let case = Case::new(part.preset, self.size, self.disparities)?;
-        let scene = demo::views()?;
         let mut times = Vec::new();
         for (name, shapes) in (part.candidates)(present) {
             if takes_minutes(gpu, &shapes) {
                 continue;
             }
             progress.begin(format!("{}: {name}", part.name));
-            let matcher = case.matcher(&gpu.clone().with_shapes(shapes), &scene)?;
+            let matcher = case.matcher(&gpu.clone().with_shapes(shapes), scene)?;
             // The first run compiles.
             matcher.run()?;
             let kernels = least_times(&matcher, self.runs)?;

@@ -38,7 +38,7 @@ impl Lanes {
     /// In the shape that is asked for, or with more disparities per thread and threads per workgroup, where a line needs them;
     /// subgroups have at least `subgroup` threads.
     fn shared_out(band: &VolumeBand, shapes: Shapes, subgroup: u32) -> Option<Self> {
-        let sizes = [4, 8, 16].into_iter().filter(|&disparities| disparities >= shapes.lane_disparities);
+        let sizes = Shapes::LANE_DISPARITIES.into_iter().filter(|&disparities| disparities >= shapes.lane_disparities);
         sizes.map(|disparities| disparities / 4).find_map(|words| {
             let busy = band.words() / words;
             let lanes = busy.next_power_of_two();
