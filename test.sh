@@ -89,6 +89,8 @@ swiftshader="${HSAD_SWIFTSHADER:-/usr/lib/chromium/vk_swiftshader_icd.json}"
 [ -f "$swiftshader" ] || install chromium
 if [ -f "$swiftshader" ]; then
     VK_DRIVER_FILES="$swiftshader" verify --device swiftshader
+    # Textures that lavapipe does not have.
+    VK_DRIVER_FILES="$swiftshader" cargo test --test embedding -- --ignored
 else
     echo "NOT RUN: there is no $swiftshader (Debian: apt-get install chromium), so one driver is all that was tested"
 fi

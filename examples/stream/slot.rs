@@ -1,11 +1,12 @@
 //! A slot of the ring: textures that a frame is uploaded to, and memory that the host reads its results from.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use hsad::{
-    dense::{Dense, DenseConfig, Inputs, MapReadback, Matcher},
-    features::{Detector, DetectorInput, FeatureConfig, FeatureReadback},
-    gpu::{Gpu, block_on},
+    dense::{Dense, Inputs, MapReadback},
+    disparity::DisparityRange,
+    features::FeatureReadback,
+    gpu::block_on,
     image::Size,
     io::Picture,
     luma::Source,
@@ -13,42 +14,23 @@ use hsad::{
     wgpu,
 };
 
+use crate::engine::Engine;
+
 /// Result of a frame.
 pub struct FrameResult {
     /// Index of the frame.
     pub index: usize,
+    /// The range that was searched.
+    pub range: DisparityRange,
     /// Disparities with their confidences.
     pub map: Dense,
     /// Seeding from the frame's features, if it was run on this frame.
     pub seeding: Option<Seeding>,
 }
 
-/// The kernels for one configuration, shared by the slots that were made for it.
-pub struct Engine {
-    pub gpu: Gpu,
-    pub config: DenseConfig,
-    pub matcher: Matcher,
-    /// Detectors of the left and the right view, which read the matcher's luma.
-    detectors: [(Detector, DetectorInput); 2],
-}
-
-impl Engine {
-    pub fn new(gpu: &Gpu, size: Size, config: DenseConfig) -> hsad::Result<Self> {
-        let matcher = Matcher::new(gpu, size, &config)?;
-        // A small capacity, so that little has to be read back.
-        let features = FeatureConfig { max_features: 2048, ..FeatureConfig::default() };
-        let [left, right] = matcher.luma().map(|luma| -> hsad::Result<_> {
-            let detector = block_on(Detector::new(gpu, size, &features))?;
-            let input = block_on(detector.input(luma))?;
-            Ok((detector, input))
-        });
-        Ok(Self { gpu: gpu.clone(), config, matcher, detectors: [left?, right?] })
-    }
-}
-
 /// Textures and host memory of one frame.
 pub struct Slot {
-    pub engine: Rc<Engine>,
+    pub engine: Arc<Engine>,
     textures: [wgpu::Texture; 2],
     inputs: Inputs,
     map: MapReadback,
@@ -57,14 +39,15 @@ pub struct Slot {
 }
 
 /// A submitted frame.
-struct Sent {
-    index: usize,
-    frame: [Picture; 2],
-    seeded: bool,
+pub struct Sent {
+    pub index: usize,
+    pub frame: [Picture; 2],
+    /// Whether its features are detected.
+    pub seeded: bool,
 }
 
 impl Slot {
-    pub fn new(engine: &Rc<Engine>, Size { width, height }: Size) -> hsad::Result<Self> {
+    pub fn new(engine: &Arc<Engine>, Size { width, height }: Size) -> hsad::Result<Self> {
         let textures = [0; 2].map(|_| {
             engine.gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("camera"),
@@ -84,29 +67,35 @@ impl Slot {
         Ok(Self { engine: engine.clone(), textures, inputs, map, features: [left?, right?], sent: None })
     }
 
-    /// Uploads a frame and submits dense matching and, if `seeded`, feature detection.
-    pub fn send(&mut self, index: usize, frame: [Picture; 2], seeded: bool) {
+    /// Has the device compile what some drivers compile only when a kernel first runs.
+    pub async fn warm_up(&self) -> hsad::Result<()> {
+        self.engine.matcher.warm_up(Some(&self.inputs), self.map.outputs()).await
+    }
+
+    /// Uploads a frame and submits dense matching and, if it is to be seeded, feature detection.
+    pub fn send(&mut self, sent: Sent) {
         let Engine { gpu, matcher, detectors, .. } = &*self.engine;
-        for (texture, picture) in self.textures.iter().zip(&frame) {
+        for (texture, picture) in self.textures.iter().zip(&sent.frame) {
             let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * picture.width()), ..Default::default() };
             gpu.queue.write_texture(texture.as_image_copy(), picture.rgba(), layout, texture.size());
         }
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         matcher.record(&mut encoder, &self.inputs, self.map.outputs());
-        if seeded {
+        if sent.seeded {
             for ((detector, input), readback) in detectors.iter().zip(&self.features) {
                 detector.record(&mut encoder, input);
                 detector.record_readback(&mut encoder, readback);
             }
         }
         gpu.queue.submit([encoder.finish()]);
-        self.sent = Some(Sent { index, frame, seeded });
+        self.sent = Some(sent);
     }
 
-    /// Waits for the submitted frame, if there is one, but not for frames submitted later.
+    /// Waits for the submitted frame, if there is one, but not for frames submitted later. A frame whose results cannot be read is
+    /// kept for [`Self::take`].
     pub fn collect(&mut self) -> hsad::Result<Option<FrameResult>> {
-        let Some(Sent { index, frame, seeded }) = self.sent.take() else { return Ok(None) };
+        let Some(Sent { index, frame, seeded }) = &self.sent else { return Ok(None) };
         let map = block_on(self.map.read())?;
         let seeding = match seeded {
             false => None,
@@ -116,6 +105,13 @@ impl Slot {
                 Some(Seeding::find((&views[0], &views[1]), (&left?, &right?), &SeedingConfig::default())?)
             }
         };
-        Ok(Some(FrameResult { index, map, seeding }))
+        let result = FrameResult { index: *index, range: self.engine.config.range, map, seeding };
+        self.sent = None;
+        Ok(Some(result))
+    }
+
+    /// The submitted frame, whose results are not wanted any more.
+    pub fn take(&mut self) -> Option<Sent> {
+        self.sent.take()
     }
 }

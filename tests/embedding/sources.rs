@@ -6,7 +6,10 @@ use hsad::{
     disparity::DisparityRange,
     image::{Plane, Size},
     luma::{Source, pack},
-    wgpu::{BufferUsages, Features, Limits, TextureFormat, TextureView},
+    wgpu::{
+        BufferUsages, Extent3d, Features, Limits, TexelCopyBufferLayout, TexelCopyTextureInfo, TextureAspect,
+        TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    },
 };
 
 use crate::application::{Application, pair};
@@ -88,6 +91,49 @@ fn deep_levels_and_floats_become_the_nearest_byte() {
         bench.run(|encoder| matcher.record(encoder, &inputs, &outputs));
         let luma: Vec<u32> = bench.download(matcher.luma()[0]).unwrap();
         assert!(luma == pack(&grey), "{format:?}");
+    }
+    application.assert_quiet();
+}
+
+/// Mesa's lavapipe has no such textures; SwiftShader does.
+#[test]
+#[ignore = "needs a device with TEXTURE_FORMAT_NV12"]
+fn the_luma_of_a_video_frame_is_taken_as_it_is() {
+    let features = Features::TEXTURE_FORMAT_NV12 | Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+    let application = Application::with(features, Limits::downlevel_defaults());
+    let bench = application.bench();
+    // Planes of colours have half the columns and rows.
+    let size = Size::new(132, 68);
+    let views = pair(size, 5);
+    let frames = views.each_ref().map(|view| {
+        let texture = application.device().create_texture(&TextureDescriptor {
+            label: None,
+            size: Extent3d { width: size.width, height: size.height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: TextureFormat::NV12,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let plane = TexelCopyTextureInfo { aspect: TextureAspect::Plane0, ..texture.as_image_copy() };
+        let layout = TexelCopyBufferLayout { bytes_per_row: Some(size.width), ..Default::default() };
+        application.gpu.queue.write_texture(plane, view.data(), layout, texture.size());
+        let plane = TextureViewDescriptor {
+            format: Some(TextureFormat::R8Unorm),
+            aspect: TextureAspect::Plane0,
+            ..Default::default()
+        };
+        texture.create_view(&plane)
+    });
+    let config = Preset::Balanced.dense_config(DisparityRange::new(0, 24).unwrap());
+    let matcher = Matcher::new(&application.gpu, size, &config).unwrap();
+    let inputs = matcher.inputs(Source::Texture(&frames[0]), Source::Texture(&frames[1])).unwrap();
+    let map = application.buffer(4 * size.pixels(), BufferUsages::COPY_DST);
+    let outputs = matcher.outputs(Destination::Buffer(&map), None).unwrap();
+    bench.run(|encoder| matcher.record(encoder, &inputs, &outputs));
+    for (view, luma) in views.iter().zip(matcher.luma()) {
+        assert!(bench.download::<u32>(luma).unwrap() == pack(view));
     }
     application.assert_quiet();
 }

@@ -33,10 +33,12 @@ impl TexelFormat {
     ///
     /// - 8-bit formats, sRGB or not: luma is computed from the stored bytes, as if they came from a file.
     /// - 16-bit levels, `R16Unorm`, which needs the feature `TEXTURE_FORMAT_16BIT_NORM`: rounded to 8 bits.
+    /// - Video, `NV12`, which needs the feature `TEXTURE_FORMAT_NV12`: the view must be of [`wgpu::TextureAspect::Plane0`], and its levels,
+    ///   usually 16 to 235, are the luma as they are. wgpu does not tell a view's aspect.
     /// - Floats: grey or colour levels as displayed, 0 to 1. Values outside are clamped; NaN gives an unspecified
     ///   luma. Linear light must be tone-mapped and encoded for display first. Of a 32-bit float that lies halfway between two bytes
     ///   devices take either.
-    pub const ALL: [wgpu::TextureFormat; 10] = [
+    pub const ALL: [wgpu::TextureFormat; 11] = [
         wgpu::TextureFormat::Rgba8Unorm,
         wgpu::TextureFormat::Rgba8UnormSrgb,
         wgpu::TextureFormat::Bgra8Unorm,
@@ -47,14 +49,16 @@ impl TexelFormat {
         wgpu::TextureFormat::R16Unorm,
         wgpu::TextureFormat::R32Float,
         wgpu::TextureFormat::Rgba32Float,
+        wgpu::TextureFormat::NV12,
     ];
 
     /// Those of [`Self::ALL`] that every device has, of 8 and 16 bits.
-    pub(crate) const USUAL: [wgpu::TextureFormat; 7] = *Self::ALL.first_chunk().expect("seven of ten");
+    pub(crate) const USUAL: [wgpu::TextureFormat; 7] = *Self::ALL.first_chunk().expect("seven of eleven");
 
     /// The conversion of `format`; `None` if it is not in [`Self::ALL`].
     pub fn new(format: wgpu::TextureFormat) -> Option<Self> {
-        Self::ALL.contains(&format).then(|| Self { grey: format.components() == 1, srgb: format.is_srgb() })
+        let grey = || format == wgpu::TextureFormat::NV12 || format.components() == 1;
+        Self::ALL.contains(&format).then(|| Self { grey: grey(), srgb: format.is_srgb() })
     }
 }
 
