@@ -8,7 +8,7 @@ use std::{
 
 use hsad::{
     Backend, DeviceChoice, Error,
-    gpu::{self, ShapesFile, cache_folder},
+    gpu::{self, cache_folder},
 };
 use pyo3::{import_exception, prelude::*};
 
@@ -94,9 +94,8 @@ pub fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
 
 /// The backend with the shapes of kernels that `hsad tune` has found for the device, if it has.
 fn tuned(backend: Backend) -> hsad::Result<Backend> {
-    let (Backend::Gpu(gpu), Some(folder)) = (&backend, cache_folder()) else { return Ok(backend) };
-    Ok(match ShapesFile::of(gpu, &folder).read()? {
-        Some(shapes) => Backend::Gpu(gpu.clone().with_shapes(shapes)),
-        None => backend,
-    })
+    match (backend, cache_folder()) {
+        (Backend::Gpu(gpu), Some(folder)) => Ok(Backend::Gpu(gpu.with_kept_shapes(&folder)?)),
+        (backend, _) => Ok(backend),
+    }
 }

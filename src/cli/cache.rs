@@ -2,7 +2,7 @@
 
 use hsad::{
     Backend, Gpu,
-    gpu::{PipelineFile, ShapesFile, cache_folder},
+    gpu::{PipelineFile, cache_folder},
 };
 
 /// An open backend, and the file of its pipeline cache, if the device has one.
@@ -40,12 +40,9 @@ impl CachedBackend {
 
 /// The device with the shapes of kernels that `hsad tune` has found, if it has. A file that cannot be read is a record in the log.
 pub fn tuned(gpu: Gpu) -> Gpu {
-    let kept = cache_folder().map(|folder| ShapesFile::of(&gpu, &folder).read());
-    match kept.transpose() {
-        Ok(shapes) => shapes.flatten().into_iter().fold(gpu, Gpu::with_shapes),
-        Err(error) => {
-            log::warn!("the shapes of kernels are not those of hsad tune: {error}");
-            gpu
-        }
-    }
+    let Some(folder) = cache_folder() else { return gpu };
+    gpu.clone().with_kept_shapes(&folder).unwrap_or_else(|error| {
+        log::warn!("the shapes of kernels are not those of hsad tune: {error}");
+        gpu
+    })
 }

@@ -42,8 +42,7 @@ impl Rates {
             let source = storage_buffer(gpu, "copied from", bytes)?;
             let target = storage_buffer(gpu, "copied to", bytes)?;
             let results = storage_buffer(gpu, "results", 16 * u64::from(THREADS))?;
-            let groups = (bytes / 16) as u32 / WORKGROUP;
-            let copy = Kernel::new(gpu, &copy()).dispatch(&(), &[&source, &target], [groups, 1, 1]);
+            let copy = copying(gpu, &source, &target);
             let calculation = Kernel::new(gpu, &integers()).dispatch(&(), &[&results], [THREADS / WORKGROUP, 1, 1]);
             Ok((copy, calculation))
         })
@@ -54,6 +53,12 @@ impl Rates {
             operations: operations as f64 / least_time(gpu, &calculation).await?.as_secs_f64(),
         })
     }
+}
+
+/// The copy of `source`, a multiple of 4096 bytes, to `target`.
+fn copying(gpu: &Gpu, source: &wgpu::Buffer, target: &wgpu::Buffer) -> Dispatch {
+    let groups = (source.size() / 16) as u32 / WORKGROUP;
+    Kernel::new(gpu, &copy()).dispatch(&(), &[source, target], [groups, 1, 1])
 }
 
 fn copy() -> Stage {
@@ -91,4 +96,21 @@ async fn least_time(gpu: &Gpu, dispatch: &Dispatch) -> Result<Duration> {
     }
     // A clock too coarse for the work gives no rate of infinity.
     Ok(least.max(Duration::from_nanos(1)))
+}
+
+#[cfg(all(test, feature = "verify"))]
+mod tests {
+    use super::*;
+    use crate::{gpu::DeviceChoice, verify::Bench};
+
+    #[test]
+    fn all_that_is_counted_is_copied() {
+        let gpu = Gpu::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+        let bench = Bench::new(&gpu);
+        let words: Vec<u32> = (0..3 * 1024).map(|index| u32::wrapping_mul(index, 2_654_435_761)).collect();
+        let (source, target) = (bench.upload(&words).unwrap(), bench.output(words.len() as u32).unwrap());
+        let dispatch = copying(&gpu, &source, &target);
+        bench.run(|encoder| dispatch.record(encoder));
+        assert!(bench.download::<u32>(&target).unwrap() == words);
+    }
 }

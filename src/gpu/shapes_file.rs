@@ -21,13 +21,11 @@ const MOST: u64 = 1 << 12;
 /// The file in which the shapes for an adapter are kept between runs of a program: what `hsad tune` measures.
 ///
 /// ```no_run
-/// use hsad::{DeviceChoice, Gpu, gpu::{ShapesFile, cache_folder}};
+/// use hsad::{DeviceChoice, Gpu, gpu::cache_folder};
 /// # fn main() -> hsad::Result<()> {
 /// let mut gpu = Gpu::open(&DeviceChoice::Best)?;
 /// if let Some(folder) = cache_folder() {
-///     if let Some(shapes) = ShapesFile::of(&gpu, &folder).read()? {
-///         gpu = gpu.with_shapes(shapes);
-///     }
+///     gpu = gpu.with_kept_shapes(&folder)?;
 /// }
 /// # Ok(())
 /// # }
@@ -90,6 +88,16 @@ impl ShapesFile {
 
     fn failed(&self, source: std::io::Error) -> Error {
         Error::Io { path: self.path.clone(), source }
+    }
+}
+
+impl Gpu {
+    /// The device with the shapes that `folder` keeps for its adapter, if it does: see [`ShapesFile`].
+    ///
+    /// # Errors
+    /// See [`ShapesFile::read`].
+    pub fn with_kept_shapes(self, folder: &Path) -> Result<Self> {
+        Ok(ShapesFile::of(&self, folder).read()?.into_iter().fold(self, Self::with_shapes))
     }
 }
 
