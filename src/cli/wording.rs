@@ -27,7 +27,9 @@ pub fn in_options(error: &Error) -> String {
             }
         }
         Error::Format { .. } => {
-            error.to_string().replace("name the unit of length", "name the unit of length with --calib-unit")
+            let text =
+                error.to_string().replace("name the unit of length", "name the unit of length with --calib-unit");
+            text.replace("name the scale of the truth", "name the scale of the truth with --truth-scale")
         }
         _ => error.to_string(),
     }

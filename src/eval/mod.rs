@@ -13,9 +13,11 @@ mod repeatability;
 #[cfg(feature = "files")]
 pub mod scene;
 mod truth;
+mod unit;
 
 pub use matches::{Judged, PointMatch, PointScores};
 pub use metrics::{Bad, OUTLIER_PIXELS, OUTLIER_SHARE, Outliers, Score, score, score_pixels};
 pub use overlap::{NORMAL_RADIUS, Region, overlap_error};
 pub use repeatability::{MAX_OVERLAP_ERROR, Point, Repeatability};
 pub use truth::Truth;
+pub use unit::OtherUnit;

@@ -82,7 +82,7 @@ impl Truth {
         if !matrix.is_finite() || !inverse.is_finite() {
             return Err(Error::Parameter {
                 name: "the homography",
-                value: matrix.to_string(),
+                value: in_rows(matrix),
                 expected: "it must be nine finite numbers and have an inverse".into(),
             });
         }
@@ -162,6 +162,12 @@ impl Truth {
             Some((_, visible)) => value_at(visible, second) == Some(VISIBLE),
         }
     }
+}
+
+/// The elements of a matrix as they are written on paper, row by row.
+fn in_rows(matrix: DMat3) -> String {
+    let rows = matrix.transpose().to_cols_array_2d();
+    format!("[{}]", rows.map(|[a, b, c]| format!("[{a}, {b}, {c}]")).join(", "))
 }
 
 /// Whether the position lies in a pixel of a picture of this size.
@@ -248,7 +254,9 @@ mod tests {
     #[test]
     fn what_is_no_truth_is_refused() {
         let message = |truth: Result<Truth>| truth.unwrap_err().to_string();
-        assert!(message(Truth::homography(DMat3::ZERO, (9, 9), (9, 9))).contains("have an inverse"));
+        let flat = DMat3::from_cols_array(&[1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 3.0, 0.0, 1.0]);
+        let told = "the homography is [[1, 2, 3], [0, 0, 0], [0, 0, 1]], but it must be nine finite numbers and have an inverse";
+        assert_eq!(message(Truth::homography(flat, (9, 9), (9, 9))), told);
         assert!(
             message(Truth::stereo(Plane::filled((3, 3), 0.0), Some(&Plane::filled((2, 3), 0)))).contains("2x3 pixels")
         );

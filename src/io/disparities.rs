@@ -2,8 +2,19 @@
 
 use std::path::Path;
 
+use ::image::DynamicImage;
+
 use super::{codec, disparity_png, malformed, pfm};
 use crate::{disparity, error::Result, image::Plane};
+
+/// Disparities as a file has them, +inf for none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stored {
+    /// Disparities in pixels.
+    Pixels(Plane<f32>),
+    /// Grey of 8 bits in a unit that the file does not tell, 0 for no disparity, as the data sets of Middlebury have up to 2006.
+    Grey8(Plane<f32>),
+}
 
 /// Reads a disparity map from a 16-bit PNG ([`disparity_png`]) or a PFM ([`pfm`]): in pixels, not rounded, +inf for no
 /// disparity. The format is recognised by the content.
@@ -11,13 +22,34 @@ use crate::{disparity, error::Result, image::Plane};
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, [`crate::Error::Format`] if it is neither a PNG nor a PFM.
 pub fn read(path: &Path) -> Result<Plane<f32>> {
+    match read_stored(path)? {
+        Stored::Pixels(disparities) => Ok(disparities),
+        Stored::Grey8(_) => {
+            let reason = "a picture of 8-bit grey: disparities are 16-bit grey, 256 times the pixels, 0 for none";
+            Err(malformed(path, reason))
+        }
+    }
+}
+
+/// Reads disparities as [`read`], and also from PNG and PGM of 8 bits.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_stored(path: &Path) -> Result<Stored> {
     let bytes = codec::read_bytes(path)?;
-    if bytes.starts_with(disparity_png::SIGNATURE) {
-        Ok(disparity::in_pixels(&disparity_png::decode(&bytes, path)?))
-    } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
-        pfm::decode(&bytes, path)
-    } else {
-        Err(malformed(path, "neither a PNG nor a PFM: disparities are read from 16-bit grey PNG and from PFM"))
+    if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
+        return pfm::decode(&bytes, path).map(Stored::Pixels);
+    }
+    let is_png = bytes.starts_with(disparity_png::SIGNATURE);
+    if !is_png && !bytes.starts_with(b"P5") && !bytes.starts_with(b"P2") {
+        return Err(malformed(path, "neither a PNG nor a PFM: disparities are read from 16-bit grey PNG and from PFM"));
+    }
+    match codec::decode(&bytes, path)?.image {
+        DynamicImage::ImageLuma8(grey) => {
+            let (size, known) = (grey.dimensions(), |value: u8| if value == 0 { f32::INFINITY } else { value.into() });
+            Ok(Stored::Grey8(Plane::new(size, grey.into_raw().into_iter().map(known).collect())?))
+        }
+        _ => Ok(Stored::Pixels(disparity::in_pixels(&disparity_png::decode(&bytes, path)?))),
     }
 }
 

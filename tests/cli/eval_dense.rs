@@ -130,6 +130,39 @@ fn scores_a_folder_of_scenes_in_every_form() {
 }
 
 #[test]
+fn a_truth_in_another_unit_or_of_another_sign_is_told() {
+    let temporary = folder();
+    let path = scene(temporary.path(), "scene");
+    let disparities = Plane::filled(SIZE, SHIFT as f32);
+    let write = |name: &str, scale: f32| {
+        let mut bytes = Vec::new();
+        pfm::write(&mut bytes, &disparities.map(|d| d * scale)).unwrap();
+        fs::write(path.join(name), bytes).unwrap();
+    };
+    for (scale, option) in [(-1.0, "-1"), (16.0, "1/16"), (1.0 / 256.0, "256")] {
+        write("disp_left.pfm", scale);
+        fails(eval(&[&path]), 1, &format!("give --truth-scale {option}, or 1"));
+        let mut told = eval(&[&path]);
+        told.args(["--truth-scale", option, "--csv", "-"]);
+        let printed = String::from_utf8(told.assert().success().stderr("").get_output().stdout.clone()).unwrap();
+        let wrong: f64 = printed.lines().nth(1).unwrap().split(',').nth(6).unwrap().parse().unwrap();
+        assert!(wrong < 0.2, "{printed}");
+        // As it is, without any scale: all pixels are wrong.
+        let mut forced = eval(&[&path]);
+        forced.args(["--truth-scale", "1"]).assert().success().stdout(contains("100.00"));
+    }
+    // A map of another program in another unit.
+    write("disp_left.pfm", 1.0);
+    write("theirs.pfm", 16.0);
+    let mut command = eval(&[&path]);
+    command.arg("--given-only").arg("--disparity").arg(format!("theirs={}", path.join("theirs.pfm").display()));
+    command.assert().success().stderr(contains("another unit").and(contains("times 1/16 it agrees at 100 %")));
+    let mut command = eval(&[&path]);
+    command.args(["--truth-scale", "0"]);
+    command.assert().code(2).stderr(contains("a number other than 0 or a fraction"));
+}
+
+#[test]
 fn a_turned_or_scaled_right_view_is_scored_where_it_shows_the_pixel() {
     let temporary = folder();
     let scored = |condition: &[&str]| {

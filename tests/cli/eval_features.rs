@@ -165,6 +165,18 @@ fn a_homography_set_has_a_pair_for_each_view() {
         .success()
         .stdout(contains("set 1-4").and(contains("set 1-2").not()));
 
+    // A folder of sets, one of them with the names of HPatches.
+    let patches = temporary.path().join("patches");
+    fs::create_dir(&patches).unwrap();
+    for (from, to) in [("img1.png", "1.ppm"), ("img2.png", "2.ppm"), ("H1to2p", "H_1_2")] {
+        fs::copy(set.join(from), patches.join(to)).unwrap();
+    }
+    let mut command = evaluate(&[temporary.path()]);
+    command.args(["--view", "2"]).assert().success().stdout(contains("set 1-2").and(contains("patches 1-2")));
+    let mut command = evaluate(&[&patches]);
+    command.args(["--truth-scale", "2"]);
+    fails(command, 1, "--truth-scale is for disparities");
+
     let of_view = |k: &str| {
         let mut command = evaluate(&[&set]);
         command.args(["--view", k]);

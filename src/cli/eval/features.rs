@@ -22,6 +22,7 @@ use crate::cli::{
         report_failures,
         saved_results::{self, SavedResults},
         scenes,
+        truth_scale::TruthOptions,
     },
     options::{FeatureOptions, RunOptions, with_default},
     output::{Output, check_writable, is_stdout, write_text},
@@ -33,8 +34,9 @@ use table::{Column, Row, Table, Unit};
 use views::{Pair, Views};
 
 const DETAILS: &str = "\
-A FOLDER is a scene or a folder of scenes as for hsad eval dense, or a homography set (img1.png, and img2.png with \
-H1to2p, img3.png with H1to3p, ...: the nine numbers of the homography from the first view to the other).
+A FOLDER is a scene or a folder of scenes as for hsad eval dense, or a homography set (img1, and img2 with H1to2p, img3 \
+with H1to3p, ...: the nine numbers of the homography from the first view to the other, row by row; or 1, 2 and H_1_2, as in \
+HPatches; pictures are .png, .ppm, .pgm or .jpg), or a folder of homography sets.
 
 Figures of each pair and their means, shares in per cent:
   points   interest points in the area that both views show, of the view with fewer
@@ -133,6 +135,8 @@ pub struct Features {
         second best descriptor, above 0, at most 1", WideBaselineConfig::default().matching.ratio))]
     ratio: Option<f32>,
     #[command(flatten)]
+    truth: TruthOptions,
+    #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
     features: FeatureOptions,
@@ -157,7 +161,8 @@ impl Features {
         config.validate()?;
         self.check()?;
         let changes = Change::parse_all(&self.conditions)?;
-        let (pairs, unread) = scenes::collect(&self.folders, |path| Pair::find(path, self.view), |pair| &pair.name)?;
+        let (pairs, unread) =
+            scenes::collect(&self.folders, |path| Pair::find(path, self.view, self.truth), |pair| &pair.name)?;
         let mut failures: Vec<String> = unread.iter().map(Error::to_string).collect();
         if let Some(folder) = &self.write_views {
             self.write(folder, &pairs, &changes, &mut failures)?;
@@ -263,7 +268,7 @@ impl Features {
     /// Where the results of all pairs are saved.
     fn saved_results(&self, finder: &Finder) -> SavedResults {
         let saved = SavedResults::new(self.output.as_deref(), self.fresh);
-        let saved = saved.depending_on(&format!("{} {} {:?}", self.tolerance, self.seed, self.first));
+        let saved = saved.depending_on(&format!("{} {} {:?} {:?}", self.tolerance, self.seed, self.first, self.truth));
         match finder {
             Finder::Hsad(backend, config) => {
                 saved.depending_on(&format!("{config:?}")).depending_on(&report::device(backend).to_string())

@@ -5,6 +5,7 @@ mod moved;
 mod paper;
 mod saved_results;
 mod scenes;
+mod truth_scale;
 
 use std::fmt::Display;
 

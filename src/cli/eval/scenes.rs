@@ -4,12 +4,26 @@ use std::path::{Path, PathBuf};
 
 use hsad::{Error, Result, eval::scene::SceneFiles};
 
-/// All scenes in `paths`, and an error for each path without one.
+use super::truth_scale::TruthOptions;
+
+/// All scenes in `paths`, the truth in the unit that the options tell, and an error for each path without a scene.
 ///
 /// # Errors
 /// As [`collect`].
-pub fn find(paths: &[PathBuf]) -> Result<(Vec<SceneFiles>, Vec<Error>)> {
-    collect(paths, SceneFiles::find, |scene| &scene.name)
+pub fn find(paths: &[PathBuf], truth: TruthOptions) -> Result<(Vec<SceneFiles>, Vec<Error>)> {
+    collect(paths, |path| in_folder(path, truth), |scene| &scene.name)
+}
+
+/// The scenes at `path`.
+///
+/// # Errors
+/// As [`SceneFiles::find`].
+pub fn in_folder(path: &Path, truth: TruthOptions) -> Result<Vec<SceneFiles>> {
+    let scaled = |scene: SceneFiles| match truth.truth_scale {
+        Some(scale) => scene.with_truth_scale(scale),
+        None => scene,
+    };
+    Ok(SceneFiles::find(path)?.into_iter().map(scaled).collect())
 }
 
 /// The items that `find` finds in all paths, and an error for each path where it fails.

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
-    eval::{change::Change, report_failures, saved_results, scenes},
+    eval::{change::Change, report_failures, saved_results, scenes, truth_scale::TruthOptions},
     options::{FigureOptions, MatchOptions, RunOptions},
     output::{Output, check_writable, is_stdout, write_text},
     report, terminal,
@@ -29,8 +29,10 @@ const OURS: &str = "hsad";
 /// Score disparity maps against the ground truth of scenes, by the measures of Middlebury and KITTI
 ///
 /// A SCENE is a folder with left.png, right.png, disp_left.pfm and optionally nonocc.png (255: non-occluded); a folder
-/// of Middlebury 2014 (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png); one of KITTI 2015 (image_2, image_3,
-/// disp_occ_0, disp_noc_0) or a single picture in image_2; or a folder of such folders. Each pair is matched as by hsad
+/// of Middlebury 2014 or ETH3D (im0.png, im1.png, disp0.pfm or disp0GT.pfm, mask0nocc.png), or of Middlebury 2001 to 2006
+/// (im2, im6, disp2 or view1, view5, disp1); one of KITTI 2015 (image_2, image_3, disp_occ_0, disp_noc_0) or 2012
+/// (colored_0 or image_0, disp_occ, disp_noc), or a single picture in it; one of SceneFlow (frames_cleanpass and
+/// disparity, or a folder below frames_cleanpass); or a folder of such folders. Each pair is matched as by hsad
 /// match, with the disparity range found for each pair unless --disparities is given, and scored over the non-occluded
 /// pixels, over all pixels, and over the estimated pixels. A pixel without an estimate counts as wrong in the first
 /// two.
@@ -84,6 +86,8 @@ pub struct Dense {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     #[command(flatten)]
+    truth: TruthOptions,
+    #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
     matching: MatchOptions,
@@ -130,7 +134,7 @@ impl Dense {
             }
             .into());
         }
-        let (scenes, unread) = scenes::find(&self.scenes)?;
+        let (scenes, unread) = scenes::find(&self.scenes, self.truth)?;
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
         supplied_maps::check(&self.supplied, scenes.len())?;
         let root = self.output.as_deref().map(Output::open).transpose()?;

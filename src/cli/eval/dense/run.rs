@@ -20,7 +20,12 @@ use serde_json::Value;
 use super::{Dense, Failure, OURS, Results, record::Record, supplied_maps::SuppliedMaps};
 use crate::cli::{
     doubts,
-    eval::{change::Change, moved::Moved, saved_results::SavedResults},
+    eval::{
+        change::Change,
+        moved::Moved,
+        saved_results::SavedResults,
+        truth_scale::{self, TruthOptions},
+    },
     output::Output,
     products, report,
     terminal::Progress,
@@ -31,6 +36,7 @@ pub struct Run<'a> {
     config: &'a Config,
     /// The change of the right views, and the seed of its random numbers.
     change: Option<(&'a Change, u64)>,
+    truth: TruthOptions,
     methods: Vec<Method<'a>>,
     /// Where the results of all scenes are saved.
     saved: SavedResults,
@@ -58,8 +64,10 @@ impl<'a> Run<'a> {
         Self {
             config,
             change: options.condition.as_ref().map(|change| (change, options.seed)),
+            truth: options.truth,
             methods: backend.map(Method::Ours).into_iter().chain(supplied).collect(),
-            saved: SavedResults::new(options.output.as_deref(), options.fresh),
+            saved: SavedResults::new(options.output.as_deref(), options.fresh)
+                .depending_on(&format!("{:?}", options.truth)),
             progress: Progress::new(options.run.quiet),
         }
     }
@@ -174,6 +182,7 @@ impl<'a> Run<'a> {
             }
         };
         let seconds = start.elapsed().as_secs_f64();
+        self.truth.check(&scene.truth, &map)?;
         let record = Record {
             scene: name.into(),
             method: OURS.into(),
@@ -193,7 +202,7 @@ impl<'a> Run<'a> {
             scores: scene.score(&map)?,
             range: Value::Null,
             seconds: None,
-            warnings: Vec::new(),
+            warnings: truth_scale::warning(&scene.truth, &map).into_iter().collect(),
         };
         Ok((map, record))
     }

@@ -12,6 +12,8 @@ use hsad::{
     io::{Picture, homography, load},
 };
 
+use crate::cli::eval::{scenes, truth_scale::TruthOptions};
+
 /// A pair of views, read when it is first needed; with saved results that may be never.
 pub struct Pair {
     pub name: String,
@@ -37,41 +39,97 @@ pub struct Views {
 }
 
 /// Description of a homography set, for errors.
-const SETS: &str = "a homography set holds img1.png and for others of its views, such as 3, img3.png and H1to3p";
+const SETS: &str = "a homography set holds img1.png and for others of its views, such as 3, img3.png and H1to3p; or 1.ppm, 3.ppm and H_1_3";
 
-impl Pair {
-    /// The pairs at `path`: one per stereo scene; for a homography set one per view after the first, or only the
-    /// requested `view`.
-    ///
-    /// # Errors
-    /// As [`SceneFiles::find`]; [`Error::Format`] if the requested view does not exist.
-    pub fn find(path: &Path, view: Option<u32>) -> Result<Vec<Self>> {
-        if path.join("img1.png").is_file() {
-            return Self::of_set(path, view);
-        }
-        let wrong = |reason: String| Error::Format { path: path.into(), reason };
-        let scenes = SceneFiles::find(path).map_err(|error| match error {
-            Error::Format { reason, .. } => wrong(format!("{reason}; {SETS}")),
-            other => other,
-        })?;
-        if let Some(view) = view {
-            return Err(wrong(format!("view {view} was requested, but this is a stereo scene, with one pair")));
-        }
-        Ok(scenes.into_iter().map(|files| Self::new(files.name.clone(), Files::Stereo(files))).collect())
+/// The objection to a scale of disparities where there are none.
+const NO_SCALE: &str = "--truth-scale is for disparities, but there are homographies only";
+
+/// File extensions of the views of homography sets, in the order in which they are tried.
+const EXTENSIONS: [&str; 4] = ["png", "ppm", "pgm", "jpg"];
+
+/// Views of a homography set after the first.
+const VIEWS: std::ops::Range<u32> = 2..100;
+
+/// How a homography set names its files.
+#[derive(Clone, Copy)]
+enum Naming {
+    /// img1.png and H1to2p, as those of Oxford (K. Mikolajczyk et al., 'A Comparison of Affine Region Detectors', IJCV 65, 2005).
+    Oxford,
+    /// 1.ppm and H_1_2, as HPatches (V. Balntas et al., 'HPatches', CVPR 2017).
+    HPatches,
+}
+
+impl Naming {
+    /// The naming of the set in `folder`, if it has a first view.
+    fn of(folder: &Path) -> Option<Self> {
+        [Self::Oxford, Self::HPatches].into_iter().find(|naming| naming.view(folder, 1).is_file())
     }
 
-    fn of_set(folder: &Path, view: Option<u32>) -> Result<Vec<Self>> {
+    /// The file of view `k`; the name as PNG if there is none.
+    fn view(self, folder: &Path, k: u32) -> PathBuf {
+        let name = match self {
+            Self::Oxford => format!("img{k}"),
+            Self::HPatches => k.to_string(),
+        };
+        let path = |extension: &str| folder.join(&name).with_extension(extension);
+        EXTENSIONS.map(path).into_iter().find(|path| path.is_file()).unwrap_or_else(|| path(EXTENSIONS[0]))
+    }
+
+    /// The name of the homography from the first view to view `k`.
+    fn homography(self, k: u32) -> String {
+        match self {
+            Self::Oxford => format!("H1to{k}p"),
+            Self::HPatches => format!("H_1_{k}"),
+        }
+    }
+}
+
+impl Pair {
+    /// The pairs at `path`: one per stereo scene; for a homography set, and each of a folder of sets, one per view after the first, or
+    /// only the requested `view`.
+    ///
+    /// # Errors
+    /// As [`SceneFiles::find`]; [`Error::Format`] if the requested view does not exist, or options for stereo scenes have no scene.
+    pub fn find(path: &Path, view: Option<u32>, truth: TruthOptions) -> Result<Vec<Self>> {
+        let wrong = |reason: String| Error::Format { path: path.into(), reason };
+        if let Some(naming) = Naming::of(path) {
+            return if truth.truth_scale.is_some() {
+                Err(wrong(NO_SCALE.into()))
+            } else {
+                Self::of_set(path, naming, view)
+            };
+        }
+        let sets = sets(path).into_iter().map(|(folder, naming)| Self::of_set(&folder, naming, view));
+        let mut pairs: Vec<Self> = sets.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let scenes = match scenes::in_folder(path, truth) {
+            Err(Error::Format { .. }) if !pairs.is_empty() => Vec::new(),
+            Err(Error::Format { reason, .. }) => return Err(wrong(format!("{reason}; {SETS}"))),
+            found => found?,
+        };
+        match (view, truth.truth_scale, scenes.is_empty()) {
+            (Some(view), _, false) => {
+                Err(wrong(format!("view {view} was requested, but this is a stereo scene, with one pair")))
+            }
+            (_, Some(_), true) => Err(wrong(NO_SCALE.into())),
+            _ => {
+                pairs.extend(scenes.into_iter().map(|files| Self::new(files.name.clone(), Files::Stereo(files))));
+                Ok(pairs)
+            }
+        }
+    }
+
+    fn of_set(folder: &Path, naming: Naming, view: Option<u32>) -> Result<Vec<Self>> {
         let pair = |k: u32| {
-            let [first, second] = [1, k].map(|k| folder.join(format!("img{k}.png")));
-            let matrix = folder.join(format!("H1to{k}p"));
+            let [first, second] = [1, k].map(|k| naming.view(folder, k));
+            let matrix = folder.join(naming.homography(k));
             matrix
                 .is_file()
                 .then(|| Self::new(format!("{} 1-{k}", folder_name(folder)), Files::Plane { first, second, matrix }))
         };
-        let pairs: Vec<_> = (2..100).filter(|&k| view.is_none_or(|view| view == k)).filter_map(pair).collect();
+        let pairs: Vec<_> = VIEWS.filter(|&k| view.is_none_or(|view| view == k)).filter_map(pair).collect();
         if pairs.is_empty() {
             let reason = match view {
-                Some(view) => format!("view {view} was requested, but there is no H1to{view}p"),
+                Some(view) => format!("view {view} was requested, but there is no {}", naming.homography(view)),
                 None => format!("there is no homography: {SETS}"),
             };
             return Err(Error::Format { path: folder.into(), reason });
@@ -117,6 +175,19 @@ impl Pair {
         };
         Ok(self.views.get_or_init(|| views))
     }
+}
+
+/// The homography sets in the subfolders of `path`.
+fn sets(path: &Path) -> Vec<(PathBuf, Naming)> {
+    let mut folders: Vec<PathBuf> = path.read_dir().into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    folders.sort();
+    let has_homography =
+        |folder: &Path, naming: Naming| VIEWS.into_iter().any(|k| folder.join(naming.homography(k)).is_file());
+    let set = |folder: PathBuf| {
+        let naming = Naming::of(&folder).filter(|&naming| has_homography(&folder, naming))?;
+        Some((folder, naming))
+    };
+    folders.into_iter().filter_map(set).collect()
 }
 
 /// Last component of a folder's canonical path.

@@ -30,6 +30,7 @@ use crate::cli::{
     eval::{
         change::{Change, kinds},
         report_failures, saved_results, scenes,
+        truth_scale::TruthOptions,
     },
     options::RunOptions,
     output::Output,
@@ -104,6 +105,8 @@ pub struct Paper {
     #[arg(long, requires = "output")]
     fresh: bool,
     #[command(flatten)]
+    truth: TruthOptions,
+    #[command(flatten)]
     run: RunOptions,
 }
 
@@ -148,12 +151,12 @@ impl Paper {
 
     fn find(&self) -> hsad::Result<(Vec<SceneFiles>, Vec<Error>)> {
         if !self.scenes.is_empty() {
-            return scenes::find(&self.scenes);
+            return scenes::find(&self.scenes, self.truth);
         }
         if !Path::new(SHIPPED).is_dir() {
             return Err(refused("SCENE", "none", "there is no folder 'data' here: name a scene"));
         }
-        scenes::find(&[SHIPPED.into()])
+        scenes::find(&[SHIPPED.into()], self.truth)
     }
 
     /// Writes the scene's curves, plots and report, if there is an output folder.

@@ -73,7 +73,7 @@ impl<'a> Run<'a> {
     pub fn new(options: &'a Paper, changes: &'a [Change], backend: &'a Backend) -> Self {
         let saved = SavedResults::new(options.output.as_deref(), options.fresh)
             .depending_on(&report::device(backend).to_string())
-            .depending_on(&format!("{} {}", options.tolerance, options.seed))
+            .depending_on(&format!("{} {} {:?}", options.tolerance, options.seed, options.truth))
             .depending_on(&Method::Sparse.described());
         Self { options, changes, backend, saved, progress: Progress::new(options.run.quiet) }
     }

@@ -1,0 +1,189 @@
+//! The files of a scene, found and read.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use super::{Scene, layouts, scene_flow};
+use crate::{
+    dense::View,
+    error::{Error, Result},
+    image::{Plane, Size},
+    io::{
+        disparities::{self, Stored},
+        load::{self, LoadedPair, Unseen},
+    },
+};
+
+/// Paths of a scene's files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFiles {
+    /// Name of the folder; for KITTI the name of the frame, for SceneFlow that of the sequence and of the frame.
+    pub name: String,
+    pub(super) left: PathBuf,
+    pub(super) right: PathBuf,
+    /// Ground truth of the left and of the right view.
+    pub(super) truth: [Option<TruthFiles>; 2],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TruthFiles {
+    pub disparities: PathBuf,
+    pub non_occluded: Option<Mask>,
+    /// Factor from the file's disparities to pixels; `None`: 1, and for grey of 8 bits what the size of the pictures tells.
+    pub scale: Option<f32>,
+}
+
+impl TruthFiles {
+    /// The disparities in pixels, for views of this size.
+    fn read(&self, views: Size) -> Result<Plane<f32>> {
+        let path = &self.disparities;
+        let unknown = || Error::Format {
+            path: path.clone(),
+            reason: "nothing tells by what its values of 8 bits are scaled: name the scale of the truth".into(),
+        };
+        let (disparities, told) = match disparities::read_stored(path)? {
+            Stored::Pixels(disparities) => (disparities, Some(1.0)),
+            Stored::Grey8(values) => (values, layouts::scale_of_grey(views)),
+        };
+        let scale = self.scale.or(told).ok_or_else(unknown)?;
+        Ok(disparities.map(|&disparity| if disparity.is_finite() { disparity * scale } else { f32::INFINITY }))
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Mask {
+    /// Picture that is 255 at non-occluded pixels.
+    Picture(PathBuf),
+    /// Disparity map that is known at non-occluded pixels only.
+    Disparities(PathBuf),
+}
+
+impl Mask {
+    fn path(&self) -> &Path {
+        let (Self::Picture(path) | Self::Disparities(path)) = self;
+        path
+    }
+}
+
+impl SceneFiles {
+    /// The scenes at `path`, sorted by name: the folder of a scene, a folder of KITTI with `image_2` or `colored_0` in it, one of
+    /// SceneFlow with `disparity` in it or below its `frames_cleanpass`, one frame's picture, or a folder of such folders.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if `path` cannot be read, [`Error::Format`] if it holds no scene.
+    pub fn find(path: &Path) -> Result<Vec<Self>> {
+        let failed = |source| Error::Io { path: path.into(), source };
+        // The canonical path gives '.' and '..' a name.
+        let whole = path.canonicalize().map_err(failed)?;
+        if whole.is_file() {
+            return layouts::frame(&whole).map(|frame| vec![frame]).ok_or_else(|| no_scene(path, "a file"));
+        }
+        if let Some(scenes) = Self::in_folder(&whole) {
+            return Ok(scenes);
+        }
+        let mut scenes = Vec::new();
+        for folder in sorted_entries(&whole).map_err(failed)? {
+            scenes.extend(Self::in_folder(&folder).into_iter().flatten());
+        }
+        if scenes.is_empty() { Err(no_scene(path, "a folder without a scene")) } else { Ok(scenes) }
+    }
+
+    /// The scenes of a folder itself, not of its subfolders; `None` if it is no scene. A scene with a missing file is
+    /// found, too, so that reading it names the file.
+    fn in_folder(folder: &Path) -> Option<Vec<Self>> {
+        let scene = layouts::shipped(folder)
+            .or_else(|| layouts::middlebury(folder))
+            .or_else(|| layouts::middlebury_to_2006(folder));
+        scene.map(|scene| vec![scene]).or_else(|| layouts::kitti(folder)).or_else(|| scene_flow::frames(folder))
+    }
+
+    /// The scene whose truth has to be multiplied by `scale`, to be in pixels and positive where the right view's pixel lies further to
+    /// the left.
+    #[must_use]
+    pub fn with_truth_scale(mut self, scale: f32) -> Self {
+        self.truth.iter_mut().flatten().for_each(|truth| truth.scale = Some(scale));
+        self
+    }
+
+    fn truth(&self, reference: View) -> Result<&TruthFiles> {
+        let [left, right] = &self.truth;
+        let (truth, side) = match reference {
+            View::Left => (left, "left"),
+            View::Right => (right, "right"),
+        };
+        truth.as_ref().ok_or_else(|| Error::Format {
+            path: self.left.clone(),
+            reason: format!("this benchmark has no truth for the {side} view: use the other view as reference"),
+        })
+    }
+
+    /// Paths of the scene's files: both views, the ground truth of `reference`, and its mask if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Format`] if the benchmark has no ground truth for this view.
+    pub fn files(&self, reference: View) -> Result<Vec<&Path>> {
+        let truth = self.truth(reference)?;
+        let mask = truth.non_occluded.as_ref().map(Mask::path);
+        Ok([&*self.left, &*self.right, &*truth.disparities].into_iter().chain(mask).collect())
+    }
+
+    /// Reads the scene with the ground truth of `reference`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] if the views differ in size.
+    pub fn read(&self, reference: View) -> Result<Scene> {
+        let files = self.truth(reference)?;
+        let LoadedPair { left, right, .. } = load::load_pair(&self.left, &self.right, &Unseen::default())?;
+        if left.size() != right.size() {
+            return Err(Error::SizesDiffer { left: left.size(), right: right.size() });
+        }
+        let truth = files.read(left.size())?;
+        same_size(&files.disparities, truth.size(), left.size())?;
+        let non_occluded = match &files.non_occluded {
+            None => None,
+            Some(Mask::Picture(path)) => Some(load::load(path)?.luma()),
+            Some(Mask::Disparities(path)) => {
+                Some(disparities::read(path)?.map(|disparity| if disparity.is_finite() { 255 } else { 0 }))
+            }
+        };
+        if let (Some(mask), Some(files)) = (&non_occluded, &files.non_occluded) {
+            same_size(files.path(), mask.size(), left.size())?;
+        }
+        Ok(Scene { left, right, reference, truth, non_occluded })
+    }
+}
+
+pub(super) fn sorted_entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = folder.read_dir()?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn no_scene(path: &Path, what: &str) -> Error {
+    Error::Format {
+        path: path.into(),
+        reason: format!(
+            "{what}: a scene is a folder with left.png, right.png and disp_left.pfm, one of Middlebury or ETH3D (im0.png, im1.png and \
+             disp0.pfm; im2, im6 and disp2; view1, view5 and disp1), of KITTI (image_2, image_3 and disp_occ_0; colored_0, colored_1 \
+             and disp_occ), of SceneFlow (frames_cleanpass and disparity), or a picture of KITTI"
+        ),
+    }
+}
+
+fn same_size(path: &Path, size: Size, views: Size) -> Result<()> {
+    if size == views {
+        return Ok(());
+    }
+    let aspect = |size: Size| f64::from(size.width) / f64::from(size.height);
+    let ratio = f64::from(size.width) / f64::from(views.width);
+    let what = if (aspect(size) / aspect(views) - 1.0).abs() < 0.01 {
+        format!("it belongs to pictures {ratio:.3} times as wide, take files of one size, and disparities of that size")
+    } else {
+        "it belongs to other pictures".into()
+    };
+    let (Size { width, height }, of) = (size, views);
+    let reason = format!("its size is {width}x{height} and that of the views {}x{}: {what}", of.width, of.height);
+    Err(Error::Format { path: path.into(), reason })
+}
