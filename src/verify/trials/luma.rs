@@ -17,7 +17,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     Subject::kernel("luma", |size, dice| Box::new(LumaTrial::draw(size, dice))),
     Subject::kernel("luma_texture", |size, dice| Box::new(LumaTextureTrial::draw(size, dice))),
     Subject::kernel("rgba", |size, dice| Box::new(RgbaTrial::draw(size, dice))),
-    Subject::kernel("rgba_texture", |size, dice| Box::new(RgbaTextureTrial::draw(size, dice))),
+    Subject::kernel("rgba_texture", |size, dice| Box::new(RgbaTextureTrial(LumaTextureTrial::draw(size, dice)))),
 ];
 
 /// An RGBA picture to be converted to luma.
@@ -56,13 +56,15 @@ impl Trial for LumaTrial {
     }
 }
 
-/// A picture in a texture, to be converted to luma.
+/// A part of a texture, to be converted to luma.
 #[derive(Clone, Debug)]
 pub struct LumaTextureTrial {
     /// The format of the texture.
     pub format: wgpu::TextureFormat,
-    /// Texels of the picture.
+    /// Texels of the texture.
     pub texels: Texels,
+    /// First column and row of the part, which ends where the texture does.
+    pub first: [u32; 2],
 }
 
 impl LumaTextureTrial {
@@ -83,7 +85,9 @@ impl LumaTextureTrial {
             wgpu::TextureFormat::Rgba16Float => Texels::RgbaHalf(bytes.map(|bytes| bytes.map(&mut half))),
             _ => Texels::Rgba(bytes),
         };
-        Self { format, texels }
+        // Half of the parts are whole pictures.
+        let first = if dice.below(2) == 0 { [0; 2] } else { [dice.below(size.0), dice.below(size.1)] };
+        Self { format, texels, first }
     }
 
     /// The bytes of the texels, in the memory layout of the format.
@@ -100,6 +104,7 @@ impl LumaTextureTrial {
         }
     }
 
+    /// The size of the texture.
     fn size(&self) -> Size {
         match &self.texels {
             Texels::Rgba(picture) => picture.size(),
@@ -108,11 +113,24 @@ impl LumaTextureTrial {
             Texels::GreyHalf(picture) => picture.size(),
         }
     }
+
+    /// The size of the part.
+    fn part_size(&self) -> Size {
+        let (Size { width, height }, [column, row]) = (self.size(), self.first);
+        Size::new(width - column, height - row)
+    }
+
+    /// The part of a picture of the texture's size.
+    fn part<T: Copy>(&self, picture: &Plane<T>) -> Plane<T> {
+        let [column, row] = self.first;
+        Plane::from_fn(self.part_size(), |x, y| picture.get(column + x, row + y))
+    }
 }
 
 impl Trial for LumaTextureTrial {
     fn parameters(&self) -> String {
-        format!("{:?}", self.format)
+        let [column, row] = self.first;
+        format!("{:?} from column {column} and row {row} on", self.format)
     }
 
     fn input(&self) -> Vec<Array> {
@@ -120,19 +138,19 @@ impl Trial for LumaTextureTrial {
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let (gpu, size) = (bench.gpu, self.size());
+        let (gpu, size) = (bench.gpu, self.part_size());
         let texel = TexelFormat::new(self.format)
             .ok_or_else(|| Error::Unsupported(format!("no luma of textures of format {:?}", self.format)))?;
-        let picture = bench.texture(self.format, size, &self.bytes());
+        let picture = bench.texture(self.format, self.size(), &self.bytes());
         let luma = storage_buffer(gpu, "luma", packed_bytes(size))?;
         bench.poison(&luma);
-        let dispatch = LumaTexture::new(gpu).prepare(size, texel, (&picture, [0; 2]), &luma);
+        let dispatch = LumaTexture::new(gpu).prepare(size, texel, (&picture, self.first), &luma);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("luma", bench.download::<u32>(&luma)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("luma", pack(&luma_texture(&self.texels)))])
+        Ok(vec![Array::exact("luma", pack(&self.part(&luma_texture(&self.texels))))])
     }
 }
 
@@ -174,46 +192,32 @@ impl Trial for RgbaTrial {
     }
 }
 
-/// A picture in a texture, to be converted to RGBA8.
+/// A part of a texture, to be converted to RGBA8.
 #[derive(Clone, Debug)]
-pub struct RgbaTextureTrial {
-    /// The picture.
-    pub texture: LumaTextureTrial,
-    /// First row that is converted.
-    pub first_row: u32,
-}
-
-impl RgbaTextureTrial {
-    fn draw(size: Size, dice: &mut Dice) -> Self {
-        let texture = LumaTextureTrial::draw(size, dice);
-        Self { first_row: dice.below(texture.size().height), texture }
-    }
-}
+pub struct RgbaTextureTrial(pub LumaTextureTrial);
 
 impl Trial for RgbaTextureTrial {
     fn parameters(&self) -> String {
-        format!("{} from row {} on", self.texture.parameters(), self.first_row)
+        self.0.parameters()
     }
 
     fn input(&self) -> Vec<Array> {
-        self.texture.input()
+        self.0.input()
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let LumaTextureTrial { format, .. } = self.texture;
-        let Size { width, height } = self.texture.size();
-        let size = Size::new(width, height - self.first_row);
+        let (format, size) = (self.0.format, self.0.part_size());
         let texel = TexelFormat::new(format)
             .ok_or_else(|| Error::Unsupported(format!("no colours of textures of format {format:?}")))?;
-        let picture = bench.texture(format, (width, height), &self.texture.bytes());
+        let picture = bench.texture(format, self.0.size(), &self.0.bytes());
         let pixels = bench.output(size.pixels() as u32)?;
-        let dispatch = RgbaTexture::new(bench.gpu).prepare(size, texel, (&picture, [0, self.first_row]), &pixels);
+        let dispatch = RgbaTexture::new(bench.gpu).prepare(size, texel, (&picture, self.0.first), &pixels);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("pixels", bench.download::<u32>(&pixels)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![rows_from(&rgba_texture(&self.texture.texels), self.first_row)])
+        Ok(vec![rows_from(&self.0.part(&rgba_texture(&self.0.texels)), 0)])
     }
 }
 

@@ -21,7 +21,7 @@ fn primaries_weigh_77_150_29_in_every_order() {
     for format in BYTES {
         let texels = Texels::Rgba(Plane::new((5, 1), pixels.to_vec()).unwrap());
         let expected = vec![0xFF_1D_95_4D_u32, 100].into();
-        assert_eq!(leaves(&LumaTextureTrial { format, texels }), [expected], "{format:?}");
+        assert_eq!(leaves(&LumaTextureTrial { format, texels, first: [0; 2] }), [expected], "{format:?}");
     }
 }
 
@@ -32,16 +32,20 @@ fn every_byte_is_itself() {
     let expected = pack(&Plane::new((256, 1), all.clone()).unwrap());
     for format in BYTES {
         let texels = Texels::Rgba(Plane::from_fn((256, 1), |x, _| [x as u8; 4]));
-        assert_eq!(leaves(&LumaTextureTrial { format, texels }), [expected.clone().into()], "{format:?}");
+        assert_eq!(
+            leaves(&LumaTextureTrial { format, texels, first: [0; 2] }),
+            [expected.clone().into()],
+            "{format:?}"
+        );
         let texels = Texels::Rgba(Plane::from_fn((256, 3), |x, y| {
             let mut pixel = [0; 4];
             pixel[y as usize] = x as u8;
             pixel
         }));
-        assert_twin(&format!("{format:?}"), &LumaTextureTrial { format, texels });
+        assert_twin(&format!("{format:?}"), &LumaTextureTrial { format, texels, first: [0; 2] });
     }
     let texels = Texels::Grey(Plane::new((256, 1), all).unwrap());
-    assert_eq!(leaves(&LumaTextureTrial { format: TextureFormat::R8Unorm, texels }), [expected.into()]);
+    assert_eq!(leaves(&LumaTextureTrial { format: TextureFormat::R8Unorm, texels, first: [0; 2] }), [expected.into()]);
 }
 
 /// All binary16 from 0 to 1, and some beyond either end.
@@ -49,11 +53,11 @@ fn every_byte_is_itself() {
 fn every_half_is_the_nearest_byte() {
     let halves: Vec<u16> = (0..=0x3c00).chain([0x8000, 0xbc00, 0xfbff, 0x3c01, 0x4000, 0x7bff]).collect();
     let texels = Texels::GreyHalf(Plane::from_fn((1024, 16), |x, y| halves[(y * 1024 + x) as usize % halves.len()]));
-    assert_twin("halves", &LumaTextureTrial { format: TextureFormat::R16Float, texels });
+    assert_twin("halves", &LumaTextureTrial { format: TextureFormat::R16Float, texels, first: [0; 2] });
     // 0.5 is 127.5, rounded up.
     let grey = |half| {
         let texels = Texels::RgbaHalf(Plane::filled((1, 1), [half, half, half, 0]));
-        leaves(&LumaTextureTrial { format: TextureFormat::Rgba16Float, texels })
+        leaves(&LumaTextureTrial { format: TextureFormat::Rgba16Float, texels, first: [0; 2] })
     };
     assert_eq!([0x3800, 0x3c00, 0xbc00].map(grey), [128, 255, 0].map(|grey| [vec![grey as u32].into()]));
 }
@@ -76,7 +80,7 @@ fn equals_the_twin_at_every_size() {
                 }
                 _ => Texels::Rgba(Plane::from_fn((width, height), bytes)),
             };
-            assert_twin(&format!("{width}x{height} {format:?}"), &LumaTextureTrial { format, texels });
+            assert_twin(&format!("{width}x{height} {format:?}"), &LumaTextureTrial { format, texels, first: [0; 2] });
         }
     }
 }
