@@ -7,7 +7,7 @@ use crate::{
     cpu,
     dense::{Dense, DenseConfig, DenseParameters, Masks, UploadedPair, View, compute_uploaded, kernels::Loss},
     error::{Error, Result, check},
-    features::{Detected, Detector, FeatureConfig},
+    features::{Detected, FeatureConfig, detect_both},
     gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
     image::{Luma, Size, reduced},
     io::Picture,
@@ -221,8 +221,7 @@ impl<'b> Pair<'b> {
             let detect = |view| cpu::features::detector::detect(view, config);
             return Ok([detect(&self.left)?, detect(&self.right)?]);
         };
-        let detector = Detector::new(gpu, self.size(), config).await?;
-        Ok([detector.detect(left).await?, detector.detect(right).await?])
+        detect_both(gpu, self.size(), config, [left, right]).await
     }
 
     /// Dense matching: a disparity and a confidence for each pixel of the reference view. Holes are filled by the colours of

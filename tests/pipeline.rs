@@ -12,7 +12,7 @@ use hsad::{
     Backend,
     config::{Config, Preset},
     dense::View,
-    disparity::NONE,
+    disparity::{DisparityRange, NONE},
     gpu::DeviceChoice,
     image::Size,
     io::{Picture, load, pfm},
@@ -157,4 +157,47 @@ fn what_is_masked_is_refined_alike_on_device_and_cpu() {
         assert!(found.masks.iter().all(Option::is_some));
         assert_eq!(found.dense, expected.dense, "{preset}, {reference:?}");
     }
+}
+
+/// Detectors and matchers serve the next pairs of their size and range: other views, another brightness, masks.
+#[test]
+fn what_is_kept_serves_the_next_pairs_and_changes_no_map() {
+    let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let Backend::Gpu(gpu) = &backend else { unreachable!("the best is a device") };
+    let keeping = Backend::Gpu(gpu.clone().keeping(1 << 30));
+    let folder = scene("curved");
+    let views = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let size = Size::new(200, 120);
+    let part = |row: u32, gain: u16, border: u32| {
+        views.each_ref().map(|view| {
+            Picture::from_fn(size, |x, y| {
+                let [r, g, b, a] = view.get(x, y + row);
+                let level = |level| if y < border { 0 } else { (u16::from(level) * gain / 8) as u8 };
+                [level(r), level(g), level(b), a]
+            })
+        })
+    };
+    let darker = [part(20, 8, 0)[0].clone(), part(20, 6, 0)[1].clone()];
+    let config = Config { range: Some(DisparityRange::new(0, 40).unwrap()), ..Preset::Balanced.config() };
+    let existing = || {
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        gpu.device.get_internal_counters().hal.buffers.read()
+    };
+    let mut counts = Vec::new();
+    for [left, right] in [part(0, 8, 0), darker, part(10, 8, 0), part(0, 8, 16), part(30, 8, 16)] {
+        let run = |backend| pipeline::run(backend, (&left, &right), &config, |_| ()).unwrap();
+        let [alone, kept] = [&backend, &keeping].map(run);
+        assert!(alone.dense.disparity.data().iter().any(|&disparity| disparity != NONE));
+        assert_eq!(alone.dense, kept.dense);
+        assert_eq!(alone.features, kept.features);
+        assert_eq!(alone.brightness, kept.brightness);
+        counts.push((existing(), alone.brightness, alone.masks[0].is_some()));
+    }
+    assert_ne!(counts[0].1, counts[1].1, "another brightness");
+    assert_eq!(counts.iter().map(|count| count.2).collect::<Vec<_>>(), [false, false, false, true, true], "masks");
+    let buffers: Vec<isize> = counts.iter().map(|count| count.0).collect();
+    assert!(buffers[0] == buffers[1] && buffers[1] == buffers[2], "a pair of the same kind allocates: {buffers:?}");
+    assert!(buffers[3] > buffers[2] && buffers[3] == buffers[4], "a pair with masks has a matcher: {buffers:?}");
+    drop(keeping);
+    assert!(existing() < buffers[0], "nothing is kept any more");
 }

@@ -30,6 +30,15 @@ impl CachedBackend {
         Self { backend: Backend::Gpu(gpu), file }
     }
 
+    /// Keeps device memory for the next pairs: see [`Gpu::keeping`].
+    pub fn keeping(self, bytes: u64) -> Self {
+        let backend = match self.backend {
+            Backend::Gpu(gpu) => Backend::Gpu(gpu.keeping(bytes)),
+            Backend::Cpu => Backend::Cpu,
+        };
+        Self { backend, ..self }
+    }
+
     /// Leaves what was compiled to later runs. A failure is a record in the log.
     pub fn save(&self) {
         if let Some(Err(error)) = self.file.as_ref().map(PipelineFile::save) {

@@ -1,7 +1,7 @@
 //! Dense matching of one pair on a device.
 
 use super::{
-    Dense, Matcher, colours::ReferenceColours, config::DenseConfig, levels, matcher::Views, pyramid::Pyramid,
+    Dense, Matcher, colours::ReferenceColours, config::DenseConfig, kept, levels, matcher::Views, pyramid::Pyramid,
     uploaded::UploadedPair,
 };
 use crate::{
@@ -41,6 +41,9 @@ pub(crate) async fn compute_uploaded(
     }
     if let Some(pyramid) = Pyramid::of(config, size) {
         return levels::compute(gpu, pair, config, &pyramid, u32::MAX, progress).await;
+    }
+    if gpu.keeps() {
+        return kept::matched(gpu, size, config, &pair, progress).await;
     }
     Matcher::build(gpu, size, config, Views::Uploaded(pair), u32::MAX).await?.run_by_parts(progress).await
 }

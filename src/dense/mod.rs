@@ -13,6 +13,7 @@ mod colours;
 mod compute;
 pub(crate) mod config;
 mod inputs;
+mod kept;
 pub(crate) mod kernels;
 mod levels;
 mod map;

@@ -19,6 +19,37 @@ pub(crate) struct UploadedPair {
     pub masks: Option<Masks>,
 }
 
+impl UploadedPair {
+    /// Memory for a pair of the `size` of this one.
+    ///
+    /// # Errors
+    /// [`crate::Error::TooLarge`].
+    pub fn another(&self, gpu: &Gpu, size: Size) -> Result<Self> {
+        let buffer = |label| storage_buffer(gpu, label, packed_bytes(size));
+        let masks = |masks: &Masks| -> Result<Masks> {
+            Ok(Masks { own: buffer("mask")?, other: buffer("mask")?, loss: masks.loss })
+        };
+        Ok(Self {
+            luma: [buffer("left luma")?, buffer("right luma")?],
+            colours: self.colours.as_ref().map(|_| Colours::new(gpu, size)).transpose()?,
+            masks: self.masks.as_ref().map(masks).transpose()?,
+        })
+    }
+
+    /// Records the copy to a pair of the same size, with colours and masks if this one has them.
+    pub fn copy_to(&self, to: &Self, encoder: &mut wgpu::CommandEncoder) {
+        for (from, to) in self.buffers().zip(to.buffers()) {
+            encoder.copy_buffer_to_buffer(from, 0, to, 0, None);
+        }
+    }
+
+    fn buffers(&self) -> impl Iterator<Item = &wgpu::Buffer> {
+        let colours = self.colours.iter().flat_map(|colours| colours.bands().map(|(.., band)| band));
+        let masks = self.masks.iter().flat_map(|masks| [&masks.own, &masks.other]);
+        self.luma.iter().chain(colours).chain(masks)
+    }
+}
+
 /// Which pixels of a pair show the scene: bytes packed as luma is, 255 or 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Masks {

@@ -150,6 +150,11 @@ impl Detector {
         Ok(Detected { features, found: found as usize })
     }
 
+    /// Whether this detector finds what one of `size` and `config` does.
+    pub(super) fn serves(&self, size: Size, config: &FeatureConfig) -> bool {
+        self.size == size && self.config == *config
+    }
+
     /// Device memory of this detector without the picture, in bytes: mostly that of [`FeatureConfig::max_features`]
     /// descriptors.
     pub fn memory(&self) -> u64 {

@@ -7,6 +7,7 @@
 
 mod config;
 mod detector;
+mod kept;
 pub(crate) mod kernels;
 pub(crate) mod keypoints;
 mod readback;
@@ -14,5 +15,6 @@ pub(crate) mod strongest;
 
 pub use config::{DESCRIPTOR_LENGTH, Detected, Feature, FeatureConfig};
 pub use detector::{Detector, DetectorInput, collect, detect};
+pub(crate) use kept::detect_both;
 pub use keypoints::{Keypoint, KeypointList};
 pub use readback::FeatureReadback;

@@ -1,11 +1,16 @@
 //! The handle of a device.
 
-use std::sync::Arc;
+use std::{any::Any, sync::Arc};
+
+use web_time::Duration;
+use wgpu::WasmNotSend;
 
 use super::{
     device::{DeviceChoice, adapters, find},
     pipelines::Pipelines,
     shapes::{SgmPlan, Shapes},
+    shelf::Shelf,
+    waits::Waits,
 };
 use crate::error::{Error, Result};
 
@@ -39,6 +44,10 @@ pub struct Gpu {
     shapes: Shapes,
     /// Compiled kernels, shared by clones.
     pub(super) pipelines: Arc<Pipelines>,
+    /// Detectors and matchers that are not in use, shared by clones.
+    shelf: Arc<Shelf>,
+    /// Shared by clones.
+    pub(super) waits: Arc<Waits>,
 }
 
 impl Gpu {
@@ -46,13 +55,30 @@ impl Gpu {
     /// the device's handler of uncaptured errors.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let shapes = Shapes::of(&device.adapter_info());
-        Self { device, queue, cache: None, shapes, pipelines: Arc::default() }
+        Self {
+            device,
+            queue,
+            cache: None,
+            shapes,
+            pipelines: Arc::default(),
+            shelf: Arc::default(),
+            waits: Arc::default(),
+        }
     }
 
     /// Adds the application's pipeline cache. The kernels compiled so far are left to the clones without this cache.
     #[must_use]
     pub fn with_cache(self, cache: wgpu::PipelineCache) -> Self {
-        Self { cache: Some(cache), shapes: self.shapes, ..Self::new(self.device, self.queue) }
+        let memory = self.shelf.most();
+        Self { cache: Some(cache), shapes: self.shapes, ..Self::new(self.device, self.queue) }.keeping(memory)
+    }
+
+    /// Keeps the memory of pairs that were matched for the next pairs of the same size, range and parameters, whose detectors and matchers
+    /// are built by then: at most `bytes` of the device besides what is in use, for those used last. It holds for [`crate::pipeline`] and
+    /// [`crate::Pair`] on this `Gpu` and its clones; by default nothing is kept.
+    #[must_use]
+    pub fn keeping(self, bytes: u64) -> Self {
+        Self { shelf: Arc::new(Shelf::new(bytes)), ..self }
     }
 
     /// Opens the chosen adapter, with its own limits for buffer sizes and the downlevel defaults for all others.
@@ -113,7 +139,8 @@ impl Gpu {
     /// Chooses the kernels of the stages that have two, for what is built with the result; else the class of the adapter decides.
     #[must_use]
     pub fn with_shapes(self, shapes: Shapes) -> Self {
-        Self { shapes, ..self }
+        let memory = self.shelf.most();
+        Self { shapes, ..self }.keeping(memory)
     }
 
     /// [`Self::with_shapes`] of semi-global matching alone.
@@ -137,6 +164,32 @@ impl Gpu {
     /// threads with much state are faster than many. Other CPU drivers take minutes to compile such kernels.
     pub(crate) fn is_lavapipe(&self) -> bool {
         self.info().driver == LAVAPIPE
+    }
+
+    /// Time in which the host has waited for results of the device, through this `Gpu` and its clones; what several threads wait at once
+    /// counts once. Beside the time that has passed it tells whether the device is kept busy.
+    pub fn awaited(&self) -> Duration {
+        self.waits.total()
+    }
+
+    /// Whether anything is kept: see [`Self::keeping`].
+    pub(crate) fn keeps(&self) -> bool {
+        self.shelf.most() > 0
+    }
+
+    /// Takes a kept `T` that `fits` accepts.
+    pub(crate) fn take_kept<T: Any>(&self, fits: impl Fn(&T) -> bool) -> Option<T> {
+        self.shelf.take(fits)
+    }
+
+    /// Keeps a `T` that is not in use and takes `bytes` of the device.
+    pub(crate) fn keep<T: Any + WasmNotSend>(&self, thing: T, bytes: u64) {
+        self.shelf.put(thing, bytes);
+    }
+
+    /// Drops what is kept if `built` found no memory; whether that makes room for a second attempt.
+    pub(crate) fn has_made_room<T>(&self, built: &Result<T>) -> bool {
+        matches!(built, Err(Error::OutOfMemory(_))) && self.shelf.clear()
     }
 
     /// Creates an encoder for the library's own submissions.

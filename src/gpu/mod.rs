@@ -34,9 +34,11 @@ pub(crate) mod shader_struct;
 mod shapes;
 #[cfg(all(feature = "files", not(target_arch = "wasm32")))]
 mod shapes_file;
+mod shelf;
 pub(crate) mod stage;
 mod stopwatch;
 mod unroll;
+mod waits;
 mod warm_up;
 pub(crate) mod word_texture;
 

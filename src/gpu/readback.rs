@@ -5,7 +5,7 @@ use std::{
     task::{Poll, Waker},
 };
 
-use super::Gpu;
+use super::{Gpu, waits::Waits};
 use crate::error::{Error, Result};
 
 /// A staging buffer for the first bytes of a buffer: the copy is recorded with the work and read after its submission.
@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 pub(crate) struct Readback {
     staging: wgpu::Buffer,
     device: wgpu::Device,
+    waits: Arc<Waits>,
 }
 
 impl Readback {
@@ -25,7 +26,7 @@ impl Readback {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { staging, device }
+        Self { staging, device, waits: gpu.waits.clone() }
     }
 
     /// Records the copy of `source`'s first bytes.
@@ -48,12 +49,14 @@ impl Readback {
         }
         let bytes = (count * size_of::<T>()) as u64;
         let slice = self.staging.slice(..bytes.next_multiple_of(4));
+        let wait = self.waits.begin();
         let unmap = Unmap(&self.staging);
         if let Err(reason) = mapped(slice, &self.device).await {
             // Nothing is mapped.
             std::mem::forget(unmap);
             return Err(Error::DeviceLost(reason));
         }
+        drop(wait);
         let view = slice.get_mapped_range().map_err(|e| Error::DeviceLost(e.to_string()))?;
         Ok(bytemuck::pod_collect_to_vec::<u8, T>(&view[..bytes as usize]))
     }

@@ -2,6 +2,7 @@
 
 mod journal;
 mod list;
+mod load;
 mod pair;
 mod patterns;
 mod record;
@@ -10,14 +11,15 @@ mod shard;
 mod tally;
 mod tree;
 mod work;
+mod workers;
 
 use std::{
     fs,
     num::NonZero,
+    ops::ControlFlow,
     path::{Path, PathBuf},
     sync::Mutex,
     thread,
-    time::Instant,
 };
 
 use anyhow::{Result, anyhow, bail};
@@ -25,14 +27,19 @@ use clap::Args;
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
 use journal::Journal;
+use load::Load;
 use pair::Pair;
 use results::Results;
 use shard::Shard;
 use tally::Tally;
 use work::Work;
+use workers::side_by_side;
 
 /// Most pairs that are worked on at once, unless it is told.
 const MOST_JOBS: usize = 8;
+
+/// Device memory that is kept for pairs of sizes and ranges that were matched, in bytes.
+const KEPT: u64 = 1 << 30;
 
 /// Match many pairs on one device
 ///
@@ -71,7 +78,7 @@ pub struct Batch {
     /// Work on every N-th pair from pair I on, I from 0 to N-1; the journal is report-I-of-N.jsonl then
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// Pairs that are worked on at once [default: one per processor, at most 8]
+    /// Pairs that are worked on at once [default: one per processor, 2 to 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -118,15 +125,16 @@ impl Batch {
             }
         }
 
-        let cached = if open.is_empty() { None } else { Some(self.run.open()?) };
-        let start = Instant::now();
-        if let Some(cached) = &cached {
+        if !open.is_empty() {
+            let cached = self.run.open()?.keeping(KEPT);
+            let load = Load::begin(&cached.backend);
             let halves = self.halves.halves();
             let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, results: &results };
             self.work_on(&open, &work, journal, &mut tally)?;
+            tally.note_load(load.elapsed(), &load.shares(&cached.backend));
             cached.save();
         }
-        tally.finish(start.elapsed(), &self.output.join(name))?;
+        tally.finish(&self.output.join(name))?;
         match tally.shortfall() {
             None => Ok(()),
             Some((reason, code)) => Err(Shortfall(reason, code).into()),
@@ -156,30 +164,16 @@ impl Batch {
     fn work_on(&self, pairs: &[Pair], work: &Work<'_>, journal: Journal, tally: &mut Tally) -> hsad::Result<()> {
         let jobs = self
             .jobs
-            .map_or_else(|| thread::available_parallelism().map_or(1, NonZero::get).min(MOST_JOBS), usize::from);
-        let next = Mutex::new(pairs.iter());
+            .map_or_else(|| thread::available_parallelism().map_or(1, NonZero::get).clamp(2, MOST_JOBS), usize::from);
         let recorded = Mutex::new((journal, tally, Ok(())));
-        let one_after_the_other = || {
-            while let Some(pair) = next.lock().expect("no panic while it is held").next() {
-                let record = work.on(pair);
-                let mut recorded = recorded.lock().expect("no panic while it is held");
-                let (journal, tally, result) = &mut *recorded;
-                if result.is_ok() {
-                    *result = record.and_then(|record| journal.add(&record).and_then(|()| tally.count(&record)));
-                }
-                if result.is_err() {
-                    break;
-                }
+        side_by_side(pairs, jobs, |pair| {
+            let record = work.on(pair);
+            let mut recorded = recorded.lock().expect("no panic while it is held");
+            let (journal, tally, result) = &mut *recorded;
+            if result.is_ok() {
+                *result = record.and_then(|record| journal.add(&record).and_then(|()| tally.count(&record)));
             }
-        };
-        thread::scope(|scope| {
-            // Where the system allows no more threads, this one does all the work.
-            for _ in 1..jobs.min(pairs.len()) {
-                if thread::Builder::new().name("pairs".into()).spawn_scoped(scope, one_after_the_other).is_err() {
-                    break;
-                }
-            }
-            one_after_the_other();
+            if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         recorded.into_inner().expect("no panic while it is held").2
     }

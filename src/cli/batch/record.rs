@@ -1,8 +1,8 @@
 //! What became of a pair.
 
-use std::time::Duration;
+use std::{fmt, time::Duration};
 
-use hsad::report::number;
+use hsad::{pipeline::Step, report::number};
 use serde_json::{Value, json};
 
 use super::{super::job::CompletedJob, pair::Pair};
@@ -45,6 +45,52 @@ pub struct Times {
     pub written: Duration,
 }
 
+/// Seconds of the parts of the work on pairs, in order. The steps of the pipeline are parts of the matching.
+#[derive(Clone, Debug, Default)]
+pub struct Stages {
+    seconds: [f64; Self::NAMES.len()],
+    pairs: u32,
+}
+
+impl Stages {
+    const NAMES: [&str; 7] = [
+        "reading",
+        "matching",
+        Step::Luma.name(),
+        Step::Features.name(),
+        Step::Seeding.name(),
+        Step::Dense.name(),
+        "writing",
+    ];
+
+    /// Those of a pair.
+    fn of(times: Times, steps: &[(Step, Duration)]) -> Self {
+        let step = |wanted| steps.iter().filter(|(step, _)| *step == wanted).map(|(_, time)| *time).sum();
+        let [luma, features, seeding, dense] = Step::ALL.map(step);
+        let all: [Duration; 7] = [times.read, times.matched, luma, features, seeding, dense, times.written];
+        Self { seconds: all.map(|time| time.as_secs_f64()), pairs: 1 }
+    }
+
+    fn to_json(&self) -> Value {
+        Self::NAMES.iter().zip(self.seconds).map(|(name, seconds)| ((*name).to_owned(), json!(seconds))).collect()
+    }
+
+    /// Adds those of a pair, if it has any.
+    pub fn add(&mut self, record: &Record) {
+        let Some(seconds) = record.0["seconds"].as_object() else { return };
+        for (sum, name) in self.seconds.iter_mut().zip(Self::NAMES) {
+            *sum += seconds[name].as_f64().unwrap_or_default();
+        }
+        self.pairs += 1;
+    }
+
+    /// The means, if there is any pair.
+    pub fn mean(&self) -> Option<impl fmt::Display> {
+        let mean = |(name, seconds): (&&str, f64)| format!("{name} {:.3}", seconds / f64::from(self.pairs));
+        (self.pairs > 0).then(|| Self::NAMES.iter().zip(self.seconds).map(mean).collect::<Vec<_>>().join(", "))
+    }
+}
+
 /// Whether a record, or a report of `hsad match`, names the pictures of `pair`.
 pub fn is_of(value: &Value, pair: &Pair) -> bool {
     let [left, right] = pair.files().map(|path| path.display().to_string());
@@ -80,11 +126,7 @@ impl Record {
         value["min_disparity"] = outcome.range.min.into();
         value["disparities"] = outcome.range.count.into();
         value["warnings"] = json!(completed.warnings);
-        value["seconds"] = json!({
-            "reading": times.read.as_secs_f64(),
-            "matching": times.matched.as_secs_f64(),
-            "writing": times.written.as_secs_f64(),
-        });
+        value["seconds"] = Stages::of(times, &outcome.times).to_json();
         Self(value)
     }
 

@@ -10,7 +10,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{
     super::terminal,
-    record::{Record, Status},
+    load::Shares,
+    record::{Record, Stages, Status},
 };
 
 /// Names of pairs that the summary lists at most per status.
@@ -23,6 +24,10 @@ pub struct Tally {
     earlier: usize,
     /// Names and reasons, by the number of [`Status::ALL`].
     found: [Vec<(String, Option<String>)>; 3],
+    /// Times of the stages of all pairs together.
+    stages: Stages,
+    /// What the summary says of the run's time.
+    load: String,
     bar: ProgressBar,
     /// Whether records are printed.
     prints: bool,
@@ -38,7 +43,16 @@ impl Tally {
             bar.set_style(style);
         }
         let prints = !quiet && !io::stdout().is_terminal();
-        Self { all, earlier: 0, found: Default::default(), bar, prints, quiet }
+        Self {
+            all,
+            earlier: 0,
+            found: Default::default(),
+            stages: Stages::default(),
+            load: String::new(),
+            bar,
+            prints,
+            quiet,
+        }
     }
 
     fn note(&mut self, record: &Record) {
@@ -59,6 +73,7 @@ impl Tally {
     /// [`hsad::Error::Io`] if standard output cannot be written.
     pub fn count(&mut self, record: &Record) -> hsad::Result<()> {
         self.note(record);
+        self.stages.add(record);
         self.bar.inc(1);
         let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
         if doubtful + failed > 0 {
@@ -71,25 +86,37 @@ impl Tally {
         printed.map_err(|source| hsad::Error::Io { path: "standard output".into(), source })
     }
 
+    /// Notes how long the run took, and how busy it kept the machine.
+    pub fn note_load(&mut self, time: Duration, shares: &Shares) {
+        let (here, seconds) = (self.all - self.earlier, time.as_secs_f64());
+        let percent = |share: f64| 100.0 * share;
+        self.load = format!("\n{here} in {seconds:.1} s, {:.2} per second", here as f64 / seconds.max(1e-9));
+        if let Some(share) = shares.processors {
+            self.load += &format!("; {:.0} % of the processors' time", percent(share));
+        }
+        if let Some(share) = shares.device {
+            self.load += &format!("; waiting for the device for {:.0} % of it", percent(share));
+        }
+        if let Some(mean) = self.stages.mean() {
+            self.load += &format!("\nseconds per pair: {mean}");
+        }
+    }
+
     /// Ends the progress line and prints the summary.
     ///
     /// # Errors
     /// Those of standard output.
-    pub fn finish(&self, time: Duration, journal: &Path) -> io::Result<()> {
+    pub fn finish(&self, journal: &Path) -> io::Result<()> {
         self.bar.finish_and_clear();
         if self.quiet {
             return Ok(());
         }
-        let here = self.all - self.earlier;
         let [done, doubtful, failed] = self.found.each_ref().map(Vec::len);
         let mut text = format!("{} pairs: {done} done, {doubtful} doubtful, {failed} failed", self.all);
         if self.earlier > 0 {
             text += &format!("; {} by earlier runs", self.earlier);
         }
-        let seconds = time.as_secs_f64();
-        if here > 0 {
-            text += &format!("\n{here} in {seconds:.1} s, {:.2} per second", here as f64 / seconds.max(1e-9));
-        }
+        text += &self.load;
         for (status, pairs) in Status::ALL.iter().zip(&self.found).skip(1) {
             for (name, reason) in pairs.iter().take(LISTED) {
                 text += &format!("\n  {} {name}: {}", status.name(), reason.as_deref().unwrap_or("unknown"));

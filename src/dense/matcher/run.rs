@@ -7,10 +7,12 @@ use super::Matcher;
 use crate::gpu::block_on;
 use crate::{
     dense::{
+        config::Brightness,
         inputs::Inputs,
         map::Dense,
         outputs::{Destination, Outputs},
         readback::MapReadback,
+        uploaded::UploadedPair,
     },
     error::Result,
     gpu::{Dispatch, DispatchSize, Readback, Stopwatch, guarded, warm_up},
@@ -57,7 +59,25 @@ impl Matcher {
 
     /// [`Self::run`], submitted part by part, with calls of `progress`.
     pub(in crate::dense) async fn run_by_parts(&self, progress: impl FnMut(f32)) -> Result<Dense> {
-        let mut readback = self.readback().await?;
+        self.read_by_parts(&mut self.readback().await?, progress).await
+    }
+
+    /// [`Self::run_by_parts`] of another `pair`, whose bytes take the place of this matcher's.
+    pub(in crate::dense) async fn run_on(
+        &self,
+        pair: &UploadedPair,
+        brightness: Brightness,
+        readback: &mut MapReadback,
+        progress: impl FnMut(f32),
+    ) -> Result<Dense> {
+        self.set_brightness(brightness)?;
+        let mut encoder = self.gpu.encoder("the pair");
+        pair.copy_to(&self.pair, &mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.read_by_parts(readback, progress).await
+    }
+
+    async fn read_by_parts(&self, readback: &mut MapReadback, progress: impl FnMut(f32)) -> Result<Dense> {
         self.plan.run_by_parts(readback.outputs(), progress).await?;
         readback.read().await
     }

@@ -1,0 +1,27 @@
+//! Detectors that serve one pair after the other.
+
+use super::{Detected, Detector, FeatureConfig};
+use crate::{error::Result, gpu::Gpu, image::Size};
+
+/// The interest points of two pictures of one size, by a detector that `gpu` has kept, or that it keeps.
+///
+/// # Errors
+/// See [`super::detect`].
+pub(crate) async fn detect_both(
+    gpu: &Gpu,
+    size: Size,
+    config: &FeatureConfig,
+    [left, right]: [&wgpu::Buffer; 2],
+) -> Result<[Detected; 2]> {
+    let detector = match gpu.take_kept(|kept: &Detector| kept.serves(size, config)) {
+        Some(kept) => kept,
+        None => match Detector::new(gpu, size, config).await {
+            built if gpu.has_made_room(&built) => Detector::new(gpu, size, config).await?,
+            built => built?,
+        },
+    };
+    let detected = [detector.detect(left).await?, detector.detect(right).await?];
+    let bytes = detector.memory();
+    gpu.keep(detector, bytes);
+    Ok(detected)
+}
