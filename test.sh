@@ -9,8 +9,8 @@
 # The page in web/ is tested in that Chromium. `spirv-val` and `glslangValidator` check what the shaders are translated to,
 # `groff` checks the manual pages, and all three are installed in the same way. The Python package is built, installed into a
 # clean environment and tested there; HSAD_PYTHON names another interpreter, and HSAD_PYTHON_EXTRAS packages that its tests use where
-# they are installed (rerun-sdk, open3d, torch, ROS 2's), which are too large to be installed unasked. What is missing all the same is told
-# as NOT RUN.
+# they are installed (rerun-sdk, open3d, torch, ray[data], ROS 2's), which are too large to be installed unasked. What is missing all the
+# same is told as NOT RUN.
 set -euo pipefail
 cd "$(dirname "$0")"
 

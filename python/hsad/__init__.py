@@ -9,9 +9,10 @@
 ``hsad.cv`` has OpenCV's StereoSGBM and StereoBM.
 """
 
-from ._errors import DeviceError, Error, ForkError, FormatError, NoRangeError, NotRectifiedError, ParameterError
+from ._errors import DeviceError, DeviceLostError, Error, ForkError, FormatError, NoRangeError, NotRectifiedError, ParameterError
 from ._hsad import (
     Calibration,
+    Encoded,
     Features,
     Match,
     Matcher,
@@ -24,6 +25,7 @@ from ._hsad import (
     evaluate,
     features,
     match,
+    match_encoded,
     match_features,
     options,
     points,
@@ -44,6 +46,8 @@ from ._hsad import (
 __all__ = [
     "Calibration",
     "DeviceError",
+    "DeviceLostError",
+    "Encoded",
     "Error",
     "Features",
     "ForkError",
@@ -62,6 +66,7 @@ __all__ = [
     "evaluate",
     "features",
     "match",
+    "match_encoded",
     "match_features",
     "options",
     "points",

@@ -25,5 +25,9 @@ class DeviceError(Error, RuntimeError):
     """No device of that name, a device that cannot run this, that was lost or ran out of memory, or a forked process."""
 
 
+class DeviceLostError(DeviceError):
+    """The driver gave the device up: this process can use it no more."""
+
+
 class ForkError(DeviceError):
     """The process was forked after hsad had begun to work in its parent."""

@@ -12,6 +12,7 @@ from .types import DenseOptions, MatchOptions, Option, PointOptions, Score
 
 __all__ = [
     "Calibration",
+    "Encoded",
     "Features",
     "Match",
     "Matcher",
@@ -24,6 +25,7 @@ __all__ = [
     "evaluate",
     "features",
     "match",
+    "match_encoded",
     "match_features",
     "options",
     "points",
@@ -58,6 +60,23 @@ class Match:
     @property
     def report(self) -> dict[str, Any]: ...
     def colors(self) -> NDArray[np.uint8]: ...
+
+@final
+class Encoded:
+    @property
+    def disparity_png(self) -> bytes: ...
+    @property
+    def confidence_png(self) -> bytes: ...
+    @property
+    def disparity(self) -> NDArray[np.float32]: ...
+    @property
+    def confidence(self) -> NDArray[np.uint8]: ...
+    @property
+    def range(self) -> tuple[int, int]: ...
+    @property
+    def trust(self) -> float: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
 
 @final
 class Matcher:
@@ -136,6 +155,16 @@ class Rectified:
     def match(self, **options: Unpack[MatchOptions]) -> Match: ...
 
 def match(left: ArrayLike, right: ArrayLike, *, device: str = ..., **options: Unpack[MatchOptions]) -> Match: ...
+def match_encoded(
+    left: bytes,
+    right: bytes | None = ...,
+    *,
+    names: tuple[str, str] = ...,
+    calibration: bytes | None = ...,
+    depth: tuple[float, float, float] | None = ...,
+    device: str = ...,
+    **options: Unpack[MatchOptions],
+) -> Encoded: ...
 def rectify(
     left: ArrayLike, right: ArrayLike, calibration: Calibration | None = ..., *, device: str = ...
 ) -> Rectified: ...

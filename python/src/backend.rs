@@ -77,8 +77,9 @@ fn open(device: &str) -> hsad::Result<(Arc<Backend>, Option<String>)> {
 /// Returns
 /// -------
 /// list of str
-///     Names of adapters with their graphics interface; ``device=`` takes ``"best"``, an index of this list, a part of a name, or
-///     ``"cpu"`` for the library's path without any device, which gives the same bytes.
+///     Names of adapters with their graphics interface and, where they have one, their place on the PCI bus; ``device=`` takes
+///     ``"best"``, an index of this list, a part of a name, a place such as ``"pci:0000:3b:00.0"``, or ``"cpu"`` for the library's path
+///     without any device, which gives the same bytes.
 ///
 /// Examples
 /// --------
@@ -88,7 +89,10 @@ fn open(device: &str) -> hsad::Result<(Arc<Backend>, Option<String>)> {
 pub fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
     begin_work()?;
     let adapters = py.detach(|| gpu::block_on(gpu::list_adapters()));
-    let named = adapters.iter().map(|info| format!("{} ({})", info.name, info.backend));
+    let named = adapters.iter().map(|info| {
+        let place = gpu::pci_name(info).map_or_else(String::new, |place| format!(", {place}"));
+        format!("{} ({}{place})", info.name, info.backend)
+    });
     Ok(named.chain(["cpu".into()]).collect())
 }
 

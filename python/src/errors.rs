@@ -4,6 +4,7 @@ use hsad::Error;
 use pyo3::{PyErr, exceptions::PyMemoryError, import_exception};
 
 import_exception!(hsad._errors, DeviceError);
+import_exception!(hsad._errors, DeviceLostError);
 import_exception!(hsad._errors, FormatError);
 import_exception!(hsad._errors, NoRangeError);
 import_exception!(hsad._errors, NotRectifiedError);
@@ -26,6 +27,7 @@ pub fn raised(error: Error) -> PyErr {
         Error::NoRange { reason } => NoRangeError::new_err(format!(
             "the disparity range could not be found: {reason}; name it with min_disparity and disparities"
         )),
+        Error::DeviceLost(_) => DeviceLostError::new_err(sentence),
         Error::NotEnoughMemory { .. } => PyMemoryError::new_err(sentence),
         // The rest is of devices, also what a later version of the library adds.
         _ => DeviceError::new_err(sentence),

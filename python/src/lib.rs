@@ -3,6 +3,7 @@
 mod arrays;
 mod backend;
 mod calibration;
+mod encoded;
 mod errors;
 mod features;
 mod files;
@@ -25,6 +26,7 @@ mod _hsad {
     use crate::{
         backend::devices,
         calibration::{Calibration, read_calibration},
+        encoded::{Encoded, match_encoded},
         features::{Features, features, match_features},
         files::{
             read_disparity, read_image, read_kitti, read_pair, read_pfm, read_ply, write_kitti, write_pfm, write_ply,

@@ -88,7 +88,7 @@ impl Match {
 ///     uint8; uint16 and floats, of which both views are stretched alike to 8 bits. Alpha 0 and samples that are not finite stand for
 ///     'not seen'. Tensors are taken by DLPack from memory of the CPU. OpenCV's pictures are BGR: ``picture[..., ::-1]``.
 /// device : str
-///     ``"best"``, ``"cpu"``, or an index or part of a name in :func:`devices`.
+///     ``"best"``, ``"cpu"``, or an index, a part of a name or a place in :func:`devices`.
 /// **options
 ///     Options of the command with underscores, such as ``preset="quality"``, ``min_disparity=-8``, ``disparities=128``,
 ///     ``no_fill=True``: :func:`options` describes all of them.

@@ -3,7 +3,7 @@
 use clap::Args;
 use hsad::{
     Error,
-    gpu::{block_on, list_adapters},
+    gpu::{block_on, list_adapters, pci_name},
     wgpu::{AdapterInfo, DeviceType},
 };
 
@@ -12,12 +12,14 @@ use super::terminal;
 /// List the devices that --device accepts
 ///
 /// The first device is the best one and the default. 'cpu' is always available: it needs no driver,
-/// takes longer, and computes the same disparities to the bit.
+/// takes longer, and computes the same disparities to the bit. GPUs of one name are told apart by
+/// their places on the PCI bus.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hsad devices
   hsad match left.png right.png -o out --device 0
-  hsad match left.png right.png -o out --device nvidia")]
+  hsad match left.png right.png -o out --device nvidia
+  hsad match left.png right.png -o out --device pci:0000:3b:00.0")]
 pub struct Devices {}
 
 impl Devices {
@@ -33,20 +35,21 @@ impl Devices {
 }
 
 fn table(adapters: &[AdapterInfo]) -> String {
-    let mut rows = vec![["index", "name", "type", "backend", "driver"].map(String::from)];
+    let mut rows = vec![["index", "name", "type", "backend", "place", "driver"].map(String::from)];
     for (index, info) in adapters.iter().enumerate() {
         let driver = format!("{} {}", info.driver, info.driver_info);
-        rows.push([index.to_string(), info.name.clone(), kind(info).into(), info.backend.to_string(), driver]);
+        let place = pci_name(info).unwrap_or_else(|| "none".into());
+        rows.push([index.to_string(), info.name.clone(), kind(info).into(), info.backend.to_string(), place, driver]);
     }
-    rows.push(["cpu", "this machine's processor", "fallback", "none", "none"].map(String::from));
+    rows.push(["cpu", "this machine's processor", "fallback", "none", "none", "none"].map(String::from));
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..4).map(width).collect();
+    let widths: Vec<usize> = (0..5).map(width).collect();
     let mut text = String::new();
     for row in &rows {
         for (cell, &width) in row.iter().zip(&widths) {
             text += &format!("{cell:width$}  ");
         }
-        text += row[4].trim();
+        text += row[5].trim();
         text.push('\n');
     }
     text

@@ -27,7 +27,7 @@ use super::{
 /// Device and verbosity of a subcommand.
 #[derive(Args)]
 pub struct RunOptions {
-    /// Device to compute on: best, cpu, or the index or a part of the name of a device (see hsad devices)
+    /// Device to compute on: best, cpu, or the index, a part of the name or the place of a device (see hsad devices)
     #[arg(long, default_value_t = DeviceChoice::Best)]
     device: DeviceChoice,
     /// First run every kernel once on the device and refuse it if any result differs from the CPU twin's (see

@@ -47,7 +47,7 @@ pub use adapter_file::cache_folder;
 #[cfg(not(target_arch = "wasm32"))]
 pub use block_on::block_on;
 pub(crate) use buffers::{buffer_limit, buffer_of, drawn_buffer, storage_buffer, store, uniform_buffer};
-pub use device::{DeviceChoice, list_adapters};
+pub use device::{DeviceChoice, list_adapters, pci_name};
 pub(crate) use guard::{guarded, try_recording};
 pub use handle::Gpu;
 pub use kernel::DispatchSize;

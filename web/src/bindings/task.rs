@@ -7,7 +7,7 @@ use hsad::{
     config::Config,
     io::{
         Calibration,
-        calibration::{self, Hints, Loaded},
+        calibration::{self, Hints},
         load::Stretch,
     },
     pipeline::Way,
@@ -88,7 +88,7 @@ fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut 
         let hints = Hints { pictures: Some(pictures), sizes: Some(sizes), unit: given["unit"].as_f64() };
         let loaded = calibration::parse(&texts, &hints)?;
         warnings.extend(loaded.notes.iter().cloned());
-        return of_files(&loaded, sizes)
+        return Way::by_files(&loaded, sizes)
             .map_err(|error| Error::Format { path: texts[0].0.into(), reason: error.to_string() });
     }
     let Some((focal, baseline)) = given["focal"].as_f64().zip(given["baseline"].as_f64()) else {
@@ -96,21 +96,4 @@ fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut 
     };
     let doffs = given["doffs"].as_f64().unwrap_or(0.0);
     Ok((Way::AsNeeded, Some(Calibration::centred(focal, baseline, doffs, sizes[0])?)))
-}
-
-/// As with `hsad match --calib`: the calibration of rectified pictures of this size, that of pictures as they were taken, or the better
-/// one of both.
-fn of_files(loaded: &Loaded, sizes: [Size; 2]) -> Result<Geometry> {
-    let stereo = &loaded.stereo;
-    let as_rectified = loaded.for_rectified(sizes[0]);
-    // Files of a rectified pair alone have the same cameras as `stereo`.
-    if stereo.rectified().is_some() {
-        return Ok((Way::AsNeeded, Some(as_rectified?)));
-    }
-    match (as_rectified, stereo.check_sizes(sizes)) {
-        (Ok(calibration), Ok(())) => Ok((Way::Either(*stereo), Some(calibration))),
-        (Ok(calibration), Err(_)) => Ok((Way::AsNeeded, Some(calibration))),
-        (Err(_), Ok(())) => Ok((Way::Calibrated(*stereo), None)),
-        (Err(_), Err(error)) => Err(error),
-    }
 }

@@ -1,0 +1,28 @@
+"""Bytes of files by path or URI."""
+
+from typing import Any
+
+LOCAL = "file://"
+
+
+def read(place: str) -> bytes:
+    """The bytes of a file: a path, or a URI of a file system that pyarrow knows (``s3://``, ``gs://``, ``abfs://``, ``hdfs://``)."""
+    if "://" not in place or place.startswith(LOCAL):
+        with open(place.removeprefix(LOCAL), "rb") as file:
+            return file.read()
+    system, path = file_system(place)
+    with system.open_input_stream(path) as stream:
+        data: bytes = stream.read()
+    return data
+
+
+def file_system(place: str) -> tuple[Any, str]:
+    """The file system of a path or URI, and the path there."""
+    from os.path import abspath
+
+    from pyarrow import fs
+
+    if "://" not in place:
+        return fs.LocalFileSystem(), abspath(place)
+    system, path = fs.FileSystem.from_uri(place)
+    return system, path

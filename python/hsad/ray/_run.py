@@ -1,0 +1,202 @@
+"""A run over many pairs: which are left, who matches them, and what became of them."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import TYPE_CHECKING, Any, Final
+
+import hsad
+
+from . import _files
+from ._disparity import Disparity
+from ._parts import Parts
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ..types import MatchOptions
+
+
+@dataclass
+class Summary:
+    """What became of the pairs of a run."""
+
+    pairs: int = 0
+    """All pairs of the list."""
+    earlier: int = 0
+    """Those whose maps an earlier run had written."""
+    done: int = 0
+    """Those whose maps this run has written."""
+    not_trusted: int = 0
+    """Those of them whose maps are not to be trusted."""
+    failed: int = 0
+    """Those without a map; their rows say why."""
+
+
+def run(
+    pairs: str,
+    folder: str,
+    *,
+    device: str | None = None,
+    workers: int | None = None,
+    cpus: float = 1,
+    gpus: float | None = None,
+    rows: int = 16,
+    jobs: int = 2,
+    told: Callable[[Summary], None] = lambda _: None,
+    **options: "Unpack[MatchOptions]",
+) -> Summary:
+    """Matches the pairs of a Parquet file, or of a folder of them, on Ray's cluster, and writes a folder of Parquet files.
+
+    A pair is a row with ``left`` and ``right``, as :class:`Disparity` reads them, in paths or URIs, and perhaps a ``name`` of its own;
+    without one it gets a name from its files. Each file of the answer has a few pairs, appears whole or not at all, and is named by them:
+    a worker that ends before or after it has written one leaves nothing lost or doubled. A run into the same folder goes on: it matches
+    the pairs that are missing or have failed. One run at a time writes into a folder.
+
+    Parameters
+    ----------
+    pairs, folder : str
+        Paths that all machines see, or URIs.
+    device : str, optional
+        As for :class:`Disparity`.
+    workers : int, optional
+        Number of workers; by default as many as the cluster has room for.
+    cpus, gpus : float
+        What a worker takes of them: parts of a GPU are possible. By default a GPU where the cluster has any.
+    rows : int
+        Pairs per file.
+    jobs, **options
+        As for :class:`Disparity`.
+    told : callable
+        Called with the :class:`Summary` so far.
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    ParameterError
+        A list without ``left``, pairs of one name, a folder of other options, and what :class:`Disparity` raises.
+    OSError
+        Files that cannot be read or written.
+    """
+    import ray
+    from ray import data
+
+    # Options are checked here, and not by a worker that starts again and again.
+    Disparity("cpu", **options)
+    summary, parts = Summary(), Parts(folder)
+    table = named(_table(pairs))
+    parts.begin(options)
+    summary.pairs = table.num_rows
+    left = _left(table, parts)
+    summary.earlier = table.num_rows - left.num_rows
+    told(summary)
+    if left.num_rows == 0:
+        return summary
+    if not ray.is_initialized():
+        ray.init()
+    there = ray.cluster_resources()
+    if gpus is None:
+        gpus = 1 if there.get("GPU") else 0
+    room = there.get("GPU", 0) / gpus if gpus else there.get("CPU", 1) / cpus
+    blocks = [left.slice(start, rows) for start in range(0, left.num_rows, rows)]
+    found = data.from_arrow(blocks).map_batches(
+        Worker,
+        fn_constructor_kwargs={"folder": folder, "device": device, "jobs": jobs, "options": dict(options)},
+        batch_size=None,
+        batch_format="pyarrow",
+        compute=data.ActorPoolStrategy(size=max(1, min(workers or int(room), len(blocks)))),
+        num_cpus=cpus,
+        num_gpus=gpus,
+    )
+    for row in found.iter_rows():
+        summary.done += row["done"]
+        summary.not_trusted += row["not_trusted"]
+        summary.failed += row["failed"]
+        told(summary)
+    return summary
+
+
+class Worker:
+    """Matches pairs and writes their part, unless it is there."""
+
+    def __init__(self, folder: str, device: str | None, jobs: int, options: Mapping[str, Any]) -> None:
+        self._parts: Final = Parts(folder)
+        self._disparity: Final = Disparity(device, jobs=jobs, **options)
+
+    def __call__(self, pairs: Any) -> dict[str, list[int]]:
+        """The numbers of a table's pairs by what became of them."""
+        name = self._parts.name_of(pairs["name"].to_pylist())
+        if self._parts.has(name):
+            return self._tallied(name)
+        columns = {column: pairs[column].to_pylist() for column in pairs.column_names}
+        self._parts.write(name, pairs, self._disparity.match_rows(columns))
+        return self._tallied(name)
+
+    def _tallied(self, name: str) -> dict[str, list[int]]:
+        from pyarrow import parquet
+
+        system, path = self._parts.path(name)
+        rows = parquet.read_table(path, columns=["error", "not_trusted"], filesystem=system).to_pylist()
+        failed = sum(row["error"] is not None for row in rows)
+        doubtful = sum(row["not_trusted"] is not None for row in rows)
+        return {"done": [len(rows) - failed], "not_trusted": [doubtful], "failed": [failed]}
+
+
+def named(table: Any) -> Any:
+    """The table of pairs with a name for each.
+
+    Raises
+    ------
+    ParameterError
+        A list without views, with views in bytes, or with pairs of one name.
+    """
+    import pyarrow
+
+    if "left" not in table.column_names:
+        raise hsad.ParameterError(f"the list has no column left (only {', '.join(table.column_names) or 'none'}), and maybe right")
+    for view in ("left", "right"):
+        if view in table.column_names and pyarrow.types.is_binary(table.schema.field(view).type):
+            raise hsad.ParameterError(
+                f"the column {view} has pictures, but a list names files: ds.map_batches(hsad.ray.Disparity, ...) takes pictures, too"
+            )
+    if "name" not in table.column_names:
+        files = [table[column].to_pylist() for column in ("left", "right", "calib") if column in table.column_names]
+        names = [blake2b(repr(row).encode(), digest_size=8).hexdigest() for row in zip(*files)]
+        table = table.append_column("name", pyarrow.array(names, pyarrow.string()))
+    names = [str(name) for name in table["name"].to_pylist()]
+    if len(set(names)) < len(names):
+        seen: set[str] = set()
+        twice = next(name for name in names if name in seen or seen.add(name))  # type: ignore[func-returns-value]
+        raise hsad.ParameterError(f"two pairs have the name {twice}: names are one per pair, and without them files are")
+    return table.set_column(table.column_names.index("name"), "name", pyarrow.array(names, pyarrow.string()))
+
+
+def _table(pairs: str) -> Any:
+    """The rows of a list."""
+    from pyarrow import dataset
+
+    system, path = _files.file_system(pairs)
+    return dataset.dataset(path, format="parquet", filesystem=system).to_table()
+
+
+def _left(table: Any, parts: Parts) -> Any:
+    """The pairs that no earlier run has written.
+
+    Raises
+    ------
+    ParameterError
+        A name that stands for other files than in an earlier run.
+    """
+    import pyarrow
+
+    written = parts.written()
+    rights = table["right"].to_pylist() if "right" in table.column_names else [None] * table.num_rows
+    keep = []
+    for name, left, right in zip(table["name"].to_pylist(), table["left"].to_pylist(), rights):
+        if name in written and written[name] != (left, right):
+            raise hsad.ParameterError(f"the maps of {name} in {parts.folder} are of other files than {left}: name another folder")
+        keep.append(name not in written)
+    return table.filter(pyarrow.array(keep, pyarrow.bool_()))
