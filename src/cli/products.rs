@@ -17,7 +17,6 @@ use hsad::{
         ply::{self, LeftOut, Point, PointFilter},
         png,
     },
-    pipeline::reduction,
     report::Cloud,
 };
 use serde_json::Value;
@@ -155,13 +154,12 @@ impl CompletedJob {
 
     /// Adds the table of all matches of interest points, in the pictures that were matched.
     pub fn add_matches(&self, output: &mut Output) -> Result<()> {
-        let Self { job, outcome, rectified, .. } = self;
-        let left = rectified.as_ref().map_or(&job.left, |pair| &pair.pictures[0]);
+        let Self { job, outcome, .. } = self;
         let table = MatchTable {
             features: outcome.features.each_ref().map(Vec::as_slice),
             matches: &outcome.seeding.matches,
             rows: outcome.seeding.rectification.rows,
-            max_dy: f64::from(job.config.seeding.max_dy) * f64::from(reduction(left.size())),
+            max_dy: f64::from(job.config.seeding.max_dy) * f64::from(outcome.reduction),
         };
         output.add(MATCHES, |out| out.write_all(table.csv().as_bytes()))
     }

@@ -27,6 +27,7 @@ pub use range::RangeSource;
 #[cfg(not(target_arch = "wasm32"))]
 pub use rectified::rectify_by;
 pub use rectified::{RectifiedPair, rectify_by_async};
+use reduction::geometry_reduction;
 pub use reduction::reduction;
 #[cfg(not(target_arch = "wasm32"))]
 pub use taken_pair::rectify;
@@ -86,6 +87,8 @@ pub struct Outcome {
     /// Number of interest points of the left and of the right view; more than there are [`Self::features`] if only the
     /// [`FeatureConfig::max_features`] strongest were kept.
     pub points_found: [usize; 2],
+    /// The factor by which the views were downscaled before interest points were detected: [`reduction`], or more for a rectified pair.
+    pub reduction: u32,
     /// Seeds, coarse map, disparity range, rectification, brightness relation and agreement.
     pub seeding: Seeding,
     /// Searched disparity range, without the disparities that the width of the picture rules out.
@@ -236,7 +239,8 @@ async fn run_on(
     let repetition = repetition(left).min(repetition(right));
 
     enter(Some(Step::Features));
-    let factor = reduction(size);
+    // The rows of a rectified pair correspond, as far as points in pictures of half a megapixel tell.
+    let factor = if given.rectified.is_some() { geometry_reduction(size) } else { reduction(size) };
     let detected = views.features(factor, &config.features).await?;
 
     enter(Some(Step::Seeding));
@@ -291,6 +295,7 @@ async fn run_on(
     Ok(Some(Outcome {
         features,
         points_found,
+        reduction: factor,
         no_depth,
         trust,
         seeding,
