@@ -41,7 +41,11 @@ import_exception!(hsad._errors, ParameterError);
 ///     It is no picture, is damaged, or shows nothing.
 #[pyfunction]
 pub fn read_image<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Array3<'py, u8>> {
-    picture_array(py, &py.detach(|| load::load(&path)).raise()?)
+    let (picture, doubt) = py.detach(|| load::load_with_doubt(&path)).raise()?;
+    if let Some(doubt) = doubt {
+        py.import("warnings")?.call_method1("warn", (doubt,))?;
+    }
+    picture_array(py, &picture)
 }
 
 /// Reads the views of one pair, deep samples stretched to 8 bits alike.

@@ -100,7 +100,7 @@ impl Features {
         let config = self.features.over(FeatureConfig::default())?;
         config.validate()?;
         let mut output = self.open_set(&[&self.image], &POINTS)?;
-        let picture = load::load(&self.image)?;
+        let picture = self.load(&self.image)?;
         let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
         progress.begin("finding interest points");
@@ -178,10 +178,17 @@ impl Features {
         self.tell(output.as_ref(), &csv, &found)
     }
 
+    /// A picture, with a warning if its file is odd.
+    fn load(&self, path: &Path) -> hsad::Result<Picture> {
+        let (picture, doubt) = load::load_with_doubt(path)?;
+        doubt.filter(|_| !self.run.quiet).iter().for_each(terminal::warning);
+        Ok(picture)
+    }
+
     /// Both pictures.
     fn views(&self, images: [&Path; 2]) -> hsad::Result<[Picture; 2]> {
         if self.second.is_some() {
-            return Ok([load::load(images[0])?, load::load(images[1])?]);
+            return Ok([self.load(images[0])?, self.load(images[1])?]);
         }
         let LoadedPair { left, right, warnings, .. } =
             load::load_both(images[0], self.halves.halves(), &Unseen::default())?;

@@ -9,7 +9,7 @@ use ::image::{
 use super::{
     MAX_PIXELS, check_pixels, claims,
     decoded::{Decoded, MAX_BYTES_PER_PIXEL, explain, float_image, most_bytes, unsupported},
-    jpeg, malformed, pfm, read_if, tiff,
+    jpeg, malformed, pfm, png_chunks, read_if, tiff,
 };
 use crate::{
     error::{Result, shown},
@@ -21,6 +21,10 @@ const PREPARED_BYTES_PER_PIXEL: u64 = 8;
 
 /// First bytes of a BigTIFF, little and big endian, which the `image` crate decodes but does not recognise.
 const BIG_TIFF: [&[u8]; 2] = [b"II+\0", b"MM\0+"];
+
+/// The formats that are read, but for PFM.
+const READ: [ImageFormat; 6] =
+    [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP];
 
 /// Reads the bytes of a picture file, up to the length of the largest uncompressed picture; of any other file the first few.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
@@ -40,36 +44,35 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
     if bytes.starts_with(b"Pf") || bytes.starts_with(b"PF") {
         let grey = pfm::decode(bytes, path)?;
         let image = float_image(grey.size(), 1, grey.into_data());
-        return Ok(Decoded { image, orientation: Orientation::NoTransforms });
+        return Ok(Decoded::upright(image));
     }
     let damaged = |error| explain(error, path);
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| malformed(path, format!("not a picture: {error}")))?;
-    if BIG_TIFF.iter().any(|magic| bytes.starts_with(magic)) {
-        reader.set_format(ImageFormat::Tiff);
-    }
-    match reader.format() {
-        None => {
+    let format = match ::image::guess_format(bytes) {
+        _ if BIG_TIFF.iter().any(|magic| bytes.starts_with(magic)) => ImageFormat::Tiff,
+        Ok(format) if READ.contains(&format) => format,
+        _ => {
             return Err(malformed(
                 path,
                 "not a picture of a supported format: PNG, JPEG, PNM, BMP, TIFF and WebP are read, and PFM",
             ));
         }
-        Some(ImageFormat::Jpeg) => {
-            if let Some(objection) = jpeg::objection(bytes) {
-                return Err(malformed(path, objection));
-            }
-        }
-        Some(ImageFormat::Tiff) => {
-            if let Some(decoded) = tiff::decode_wide(bytes, path)? {
-                return Ok(decoded);
-            }
-        }
-        Some(_) => {}
-    }
+    };
     let claimed = claims::size(bytes).map_err(|reason| malformed(path, reason))?;
-    // Colour profiles and texts are expanded before the size is asked for.
+    if let Some(size) = claimed {
+        check_pixels(size, path)?;
+    }
+    let (bytes, doubt) = match format {
+        ImageFormat::Jpeg => jpeg::whole(bytes).map_err(|reason| malformed(path, reason))?,
+        ImageFormat::Png => png_chunks::essential(bytes),
+        ImageFormat::Tiff => match tiff::decode_wide(bytes, path)? {
+            Some(decoded) => return Ok(decoded),
+            None => (bytes.into(), None),
+        },
+        _ => (bytes.into(), None),
+    };
+    let bytes = &*bytes;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    // What is expanded before the size is asked for is limited, too.
     let mut limits = Limits::default();
     limits.max_alloc = Some(claimed.map_or(MAX_PIXELS * MAX_BYTES_PER_PIXEL, |size| most_bytes(size, bytes)));
     reader.limits(limits);
@@ -91,7 +94,7 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     image.apply_orientation(orientation);
-    Ok(Decoded { image, orientation })
+    Ok(Decoded { image, orientation, doubt })
 }
 
 /// Name of a colour type.

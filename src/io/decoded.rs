@@ -17,6 +17,15 @@ const CODEC_BYTES: u64 = 1 << 22;
 pub(super) struct Decoded {
     pub image: DynamicImage,
     pub orientation: Orientation,
+    /// What is odd about the file, though all of its picture is there.
+    pub doubt: Option<String>,
+}
+
+impl Decoded {
+    /// A picture as it was taken, of a file without oddities.
+    pub fn upright(image: DynamicImage) -> Self {
+        Self { image, orientation: Orientation::NoTransforms, doubt: None }
+    }
 }
 
 /// Memory that decoding may take, in bytes: whatever else the header claims, no more is needed than for the pixels and

@@ -22,7 +22,7 @@ use crate::{
     image::Plane,
 };
 
-pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+pub(super) use super::png_chunks::SIGNATURE;
 
 /// Keyword of the text chunk that holds an [`Encoding`].
 const KEYWORD: &str = "hsad-disparity";

@@ -17,14 +17,18 @@ pub enum Halves {
 
 impl Halves {
     /// The left and the right view; of an odd number of columns or rows the middle one is in neither. `None` if there is but one.
-    pub(super) fn split(self, Decoded { image, orientation }: &Decoded) -> Option<[Decoded; 2]> {
+    pub(super) fn split(self, Decoded { image, orientation, doubt }: &Decoded) -> Option<[Decoded; 2]> {
         let is_beside = matches!(self, Self::LeftRight | Self::RightLeft);
         let (width, height) = (image.width(), image.height());
         let [half_width, half_height] = if is_beside { [width / 2, height] } else { [width, height / 2] };
         if half_width == 0 || half_height == 0 {
             return None;
         }
-        let part = |x, y| Decoded { image: image.crop_imm(x, y, half_width, half_height), orientation: *orientation };
+        let part = |x, y| Decoded {
+            image: image.crop_imm(x, y, half_width, half_height),
+            orientation: *orientation,
+            doubt: doubt.clone(),
+        };
         let (first, second) = (part(0, 0), part(width - half_width, height - half_height));
         Some(if matches!(self, Self::LeftRight | Self::LeftOnTop) { [first, second] } else { [second, first] })
     }
@@ -32,16 +36,15 @@ impl Halves {
 
 #[cfg(test)]
 mod tests {
-    use ::image::{DynamicImage, GrayImage, Luma, metadata::Orientation};
+    use ::image::{DynamicImage, GrayImage, Luma};
 
     use super::*;
 
     #[test]
     fn halves_by_hand() {
-        let picture = |width, height| Decoded {
-            image: DynamicImage::ImageLuma8(GrayImage::from_fn(width, height, |x, y| Luma([(10 * y + x) as u8]))),
-            orientation: Orientation::NoTransforms,
-        };
+        let grey = |x: u32, y: u32| Luma([(10 * y + x) as u8]);
+        let picture =
+            |width, height| Decoded::upright(DynamicImage::ImageLuma8(GrayImage::from_fn(width, height, grey)));
         let halves = |halves: Halves, width, height| {
             halves.split(&picture(width, height)).map(|views| views.map(|view| view.image.into_luma8().into_raw()))
         };

@@ -47,7 +47,7 @@ pub struct LoadedPair {
     pub right: Picture,
     /// The stretch of the views that have more than 8 bits; `None`: the upper 8 bits were taken.
     pub stretch: Option<Stretch>,
-    /// Doubts about the files, one line each: different EXIF orientations.
+    /// Doubts about the files, one line each: a missing end, bytes that belong to nothing, different EXIF orientations.
     pub warnings: Vec<String>,
 }
 
@@ -59,14 +59,32 @@ pub fn load(path: &Path) -> Result<Picture> {
     decode(&codec::read_bytes(path)?, path)
 }
 
+/// Loads a picture file as [`load`], and tells what is odd about the file, though all of its picture is there: a missing end, or bytes that
+/// belong to nothing.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_doubt(path: &Path) -> Result<(Picture, Option<String>)> {
+    decode_with_doubt(&codec::read_bytes(path)?, path)
+}
+
 /// Decodes the picture in a file's bytes to RGBA of 8 bits; `path` is named in errors.
 ///
 /// # Errors
 /// [`crate::Error::Format`] if the bytes are no picture of a supported format, are damaged or cut off, hold more than
 /// [`super::MAX_PIXELS`], or no pixel that was seen.
 pub fn decode(bytes: &[u8], path: &Path) -> Result<Picture> {
+    Ok(decode_with_doubt(bytes, path)?.0)
+}
+
+/// Decodes the picture in a file's bytes as [`decode`], and tells what is odd about them as [`load_with_doubt`].
+///
+/// # Errors
+/// As [`decode`].
+pub fn decode_with_doubt(bytes: &[u8], path: &Path) -> Result<(Picture, Option<String>)> {
     let samples = seen(codec::decode(bytes, path)?, path)?;
-    Ok(picture(&samples, Stretch::of(&[&samples])))
+    let doubt = samples.doubt.as_ref().map(|doubt| format!("{}: {doubt}", shown(path)));
+    Ok((picture(&samples, Stretch::of(&[&samples])), doubt))
 }
 
 /// Loads the views of one pair, both with the same stretch, and without the pixels that `unseen` names.
@@ -178,7 +196,11 @@ impl LoadedPair {
 
     fn of(views: [&Samples; 2], paths: [&Path; 2]) -> Result<Self> {
         check_kinds(views, paths)?;
-        let warnings = turns(views, paths[1])?.into_iter().collect();
+        let told = |(view, path): (&Samples, &Path)| Some(format!("{}: {}", shown(path), view.doubt.as_ref()?));
+        let mut warnings: Vec<String> = views.into_iter().zip(paths).filter_map(told).collect();
+        // Halves of one picture share its doubt.
+        warnings.dedup();
+        warnings.extend(turns(views, paths[1])?);
         let stretch = Stretch::of(&views);
         let [left, right] = views.map(|view| picture(view, stretch));
         Ok(Self { left, right, stretch, warnings })

@@ -46,6 +46,8 @@ mod ply_reader;
 #[cfg(feature = "pictures")]
 pub mod png;
 #[cfg(feature = "pictures")]
+mod png_chunks;
+#[cfg(feature = "pictures")]
 mod png_text;
 mod point_filter;
 #[cfg(feature = "pictures")]

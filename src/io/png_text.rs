@@ -1,12 +1,11 @@
 //! Text chunks (`tEXt`) of PNG files: a keyword and a text.
 //!
-//! A chunk is its data's length, a type of four letters, the data, and a checksum of type and data, numbers in big-endian order
-//! ('Portable Network Graphics (PNG) Specification', W3C, 2003, sections 5.3 and 11.3.4.3).
+//! 'Portable Network Graphics (PNG) Specification', W3C, 2003, section 11.3.4.3.
 
-/// Bytes before the first chunk.
-const SIGNATURE: usize = 8;
+use super::png_chunks::{SIGNATURE, chunks};
+
 /// Bytes of signature and header chunk, behind which other chunks may stand.
-const HEADER: usize = SIGNATURE + 25;
+const HEADER: usize = SIGNATURE.len() + 25;
 
 /// `png` with a chunk of this keyword (1 to 79 bytes) and text, both ASCII, behind its header.
 pub(super) fn with_text(png: &[u8], keyword: &str, text: &str) -> Vec<u8> {
@@ -21,24 +20,15 @@ pub(super) fn with_text(png: &[u8], keyword: &str, text: &str) -> Vec<u8> {
 /// # Errors
 /// What is wrong with the chunk.
 pub(super) fn find<'a>(png: &'a [u8], keyword: &str) -> Result<Option<&'a str>, String> {
-    let mut rest = png.get(SIGNATURE..).unwrap_or_default();
-    while let Some((length, chunk)) = rest.split_first_chunk() {
-        let length = 4 + u32::from_be_bytes(*length) as usize;
-        let Some((body, behind)) = chunk.split_at_checked(length) else { break };
-        let Some((told, behind)) = behind.split_first_chunk() else { break };
-        if body.starts_with(b"IDAT") {
-            break;
-        }
-        let text =
-            body.strip_prefix(b"tEXt").and_then(|data| data.strip_prefix(keyword.as_bytes())?.strip_prefix(b"\0"));
+    for chunk in chunks(png).take_while(|chunk| chunk.data_of(b"IDAT").is_none()) {
+        let text = chunk.data_of(b"tEXt").and_then(|data| data.strip_prefix(keyword.as_bytes())?.strip_prefix(b"\0"));
         if let Some(text) = text {
-            let is_whole = u32::from_be_bytes(*told) == checksum(body);
+            let is_whole = chunk.checksum == checksum(chunk.body);
             let text = std::str::from_utf8(text).ok().filter(|_| is_whole);
             return text
                 .map(Some)
                 .ok_or_else(|| format!("the text '{keyword}' is damaged: copy or export the file again"));
         }
-        rest = behind;
     }
     Ok(None)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ::image::{DynamicImage, GrayAlphaImage, GrayImage, ImageBuffer, RgbImage, RgbaImage, metadata::Orientation};
+use ::image::{DynamicImage, GrayAlphaImage, GrayImage, ImageBuffer, RgbImage, RgbaImage};
 
 use super::{
     MAX_PIXELS, check_pixels,
@@ -73,7 +73,7 @@ impl RawPicture {
     }
 
     pub(super) fn into_decoded(self) -> Decoded {
-        Decoded { image: self.image, orientation: Orientation::NoTransforms }
+        Decoded::upright(self.image)
     }
 }
 

@@ -48,16 +48,18 @@ pub(super) struct Samples {
     image: DynamicImage,
     /// The orientation that the file names, and that was applied.
     pub orientation: Orientation,
+    /// What is odd about the file.
+    pub doubt: Option<String>,
     /// One entry per pixel, row by row.
     seen: Vec<bool>,
 }
 
 impl Samples {
     /// The samples of a file; unseen are pixels of alpha 0 and those with a sample that is not finite.
-    pub fn new(Decoded { image, orientation }: Decoded) -> Self {
+    pub fn new(Decoded { image, orientation, doubt }: Decoded) -> Self {
         let mut seen = Vec::with_capacity(image.width() as usize * image.height() as usize);
         for_each(&image, |color, alpha| seen.push(alpha != 0.0 && color.iter().all(|sample| sample.is_finite())));
-        Self { image, orientation, seen }
+        Self { image, orientation, doubt, seen }
     }
 
     pub fn size(&self) -> Size {

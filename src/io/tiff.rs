@@ -43,7 +43,7 @@ pub(super) fn decode_wide(bytes: &[u8], path: &Path) -> Result<Option<Decoded>> 
     let samples = if layout.planes > 1 { interleaved(&samples, pixels) } else { samples };
     let mut image = float_image((width, height), channels, samples);
     image.apply_orientation(orientation);
-    Ok(Some(Decoded { image, orientation }))
+    Ok(Some(Decoded { image, orientation, doubt: None }))
 }
 
 /// A decoder of `bytes` and the number of channels, if the samples are of a kind that the `image` crate refuses.

@@ -50,6 +50,22 @@ fn a_higher_threshold_finds_fewer() {
 }
 
 #[test]
+fn a_file_without_its_end_is_told_and_one_without_its_pixels_refused() {
+    let temporary = folder();
+    let path = temporary.path().join("cut.png");
+    let whole = fs::read(scene("planes", "left.png")).unwrap();
+    let features = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        let mut command = hsad();
+        command.arg("features").arg(&path).args(["--device", "cpu"]);
+        command.assert()
+    };
+    let told = contains("cut.png: the PNG has no end chunk, but all of its picture");
+    features(&whole[..whole.len() - 12]).success().stderr(told);
+    features(&whole[..whole.len() - 13]).code(1).stdout("").stderr(contains("cut.png: the picture is cut off"));
+}
+
+#[test]
 fn files_go_to_the_folder() {
     let temporary = folder();
     let out = temporary.path().join("out");

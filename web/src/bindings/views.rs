@@ -78,8 +78,8 @@ impl Loaded {
         match both.map_err(thrown)? {
             Some(pair) => Ok(pair.into()),
             None => {
-                let view = load::decode(bytes, path).map_err(thrown)?;
-                Ok(Self { views: vec![view], stretch: None, warnings: Vec::new() })
+                let (view, doubt) = load::decode_with_doubt(bytes, path).map_err(thrown)?;
+                Ok(Self { views: vec![view], stretch: None, warnings: doubt.into_iter().collect() })
             }
         }
     }

@@ -1,0 +1,103 @@
+use ::image::{ColorType, GrayImage, codecs::jpeg::JpegEncoder};
+
+use super::*;
+
+/// A JPEG of random grey values, of 5x3 blocks.
+fn jpeg() -> Vec<u8> {
+    let mut state = 7_u32;
+    let picture = GrayImage::from_fn(37, 20, |_, _| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        ::image::Luma([(state >> 24) as u8])
+    });
+    let mut bytes = Vec::new();
+    JpegEncoder::new(&mut bytes).encode(&picture, 37, 20, ColorType::L8.into()).unwrap();
+    bytes
+}
+
+fn place_of(bytes: &[u8], marker: u8) -> usize {
+    bytes.windows(2).position(|pair| pair == [0xff, marker]).unwrap()
+}
+
+fn doubt(bytes: &[u8]) -> Option<String> {
+    whole(bytes).unwrap().1
+}
+
+#[test]
+fn a_whole_file_is_accepted_with_anything_behind_it() {
+    let bytes = jpeg();
+    assert!(matches!(whole(&bytes), Ok((Cow::Borrowed(same), None)) if same == bytes));
+    assert_eq!(doubt(&[&bytes, &[1, 2, 3][..]].concat()), None);
+}
+
+#[test]
+fn a_file_without_its_end_is_mended_and_any_shorter_one_refused() {
+    let bytes = jpeg();
+    for length in [bytes.len() - 2, bytes.len() - 1] {
+        let (mended, doubt) = whole(&bytes[..length]).unwrap();
+        assert!(mended.starts_with(&bytes[..length]) && mended.ends_with(&[0xff, END_OF_IMAGE]));
+        assert!(doubt.unwrap().contains("no end marker"));
+    }
+    for length in 0..bytes.len() - 3 {
+        let reason = whole(&bytes[..length]).unwrap_err();
+        assert!(reason.contains("cut off") || reason.contains("lack"), "{length} bytes: {reason}");
+    }
+}
+
+#[test]
+fn the_decoder_sees_all_of_a_file_without_its_end() {
+    let (bytes, path) = (jpeg(), std::path::Path::new("a.jpg"));
+    let decode = |bytes: &[u8]| crate::io::load::decode_with_doubt(bytes, path).unwrap();
+    let (whole, none) = decode(&bytes);
+    let (mended, doubt) = decode(&bytes[..bytes.len() - 2]);
+    assert!(whole == mended && none.is_none());
+    assert!(doubt.unwrap().starts_with("a.jpg: the JPEG has no end marker"));
+}
+
+#[test]
+fn lost_blocks_are_counted() {
+    let bytes = jpeg();
+    let data = place_of(&bytes, START_OF_SCAN) + 2 + 8;
+    // The first half of the data, and a proper end.
+    let half = [&bytes[..(data + bytes.len()) / 2], &[0xff, END_OF_IMAGE]].concat();
+    let reason = whole(&half).unwrap_err();
+    assert!(reason.contains("of 15 blocks") && reason.contains("copy or export it again"), "{reason}");
+    // A header that claims 400x400 pixels.
+    let mut large = bytes.clone();
+    let size = place_of(&bytes, 0xc0) + 5;
+    large[size..size + 4].copy_from_slice(&[1, 0x90, 1, 0x90]);
+    assert!(
+        whole(&large).unwrap_err().contains("lack 2485 of 2500 blocks (99.4 %), or its header claims another size")
+    );
+    // One that claims fewer rows.
+    let mut small = bytes;
+    small[size + 1] = 8;
+    assert!(doubt(&small).unwrap().contains("belong to no part of its picture"));
+}
+
+#[test]
+fn cmyk_is_refused() {
+    let mut bytes = jpeg();
+    let count = place_of(&bytes, 0xc0) + 9;
+    bytes[count] = 4;
+    assert!(whole(&bytes).unwrap_err().contains("CMYK"));
+}
+
+/// Three blocks in two restart intervals, of codes that are a byte each: a difference of 0 and no other coefficient.
+#[test]
+fn restart_intervals_by_hand() {
+    let mut counts = [0; 16];
+    counts[3] = 1;
+    let tables =
+        [0x00_u8, 0x10].map(|place| [&[0xff, HUFFMAN_TABLES, 0, 20, place][..], &counts, &[0]].concat()).concat();
+    let head: &[u8] =
+        &[0xff, 0xd8, 0xff, 0xc0, 0, 11, 8, 0, 8, 0, 24, 1, 1, 0x11, 0, 0xff, RESTART_INTERVAL, 0, 4, 0, 2];
+    let scan: &[u8] = &[0xff, START_OF_SCAN, 0, 8, 1, 1, 0, 0, 63, 0];
+    let with = |data: &[u8]| [head, &tables, scan, data, &[0xff, END_OF_IMAGE]].concat();
+    assert_eq!(doubt(&with(&[0, 0, 0xff, 0xd0, 0])), None);
+    // Fill bytes stand before markers.
+    assert_eq!(doubt(&with(&[0, 0, 0xff, 0xff, 0xd0, 0, 0xff])), None);
+    assert!(whole(&with(&[0, 0xff, 0xd0, 0])).unwrap_err().contains("lack 1 of 3 blocks"));
+    assert!(whole(&with(&[0, 0])).unwrap_err().contains("lack 1 of 3 blocks"));
+    assert!(whole(&with(&[0, 0, 0xff, 0xd0, 0xfe])).unwrap_err().contains("lack 1 of 3 blocks"));
+    assert!(doubt(&with(&[0, 0, 0xff, 0xd0, 0, 0, 0, 0, 0])).unwrap().starts_with("2 bytes"));
+}
