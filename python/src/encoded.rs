@@ -13,7 +13,7 @@ use hsad::{
         load::{LoadedPair, Unseen, decode_both, decode_pair},
         png,
     },
-    pipeline::{Matched, Task, Way},
+    pipeline::{Geometry, Matched, Task, Way},
     report::{self, Value},
 };
 use pyo3::{
@@ -192,20 +192,19 @@ struct Cameras<'a> {
 }
 
 impl Cameras<'_> {
-    /// The way of a pair, its geometry if its pictures are rectified, and notes.
-    fn way(&self, names: [&Path; 2], sizes: [Size; 2]) -> hsad::Result<(Way, Option<Calibration>, Vec<String>)> {
+    /// The geometry of a pair.
+    fn geometry(&self, names: [&Path; 2], sizes: [Size; 2]) -> hsad::Result<Geometry> {
         let path = Path::new("the calibration");
         let told = |reason: String| hsad::Error::Format { path: path.into(), reason };
         if let Some(file) = self.file {
             let text = std::str::from_utf8(file).map_err(|_| told("it is no text in UTF-8".into()))?;
             let hints = Hints { pictures: Some(names), sizes: Some(sizes), unit: None };
             let loaded = calibration::parse(&[(path, text)], &hints)?;
-            let (way, calibration) = Way::by_files(&loaded, sizes).map_err(|error| told(error.to_string()))?;
-            return Ok((way, calibration, loaded.notes));
+            return Geometry::of_files(&loaded, sizes).map_err(|error| told(error.to_string()));
         }
-        let geometry =
+        let calibration =
             self.of_rectified.map(|(focal, baseline, doffs)| Calibration::centred(focal, baseline, doffs, sizes[0]));
-        Ok((Way::AsNeeded, geometry.transpose()?, Vec::new()))
+        Ok(Geometry::new(Way::AsNeeded, calibration.transpose()?))
     }
 }
 
@@ -218,14 +217,15 @@ fn run(
 ) -> hsad::Result<Encoded> {
     let start = Instant::now();
     let LoadedPair { left, right, stretch, mut warnings } = loaded;
-    let (way, geometry, notes) = cameras.way(names.each_ref().map(Path::new), [left.size(), right.size()])?;
+    let Geometry { way, calibration, notes } =
+        cameras.geometry(names.each_ref().map(Path::new), [left.size(), right.size()])?;
     warnings.extend(notes);
     let matched = Task {
         backend,
         views: (&left, &right),
         config,
         way: &way,
-        calibration: geometry,
+        calibration,
         begin: &|_| (),
         progress: &|_| (),
     }

@@ -62,7 +62,7 @@ impl Calibration {
     /// another focal length.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with both sizes, if they differ.
+    /// [`Error::Parameter`] with both sizes, if they differ, or, without a size of its own, if its principal point lies outside the pictures.
     pub fn check_size(&self, size: impl Into<Size>) -> Result<()> {
         let size = size.into();
         match self.size {
@@ -71,8 +71,39 @@ impl Calibration {
                 value: format!("for pictures of {own} pixels"),
                 expected: format!("these are {size}: use the calibration that belongs to the pictures"),
             }),
+            None if !self.has_centre_in(size) => Err(Error::Parameter {
+                name: "the principal point",
+                value: format!("({:.1}, {:.1})", self.cx, self.cy),
+                expected: format!(
+                    "it lies outside the pictures of {size} pixels: the calibration is for other ones; scale its numbers to these \
+                     pictures, or give `focal` and `baseline` alone (for parts of larger pictures, too)"
+                ),
+            }),
             _ => Ok(()),
         }
+    }
+
+    fn has_centre_in(&self, size: Size) -> bool {
+        (0.0..f64::from(size.width)).contains(&self.cx) && (0.0..f64::from(size.height)).contains(&self.cy)
+    }
+
+    /// A doubt about a calibration without a size of its own: its principal point lies by one factor away from the centre of pictures of
+    /// `size`, along both axes, as that of pictures of another size does.
+    pub fn doubt(&self, size: impl Into<Size>) -> Option<String> {
+        /// Least distance of the factor from 1, and largest difference of the factors of both axes, as a share.
+        const LIMITS: [f64; 2] = [0.12, 0.04];
+        let size = size.into();
+        let factor = |centre: f64, side: u32| 2.0 * (centre + 0.5) / f64::from(side);
+        let [across, down] = [factor(self.cx, size.width), factor(self.cy, size.height)];
+        let is_of_another = (across - 1.0).abs() > LIMITS[0] && (across / down - 1.0).abs() < LIMITS[1];
+        (self.size.is_none() && is_of_another).then(|| {
+            let other = Size { width: (2.0 * self.cx + 1.0).round() as u32, height: (2.0 * self.cy + 1.0).round() as u32 };
+            format!(
+                "the principal point ({:.1}, {:.1}) is the centre of pictures of about {other} pixels, and these are {size}: if the \
+                 calibration is of pictures of that size, depths are off by a factor of {across:.2}; scale its numbers to these pictures",
+                self.cx, self.cy
+            )
+        })
     }
 
     /// The calibration in the coordinates of the right camera, whose principal point lies `doffs` pixels further to the
@@ -119,6 +150,29 @@ mod tests {
         assert_eq!(error(0.0, 1.0, 0.0), "the focal length is 0, but it must be 10^-6 to 10^6 pixels");
         assert_eq!(error(1.0, f64::NAN, 0.0), "the baseline is NaN, but it must be 10^-6 to 10^6 metres");
         assert_eq!(error(1.0, 1.0, f64::INFINITY), "doffs is inf, but it must be -10^6 to 10^6 pixels");
+    }
+
+    #[test]
+    fn a_principal_point_tells_the_size_where_nothing_else_does() {
+        let unsized_at = |cx: f64, cy: f64| Calibration { focal: 500.0, baseline: 0.1, doffs: 0.0, cx, cy, size: None };
+        let of_640x480 = unsized_at(319.5, 239.5);
+        let doubt = of_640x480.doubt((480, 360)).unwrap();
+        assert!(
+            doubt.contains("about 640x480 pixels, and these are 480x360") && doubt.contains("factor of 1.33"),
+            "{doubt}"
+        );
+        assert!(of_640x480.doubt((1280, 960)).unwrap().contains("factor of 0.50"));
+        // Off the centre along one axis, by different factors, or by little; or with a size that was checked.
+        for near in
+            [unsized_at(400.0, 239.5), unsized_at(280.0, 239.5), unsized_at(419.5, 299.5), unsized_at(340.0, 254.0)]
+        {
+            assert_eq!(near.doubt((640, 480)), None);
+        }
+        assert_eq!(Calibration { size: Some(Size::new(640, 480)), ..of_640x480 }.doubt((480, 360)), None);
+        assert!(of_640x480.check_size((640, 480)).is_ok());
+        assert!(
+            of_640x480.check_size((300, 480)).unwrap_err().to_string().contains("lies outside the pictures of 300x480")
+        );
     }
 
     #[test]

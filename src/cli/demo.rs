@@ -67,7 +67,7 @@ impl Demo {
     /// Matches the built-in scene as `hsad match` does, writes all files and prints the scores.
     pub fn run(self) -> anyhow::Result<()> {
         let mut output = Output::open_set(&self.output)?;
-        let names = [&PICTURES[..], &products::MAPS, &products::DEPTH, &products::FIGURES].concat();
+        let names = PICTURES.into_iter().chain(products::maps(true)).chain(products::FIGURES);
         names.into_iter().try_for_each(|name| output.check(name))?;
         let scene = Scene::new()?;
         let [_, left, right] = PICTURES.map(String::from);

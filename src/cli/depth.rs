@@ -12,6 +12,8 @@ use hsad::{
     },
 };
 
+use super::wording::in_options;
+
 /// Calibration files of a pair.
 #[derive(Args, Debug)]
 pub struct CalibrationOptions {
@@ -51,18 +53,6 @@ pub struct CalibrationFile {
 }
 
 impl CalibrationFile {
-    /// The geometry of rectified pictures of `size`, in pixels, and what was assumed of it.
-    ///
-    /// # Errors
-    /// [`Error::Format`] if the file describes only pictures that are not rectified, or pictures of another size.
-    pub fn for_rectified(&self, size: Size) -> Result<(Calibration, Vec<String>)> {
-        let calibration = self.loaded.for_rectified(size).map_err(|error| self.misfit(&error))?;
-        match unsized_misfit(&calibration, size) {
-            Some(reason) => Err(Error::Format { path: self.path.clone(), reason }),
-            None => Ok((calibration, self.loaded.notes.clone())),
-        }
-    }
-
     /// Checks that the file is for pictures as they were taken of these sizes, left and right, in pixels.
     ///
     /// # Errors
@@ -71,8 +61,9 @@ impl CalibrationFile {
         self.loaded.stereo.check_sizes(sizes).map_err(|error| self.misfit(&error))
     }
 
-    fn misfit(&self, error: &Error) -> Error {
-        Error::Format { path: self.path.clone(), reason: error.to_string() }
+    /// The error of a calibration that does not fit the pictures, with the file.
+    pub fn misfit(&self, error: &Error) -> Error {
+        Error::Format { path: self.path.clone(), reason: in_options(error) }
     }
 }
 
@@ -118,17 +109,6 @@ impl DepthOptions {
         let Some((focal, baseline)) = self.focal.zip(self.baseline) else { return Ok(Cameras::Unknown) };
         Ok(Cameras::Rectified(Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), sizes[0])?))
     }
-}
-
-/// Why a calibration without a size is not for `pictures`: its principal point lies outside.
-fn unsized_misfit(&Calibration { cx, cy, size, .. }: &Calibration, pictures: Size) -> Option<String> {
-    let is_inside = (0.0..f64::from(pictures.width)).contains(&cx) && (0.0..f64::from(pictures.height)).contains(&cy);
-    (size.is_none() && !is_inside).then(|| {
-        format!(
-            "the principal point ({cx:.1}, {cy:.1}) lies outside the pictures of {pictures} pixels: the calibration is for other ones; \
-             scale its numbers to these pictures, or give --focal and --baseline (for parts of larger pictures, too)"
-        )
-    })
 }
 
 fn check_unit(unit: f64) -> Result<()> {

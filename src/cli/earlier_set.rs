@@ -5,10 +5,11 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
+use hsad::report::ResultFile;
 use serde_json::Value;
 
 /// The file of a set that lists all files of the set.
-pub const REPORT: &str = "report.json";
+pub const REPORT: &str = ResultFile::Report.name();
 
 /// Size beyond which a file named `report.json` is none of ours, in bytes.
 const MOST: u64 = 1 << 26;

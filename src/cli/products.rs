@@ -17,7 +17,7 @@ use hsad::{
         ply::{self, LeftOut, Point, PointFilter},
         png,
     },
-    report::Cloud,
+    report::{Cloud, ResultFile},
 };
 use serde_json::Value;
 
@@ -30,11 +30,10 @@ use super::{
     output::Output,
 };
 
-/// The files of [`CompletedJob::add_maps`], and the report.
-pub const MAPS: [&str; 5] = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", REPORT];
-
-/// The files that a calibration adds.
-pub const DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
+/// Names of the files of [`CompletedJob::add_maps`], with depth or without, and of the report.
+pub fn maps(with_depth: bool) -> impl Iterator<Item = &'static str> {
+    ResultFile::ALL.into_iter().filter(move |file| with_depth || !file.needs_depth()).map(ResultFile::name)
+}
 
 /// The files of [`CompletedJob::add_figures`].
 pub const FIGURES: [&str; 2] = ["keypoints.png", "matches.png"];
@@ -46,9 +45,8 @@ impl CompletedJob {
     /// Adds the disparity and confidence maps; with a calibration also depth and the point cloud that `cloud` asks for.
     pub fn add_maps(&mut self, output: &mut Output, cloud: &CloudOptions) -> Result<()> {
         let dense = &self.outcome.dense;
-        let [pfm_file, png_file, colors_file, confidence_file, _] = MAPS;
-        output.add(pfm_file, |out| pfm::write_disparities(out, &dense.disparity))?;
-        output.add(png_file, |out| disparity_png::write(out, &dense.disparity))?;
+        output.add(ResultFile::Disparities.name(), |out| pfm::write_disparities(out, &dense.disparity))?;
+        output.add(ResultFile::DisparityPng.name(), |out| disparity_png::write(out, &dense.disparity))?;
         let encoding = Encoding::of(&dense.disparity);
         if encoding != Encoding::KITTI {
             self.warnings.push(format!(
@@ -60,8 +58,8 @@ impl CompletedJob {
         }
         let range = color::disparity_range(&dense.disparity).unwrap_or((0, 0));
         let colors = color::disparity_colors(&dense.disparity, range);
-        output.add(colors_file, |out| png::write_rgb8(out, &colors))?;
-        output.add(confidence_file, |out| png::write_grey8(out, &dense.confidence))?;
+        output.add(ResultFile::DisparityColors.name(), |out| png::write_rgb8(out, &colors))?;
+        output.add(ResultFile::Confidences.name(), |out| png::write_grey8(out, &dense.confidence))?;
 
         let has_depth = self.outcome.no_depth.is_none() || self.job.config.force;
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
@@ -78,10 +76,9 @@ impl CompletedJob {
             } else {
                 self.warnings.extend(cloud.warning());
             }
-            let [depth_file, millimetre_file, cloud_file] = DEPTH;
-            output.add(depth_file, |out| pfm::write(out, &depth))?;
-            self.depth_png = Some(output.add(millimetre_file, |out| depth_png::write(out, &depth))?);
-            output.add(cloud_file, |out| ply::write(out, &points))?;
+            output.add(ResultFile::Depths.name(), |out| pfm::write(out, &depth))?;
+            self.depth_png = Some(output.add(ResultFile::DepthPng.name(), |out| depth_png::write(out, &depth))?);
+            output.add(ResultFile::Cloud.name(), |out| ply::write(out, &points))?;
             self.cloud = Some(cloud);
         }
         Ok(())

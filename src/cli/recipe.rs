@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use hsad::{config::Config, io::load::LoadedPair};
+use hsad::{config::Config, io::load::LoadedPair, pipeline::Geometry};
 
 use super::{
     cloud::CloudOptions,
@@ -14,7 +14,7 @@ use super::{
     products,
     rectification::{self, Names},
     view_files::Views,
-    way::{Rectify, Resolved},
+    way::Rectify,
 };
 
 /// Names of the files of a pair that was rectified first.
@@ -83,7 +83,7 @@ impl Recipe {
         let is_calibrated = !matches!(cameras, Cameras::Unknown);
         self.cloud.check(is_calibrated)?;
         self.check_places(output, is_calibrated)?;
-        let Resolved { way, calibration, notes } = Resolved::new(self.rectify, cameras, sizes)?;
+        let Geometry { way, calibration, notes } = self.rectify.geometry(cameras, sizes)?;
         warnings.extend(notes);
         let names = views.paths().map(|path| path.display().to_string());
         let job = Job { names, left, right, stretch, config, way, map_back: self.map_back, strongest, calibration };
@@ -107,13 +107,8 @@ impl Recipe {
 
     /// Checks that each file that is sure to be written may be.
     fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
-        let of = |names: &'static [&str], are_written: bool| if are_written { names } else { &[] };
-        let names = [
-            &products::MAPS[..],
-            of(&products::DEPTH, is_calibrated),
-            of(&products::FIGURES, self.figures),
-            of(&[products::MATCHES], self.matches),
-        ];
-        names.concat().into_iter().try_for_each(|name| output.check(name))
+        let figures = products::FIGURES.into_iter().filter(|_| self.figures);
+        let tables = self.matches.then_some(products::MATCHES);
+        products::maps(is_calibrated).chain(figures).chain(tables).try_for_each(|name| output.check(name))
     }
 }

@@ -17,7 +17,7 @@ use super::{
     demo,
     output::{check_writable, write_json},
     terminal::{self, Progress},
-    verify::{described, size},
+    verify::{described, no_twins, size},
 };
 
 /// Find the fastest kernels for a device, and keep the choice
@@ -121,6 +121,7 @@ fn windows(of: impl Fn(Windows) -> Shapes) -> Vec<(String, Shapes)> {
 impl Tune {
     /// Measures, keeps the choice, and prints the times.
     pub fn run(self) -> anyhow::Result<()> {
+        no_twins(&self.device, "hsad tune times the kernels of a device, or of a driver such as lavapipe")?;
         Case::new(Preset::Balanced, self.size, self.disparities)?;
         let json_file = self.json.as_deref().filter(|file| *file != Path::new("-"));
         json_file.map(check_writable).transpose()?;

@@ -84,6 +84,14 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     sides.map(Size::from).ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 311x239".into())
 }
 
+/// Refuses the CPU twins for work that only a device can do; `what` says what they are for.
+pub fn no_twins(device: &DeviceChoice, what: &str) -> anyhow::Result<()> {
+    if *device == DeviceChoice::Cpu {
+        bail!("the CPU twins are no GPU: {what}; name one of the devices that hsad devices lists");
+    }
+    Ok(())
+}
+
 impl Verify {
     /// The command that repeats `case` alone.
     fn command(&self, case: &Case) -> String {
@@ -93,12 +101,7 @@ impl Verify {
 
     /// Runs all cases, prints one row per case, and writes the arrays of failed cases.
     pub fn run(self) -> anyhow::Result<()> {
-        if self.device == DeviceChoice::Cpu {
-            bail!(
-                "the CPU twins are no GPU: they are what hsad verify compares a device with, or a driver such as lavapipe; name one of \
-                 those that hsad devices lists"
-            );
-        }
+        no_twins(&self.device, "they are what hsad verify compares a device with, or a driver such as lavapipe")?;
         let cases = self.cases()?;
         // A folder that stays empty is removed again when `folder` is dropped.
         let folder = Output::open(&self.output)?;

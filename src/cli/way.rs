@@ -1,7 +1,11 @@
 //! How the rows of a pair come to correspond: what `--rectify` and the calibration say.
 
 use clap::ValueEnum;
-use hsad::{Error, Result, image::Size, io::Calibration, pipeline::Way};
+use hsad::{
+    Error, Result,
+    image::Size,
+    pipeline::{Geometry, Way},
+};
 
 use super::depth::Cameras;
 
@@ -19,55 +23,33 @@ pub enum Rectify {
     Uncalibrated,
 }
 
-/// A way, the geometry of the pair if its pictures are rectified, and notes.
-pub struct Resolved {
-    pub way: Way,
-    pub calibration: Option<Calibration>,
-    pub notes: Vec<String>,
-}
-
-impl Resolved {
-    /// The way of a pair with views of these sizes, in pixels.
+impl Rectify {
+    /// The geometry of a pair with views of these sizes, in pixels.
     ///
     /// # Errors
     /// [`Error::Format`] for a calibration of other pictures; [`Error::Parameter`] if there is none and there must be one, or one that
     /// there must not be.
-    pub fn new(rectify: Rectify, cameras: Cameras, sizes: [Size; 2]) -> Result<Self> {
-        let file = match (rectify, cameras) {
-            (Rectify::Calibrated, Cameras::Unknown | Cameras::Rectified(_)) => return Err(needs_files()),
-            (Rectify::Uncalibrated, Cameras::Unknown) => return Ok(Self::plain(Way::Uncalibrated, None)),
-            (Rectify::Uncalibrated, _) => return Err(needs_none()),
-            (Rectify::Never, Cameras::Unknown) => return Ok(Self::plain(Way::AsIs, None)),
-            (Rectify::Never, Cameras::Rectified(calibration)) => return Ok(Self::plain(Way::AsIs, Some(calibration))),
-            (Rectify::Auto, Cameras::Unknown) => return Ok(Self::plain(Way::AsNeeded, None)),
-            (Rectify::Auto, Cameras::Rectified(calibration)) => {
-                return Ok(Self::plain(Way::AsNeeded, Some(calibration)));
+    pub fn geometry(self, cameras: Cameras, sizes: [Size; 2]) -> Result<Geometry> {
+        let (file, calibration) = match cameras {
+            Cameras::Unknown => (None, None),
+            Cameras::Rectified(calibration) => (None, Some(calibration)),
+            Cameras::Files(file) => (Some(file), None),
+        };
+        match (self, file, calibration) {
+            (Self::Calibrated, None, _) => Err(needs_files()),
+            (Self::Uncalibrated, None, None) => Ok(Geometry::new(Way::Uncalibrated, None)),
+            (Self::Uncalibrated, ..) => Err(needs_none()),
+            (Self::Never, None, calibration) => Ok(Geometry::new(Way::AsIs, calibration)),
+            (Self::Auto, None, calibration) => Ok(Geometry::new(Way::AsNeeded, calibration)),
+            (_, Some(file), _) => {
+                let geometry = match self {
+                    Self::Calibrated => Geometry::of_taken(&file.loaded, sizes),
+                    Self::Never => Geometry::of_rectified(&file.loaded, sizes, Way::AsIs),
+                    _ => Geometry::of_files(&file.loaded, sizes),
+                };
+                geometry.map_err(|error| file.misfit(&error))
             }
-            (_, Cameras::Files(file)) => file,
-        };
-        let stereo = &file.loaded.stereo;
-        let by_calibration = |way: Way, notes: &[String]| Self { way, calibration: None, notes: notes.to_vec() };
-        if rectify == Rectify::Calibrated {
-            file.check_taken(sizes)?;
-            return Ok(by_calibration(Way::Calibrated(*stereo), &file.loaded.notes));
         }
-        let as_rectified = file.for_rectified(sizes[0]);
-        // A file of a rectified pair alone has the same cameras as `stereo`.
-        let is_of_taken = stereo.rectified().is_none() && stereo.check_sizes(sizes).is_ok();
-        if rectify == Rectify::Auto && is_of_taken && as_rectified.is_err() {
-            return Ok(by_calibration(Way::Calibrated(*stereo), &file.loaded.notes));
-        }
-        let (calibration, notes) = as_rectified?;
-        let way = match rectify {
-            Rectify::Auto if is_of_taken => Way::Either(*stereo),
-            Rectify::Auto => Way::AsNeeded,
-            _ => Way::AsIs,
-        };
-        Ok(Self { way, calibration: Some(calibration), notes })
-    }
-
-    fn plain(way: Way, calibration: Option<Calibration>) -> Self {
-        Self { way, calibration, notes: Vec::new() }
     }
 }
 

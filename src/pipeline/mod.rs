@@ -3,6 +3,8 @@
 mod back;
 mod confidence;
 pub mod doubts;
+#[cfg(feature = "calibrations")]
+mod geometry;
 mod metric;
 mod mirror;
 mod no_depth;
@@ -19,6 +21,8 @@ mod views;
 mod way;
 
 pub use back::WayBack;
+#[cfg(feature = "calibrations")]
+pub use geometry::Geometry;
 #[cfg(not(target_arch = "wasm32"))]
 pub use mirror::mirrored;
 pub use mirror::{Mirrored, mirrored_async};

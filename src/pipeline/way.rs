@@ -15,11 +15,6 @@ use crate::{
     error::{Error, Result},
     seeding::{Rectification, Verdict},
 };
-#[cfg(feature = "calibrations")]
-use crate::{
-    image::Size,
-    io::{Calibration, calibration::Loaded},
-};
 
 /// How the rows of a pair come to correspond.
 #[derive(Clone, Debug)]
@@ -35,30 +30,6 @@ pub enum Way {
     /// By the calibration if that brings rows closer together, since the files are of the pair as it was taken and of the rectified
     /// one; otherwise as needed.
     Either(StereoCalibration),
-}
-
-#[cfg(feature = "calibrations")]
-impl Way {
-    /// The way of a pair with views of these sizes, in pixels, for which there are calibration files, and its geometry if its pictures are
-    /// rectified already: the calibration of rectified pictures of this size, that of pictures as they were taken, or the better one of
-    /// both.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for files of pictures of other sizes.
-    pub fn by_files(loaded: &Loaded, sizes: [Size; 2]) -> Result<(Self, Option<Calibration>)> {
-        let stereo = &loaded.stereo;
-        let as_rectified = loaded.for_rectified(sizes[0]);
-        // Files of a rectified pair alone have the same cameras as `stereo`.
-        if stereo.rectified().is_some() {
-            return Ok((Self::AsNeeded, Some(as_rectified?)));
-        }
-        match (as_rectified, stereo.check_sizes(sizes)) {
-            (Ok(calibration), Ok(())) => Ok((Self::Either(*stereo), Some(calibration))),
-            (Ok(calibration), Err(_)) => Ok((Self::AsNeeded, Some(calibration))),
-            (Err(_), Ok(())) => Ok((Self::Calibrated(*stereo), None)),
-            (Err(_), Err(error)) => Err(error),
-        }
-    }
 }
 
 /// What matching gave, and the rectified pair that was matched, if one was.

@@ -1,10 +1,12 @@
 //! Parameters, figures and times as JSON, for programs: `report.json` of the command line, and what other bindings report.
 
+mod file;
 mod rectified;
 #[cfg(feature = "pictures")]
 mod run;
 mod score;
 
+pub use file::ResultFile;
 pub use rectified::rectified;
 #[cfg(feature = "pictures")]
 pub use run::{Cloud, Run, run};

@@ -37,6 +37,11 @@ fn a_table_and_json_that_a_later_run_is_compared_with() {
     let rate = 64.0 * 48.0 * 32.0 / 1e3 / case["median_ms"].as_f64().unwrap();
     assert!((case["mpd_per_s"].as_f64().unwrap() / rate - 1.0).abs() < 1e-9);
 
+    let mut command = hsad();
+    command.args(SMALL).args(["--plan", "lines", "--json", "-", "--compare"]).arg(&file);
+    let again: Value = serde_json::from_slice(&command.assert().success().get_output().stdout).unwrap();
+    assert_eq!(again["cases"][0]["earlier_median_ms"], case["median_ms"]);
+
     let compared = contains("of the earlier median").and(contains("  lane_path                    1 "));
     hsad().args(SMALL).args(["--plan", "lanes", "--compare"]).arg(&file).assert().success().stdout(compared);
 }
@@ -56,5 +61,14 @@ fn what_cannot_be_measured_is_told() {
     hsad().args(["bench", "--size", "99999x1"]).assert().code(2).stdout("").stderr(contains("1 to 4096 px"));
     hsad().args(["bench", "--runs", "0"]).assert().code(2).stderr(contains("1..=10000"));
     hsad().args(["bench", "--disparities", "0"]).assert().code(2);
-    hsad().args(["bench", "--device", "cpu"]).assert().code(1).stderr(contains("the CPU twins are no GPU"));
+    hsad()
+        .args(["bench", "--device", "cpu"])
+        .assert()
+        .code(1)
+        .stderr(contains("hsad bench times the kernels of a device"));
+    // Told before anything is measured.
+    fs::write(&file, r#"{"cases":[{"preset":"fast","width":64,"height":48,"disparities":32,"median_ms":1.5}]}"#)
+        .unwrap();
+    let told = contains("has no case of this run").and(contains("it has fast 64x48 32 ("));
+    hsad().args(SMALL).arg("--compare").arg(&file).assert().code(1).stdout("").stderr(told);
 }

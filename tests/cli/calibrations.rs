@@ -2,6 +2,8 @@
 
 use std::{fs, path::Path};
 
+use predicates::str::contains;
+
 use crate::common::{fails, folder, match_on_cpu, views};
 
 #[test]
@@ -31,8 +33,17 @@ fn a_calibration_in_two_files_gives_the_depth_of_one_file() {
     };
     assert!(depth(&[&one]) == depth(&[&two[0], &two[1]]));
     // Numbers of a larger camera: its principal point is outside the pictures.
+    // Numbers of a camera that is larger by less: a warning.
+    let numbers = file("K.txt", "424 0 239.5 0 424 179.5 0 0 1\n0.063\n");
+    let mut command = match_on_cpu(&left, &right, &temporary.path().join("larger"));
+    command.args(["--disparities", "72", "--preset", "fast"]).arg("--calib").arg(numbers);
+    command.assert().success().stderr(contains("(239.5, 179.5) is the centre of pictures of about 480x360 pixels"));
     let numbers = file("K.txt", "754.7 0 489.4 0 754.7 265.2 0 0 1\n0.063\n");
     let mut command = match_on_cpu(&left, &right, &temporary.path().join("numbers"));
     command.args(["--disparities", "72", "--preset", "fast"]).arg("--calib").arg(numbers);
-    fails(command, 1, "(489.4, 265.2) lies outside the pictures of 340x255 pixels: the calibration is for other ones");
+    fails(
+        command,
+        1,
+        "(489.4, 265.2), but it lies outside the pictures of 340x255 pixels: the calibration is for other ones",
+    );
 }

@@ -74,7 +74,7 @@ fn what_cannot_be_measured_is_told() {
     tune(&["--size", "99999x1"]).code(2).stdout("").stderr(contains("1 to 4096 px"));
     tune(&["--disparities", "0"]).code(2).stdout("");
     tune(&["--forget", "--runs", "3"]).code(2).stderr(contains("cannot be used with"));
-    tune(&["--device", "cpu"]).code(1).stderr(contains("the CPU twins are no GPU"));
+    tune(&["--device", "cpu"]).code(1).stderr(contains("hsad tune times the kernels of a device"));
     tune(&["--json", "/nonexistent/figures.json"]).code(1).stderr(contains("figures.json").and(contains("error: ")));
     let mut homeless = hsad();
     homeless.env_remove("XDG_CACHE_HOME").env_remove("LOCALAPPDATA").env("HOME", "here").arg("tune").args(SMALL);

@@ -55,6 +55,7 @@ const acts = {
       camera: matched.camera(),
       warnings: matched.warnings(),
       files: matched.files(),
+      offered: JSON.parse(matched.offered()),
       times: matched.times(),
     };
     const { disparities, confidences, colors } = result;

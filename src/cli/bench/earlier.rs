@@ -2,9 +2,11 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use hsad::io::read_whole;
 use serde_json::Value;
+
+use super::case::Case;
 
 /// Longest file that is read, in bytes: devices have no end.
 const MOST: u64 = 1 << 26;
@@ -13,8 +15,8 @@ const MOST: u64 = 1 << 26;
 pub struct Earlier(BTreeMap<String, f64>);
 
 impl Earlier {
-    /// Reads the JSON of `hsad bench`.
-    pub fn read(file: &Path) -> anyhow::Result<Self> {
+    /// Reads the JSON of `hsad bench`, of which at least one case must be among `wanted`.
+    pub fn read(file: &Path, wanted: &[Case]) -> anyhow::Result<Self> {
         let bytes = read_whole(file, MOST)?;
         let unknown = || anyhow!("{}: no figures of hsad bench --json", hsad::shown(file));
         let report: Value = serde_json::from_slice(&bytes).map_err(|_| unknown())?;
@@ -25,7 +27,16 @@ impl Earlier {
             Some((name, case["median_ms"].as_f64().filter(|median| *median > 0.0)?))
         };
         let cases = report["cases"].as_array().ok_or_else(unknown)?;
-        cases.iter().map(|one| case(one).ok_or_else(unknown)).collect::<Result<_, _>>().map(Self)
+        let known: BTreeMap<_, _> = cases.iter().map(|one| case(one).ok_or_else(unknown)).collect::<Result<_, _>>()?;
+        if wanted.iter().any(|case| known.contains_key(&case.name())) {
+            return Ok(Self(known));
+        }
+        let names: Vec<_> = known.into_keys().collect();
+        bail!(
+            "{} has no case of this run, so that nothing can be compared: it has {} (preset, size and number of disparities)",
+            hsad::shown(file),
+            if names.is_empty() { "none".into() } else { names.join(", ") }
+        )
     }
 
     /// The median of the case of this name, in milliseconds.

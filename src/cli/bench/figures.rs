@@ -125,7 +125,7 @@ impl Figures {
     }
 
     /// The figures as JSON.
-    pub fn report(&self, rates: Option<&Rates>) -> Value {
+    pub fn report(&self, rates: Option<&Rates>, earlier: Option<&Earlier>) -> Value {
         let Case { preset, size, range } = self.case;
         let kernel = |sum: &Sum| {
             json!({
@@ -147,6 +147,7 @@ impl Figures {
             "first_ms": milliseconds(self.cold),
             "least_ms": milliseconds(self.warm[0]),
             "median_ms": self.median(),
+            "earlier_median_ms": earlier.and_then(|earlier| earlier.median(&self.case.name())),
             "mpd_per_s": self.rate(),
             "bytes": self.memory,
             "kernels": self.sums().iter().map(kernel).collect::<Vec<_>>(),

@@ -25,7 +25,7 @@ use super::{
     demo,
     output::{check_writable, write_json},
     terminal::{self, Progress},
-    verify::{described, plans, size},
+    verify::{described, no_twins, plans, size},
 };
 
 /// Time each preset on a device, kernel by kernel
@@ -78,8 +78,9 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
 impl Bench {
     /// Measures and prints.
     pub fn run(self) -> anyhow::Result<()> {
+        no_twins(&self.device, "hsad bench times the kernels of a device, or of a driver such as lavapipe")?;
         let cases = self.cases()?;
-        let earlier = self.compare.as_deref().map(Earlier::read).transpose()?;
+        let earlier = self.compare.as_deref().map(|file| Earlier::read(file, &cases)).transpose()?;
         let file = self.json.as_deref().filter(|file| *file != Path::new("-"));
         file.map(check_writable).transpose()?;
         let mut gpu = tuned(Gpu::open(&self.device)?);
@@ -106,7 +107,7 @@ impl Bench {
             progress.begin(case.name());
             let figures = case.measure(&gpu, &scene, self.runs)?;
             progress.suspend(|| print(&figures.text(rates.as_ref(), earlier.as_ref())))?;
-            reports.push(figures.report(rates.as_ref()));
+            reports.push(figures.report(rates.as_ref(), earlier.as_ref()));
         }
         drop(progress);
         if let Some(path) = &self.json {

@@ -12,7 +12,7 @@ use hsad::{
         ply::{self, Point, PointFilter},
         png,
     },
-    report::{self, Cloud, Run},
+    report::{self, Cloud, ResultFile, Run, Value},
 };
 use wasm_bindgen::prelude::*;
 
@@ -21,25 +21,48 @@ use super::{
     matched::Matched,
 };
 
-/// The files of any pair.
-const FILES: [&str; 5] = ["disparity.pfm", "disparity.png", "disparity-color.png", "confidence.png", "report.json"];
-/// The files of a pair with depth.
-const DEPTH_FILES: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
+/// What the page says of a file: a label, and what is in it.
+fn described(file: ResultFile) -> [&'static str; 2] {
+    match file {
+        ResultFile::Disparities => ["PFM", "Disparities in pixels, floats; inf where there is none"],
+        ResultFile::DisparityPng => [
+            "PNG",
+            "Disparities as 16-bit grey, 256 per pixel, 0 where there is none; negative ones by an offset in its text",
+        ],
+        ResultFile::DisparityColors => ["Colours", "The map in false colours"],
+        ResultFile::Confidences => ["Confidence", "Confidences as 8-bit grey"],
+        ResultFile::Depths => ["Depth PFM", "Depths in metres, floats"],
+        ResultFile::DepthPng => ["Depth PNG", "Depths in millimetres as 16-bit grey, 0 where there is none"],
+        ResultFile::Cloud => ["PLY", "The point cloud in metres, of measured pixels"],
+        ResultFile::Report => ["Report", "Parameters, figures and doubts as JSON"],
+    }
+}
 
 #[wasm_bindgen]
 impl Matched {
     /// Names of the files that there are.
     pub fn files(&self) -> Vec<String> {
-        let of_depth = self.geometry().map_or(&[][..], |_| &DEPTH_FILES);
-        FILES.iter().chain(of_depth).map(ToString::to_string).collect()
+        ResultFile::ALL.into_iter().filter(|&file| self.has(file)).map(|file| file.name().into()).collect()
+    }
+
+    /// All files that a pair may have as JSON: name, label, title, and whether this pair has the file.
+    pub fn offered(&self) -> String {
+        let offered = |file: ResultFile| {
+            let [label, title] = described(file);
+            let texts =
+                [("name", file.name()), ("label", label), ("title", title)].map(|(key, text)| (key, Value::from(text)));
+            texts.into_iter().chain([("isThere", self.has(file).into())]).collect::<Value>()
+        };
+        Value::from_iter(ResultFile::ALL.map(offered)).to_string()
     }
 
     /// The bytes of a file.
     pub fn file(&self, name: &str) -> Result<Vec<u8>, JsValue> {
         let mut bytes = Vec::new();
-        let written = self.write(name, &mut bytes).map_err(thrown)?;
-        written
-            .ok_or_else(|| named("Error", &format!("there is no {name} of this pair")))?
+        let known = ResultFile::ALL.into_iter().find(|file| file.name() == name && self.has(*file));
+        let file = known.ok_or_else(|| named("Error", &format!("there is no {name} of this pair")))?;
+        self.write(file, &mut bytes)
+            .map_err(thrown)?
             .map_err(|error| named("Error", &format!("{name} cannot be written: {error}")))?;
         Ok(bytes)
     }
@@ -51,28 +74,32 @@ impl Matched {
         self.matched.calibration.as_ref().filter(|_| self.matched.outcome.no_depth.is_none() || self.task.config.force)
     }
 
-    /// Writes a file; `None` if there is no such file.
-    fn write(&self, name: &str, out: &mut Vec<u8>) -> Result<Option<io::Result<()>>, Error> {
+    fn has(&self, file: ResultFile) -> bool {
+        !file.needs_depth() || self.geometry().is_some()
+    }
+
+    /// Writes a file; nothing of a file that [`Self::has`] not.
+    fn write(&self, file: ResultFile, out: &mut Vec<u8>) -> Result<io::Result<()>, Error> {
         let dense = &self.matched.outcome.dense;
-        Ok(Some(match (name, self.geometry()) {
-            ("disparity.pfm", _) => pfm::write_disparities(out, &dense.disparity),
-            ("disparity.png", _) => disparity_png::write(out, &dense.disparity),
-            ("disparity-color.png", _) => {
+        Ok(match (file, self.geometry()) {
+            (ResultFile::Disparities, _) => pfm::write_disparities(out, &dense.disparity),
+            (ResultFile::DisparityPng, _) => disparity_png::write(out, &dense.disparity),
+            (ResultFile::DisparityColors, _) => {
                 let range = color::disparity_range(&dense.disparity).unwrap_or((0, 0));
                 png::write_rgb8(out, &color::disparity_colors(&dense.disparity, range))
             }
-            ("confidence.png", _) => png::write_grey8(out, &dense.confidence),
-            ("report.json", geometry) => writeln!(out, "{:#}", self.report(geometry)?),
-            ("depth.pfm", Some(calibration)) => pfm::write(out, &depth_map(&dense.disparity, calibration)),
-            ("depth.png", Some(calibration)) => {
+            (ResultFile::Confidences, _) => png::write_grey8(out, &dense.confidence),
+            (ResultFile::Report, geometry) => writeln!(out, "{:#}", self.report(geometry)?),
+            (ResultFile::Depths, Some(calibration)) => pfm::write(out, &depth_map(&dense.disparity, calibration)),
+            (ResultFile::DepthPng, Some(calibration)) => {
                 depth_png::write(out, &depth_map(&dense.disparity, calibration)).map(drop)
             }
-            ("cloud.ply", Some(calibration)) => ply::write(out, &self.points(calibration)?.0),
-            _ => return Ok(None),
-        }))
+            (ResultFile::Cloud, Some(calibration)) => ply::write(out, &self.points(calibration)?.0),
+            (ResultFile::Depths | ResultFile::DepthPng | ResultFile::Cloud, None) => Ok(()),
+        })
     }
 
-    fn report(&self, geometry: Option<&Calibration>) -> Result<report::Value, Error> {
+    fn report(&self, geometry: Option<&Calibration>) -> Result<Value, Error> {
         let cloud = geometry.map(|calibration| self.points(calibration)).transpose()?.map(|(_, cloud)| cloud);
         let map = &self.matched.outcome.dense.disparity;
         let mut report = report::run(&Run {

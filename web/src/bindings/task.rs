@@ -10,12 +10,9 @@ use hsad::{
         calibration::{self, Hints},
         load::Stretch,
     },
-    pipeline::Way,
+    pipeline::{Geometry, Way},
     report::Value,
 };
-
-/// The way of a pair, and its geometry if its pictures are rectified.
-type Geometry = (Way, Option<Calibration>);
 
 /// A task: how to match a pair, and what its report tells of the files.
 pub struct Task {
@@ -50,7 +47,8 @@ impl Task {
         let texts = |list: &Value| -> Vec<String> { list.as_array().into_iter().flatten().map(text_of).collect() };
         let names = texts(&task["names"]).try_into().unwrap_or_else(|_| ["left".into(), "right".into()]);
         let mut warnings = texts(&task["warnings"]);
-        let (way, calibration) = cameras(&task["calibration"], &names, sizes, &mut warnings)?;
+        let Geometry { way, calibration, notes } = cameras(&task["calibration"], &names, sizes)?;
+        warnings.extend(notes);
         Ok(Self {
             config: options(&task["options"])?.config()?,
             names,
@@ -79,7 +77,7 @@ fn stretch(ends: &Value) -> Option<Stretch> {
     Some(Stretch { low: low?, high: high? })
 }
 
-fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut Vec<String>) -> Result<Geometry> {
+fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2]) -> Result<Geometry> {
     if let Some(files) = given["files"].as_array() {
         let files: Vec<[String; 2]> =
             files.iter().map(|file| [text_of(&file["name"]), text_of(&file["text"])]).collect();
@@ -87,13 +85,12 @@ fn cameras(given: &Value, names: &[String; 2], sizes: [Size; 2], warnings: &mut 
         let pictures = names.each_ref().map(Path::new);
         let hints = Hints { pictures: Some(pictures), sizes: Some(sizes), unit: given["unit"].as_f64() };
         let loaded = calibration::parse(&texts, &hints)?;
-        warnings.extend(loaded.notes.iter().cloned());
-        return Way::by_files(&loaded, sizes)
+        return Geometry::of_files(&loaded, sizes)
             .map_err(|error| Error::Format { path: texts[0].0.into(), reason: error.to_string() });
     }
     let Some((focal, baseline)) = given["focal"].as_f64().zip(given["baseline"].as_f64()) else {
-        return Ok((Way::AsNeeded, None));
+        return Ok(Geometry::new(Way::AsNeeded, None));
     };
     let doffs = given["doffs"].as_f64().unwrap_or(0.0);
-    Ok((Way::AsNeeded, Some(Calibration::centred(focal, baseline, doffs, sizes[0])?)))
+    Ok(Geometry::new(Way::AsNeeded, Some(Calibration::centred(focal, baseline, doffs, sizes[0])?)))
 }

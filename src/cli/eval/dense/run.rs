@@ -14,6 +14,7 @@ use hsad::{
     image::Plane,
     io::{color, disparities, figure, pfm, png},
     pipeline,
+    report::ResultFile,
 };
 use serde_json::Value;
 
@@ -222,7 +223,7 @@ fn add_files(output: &mut Output, scene: &Scene, map: &Plane<f32>) -> Result<()>
     let in_fixed_point = map.map(|&pixels| fixed_point(pixels));
     let [view, found, truth] = products::beside_truth(scene.reference_view(), &in_fixed_point, &scene.truth);
     let figure = figure::side_by_side(&[&view, &truth, &found, &errors]);
-    output.add("disparity.pfm", |out| pfm::write(out, map))?;
+    output.add(ResultFile::Disparities.name(), |out| pfm::write(out, map))?;
     output.add("error.png", |out| png::write_rgb8(out, &errors))?;
     output.add("figure.png", |out| png::write_rgb8(out, &figure))
 }

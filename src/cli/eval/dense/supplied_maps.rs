@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hsad::{Error, Result};
+use hsad::{Error, Result, report::ResultFile};
 
 use super::OURS;
 
@@ -10,7 +10,7 @@ use super::OURS;
 const SCENE: &str = "{scene}";
 
 /// File names in a scene's output folder, which the folder of another program must not take.
-const RESULTS: [&str; 4] = ["disparity.pfm", "error.png", "figure.png", "result.json"];
+const RESULTS: [&str; 4] = [ResultFile::Disparities.name(), "error.png", "figure.png", "result.json"];
 
 /// The maps of another program, one per scene.
 #[derive(Clone, Debug, PartialEq)]
