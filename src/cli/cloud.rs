@@ -24,6 +24,10 @@ pub struct CloudOptions {
     /// Keep filled pixels in the cloud
     #[arg(long)]
     filled: bool,
+    /// Also write the surfaces (mesh.ply): triangles between neighbouring points of the cloud whose disparities differ by at most 1 px,
+    /// with normals
+    #[arg(long)]
+    pub mesh: bool,
 }
 
 impl CloudOptions {
@@ -51,6 +55,7 @@ impl CloudOptions {
             ("--max-depth", self.max_depth.map(|metres| metres.to_string())),
             ("--min-confidence", self.min_confidence.map(|confidence| confidence.to_string())),
             ("--filled", self.filled.then(|| "given".into())),
+            ("--mesh", self.mesh.then(|| "given".into())),
         ];
         match given.into_iter().find_map(|(name, value)| Some((name, value?))) {
             Some((name, value)) if !is_calibrated => Err(Error::Parameter {

@@ -13,8 +13,10 @@ use hsad::{
         calibration::depth_map,
         color, depth_png,
         disparity_png::{self, Encoding},
-        figure, pfm,
-        ply::{self, LeftOut, Point, PointFilter},
+        figure,
+        mesh::{self, Mesh},
+        pfm,
+        ply::{self, LeftOut, PointFilter},
         png,
     },
     report::{Cloud, ResultFile},
@@ -37,6 +39,9 @@ pub fn maps(with_depth: bool) -> impl Iterator<Item = &'static str> {
 
 /// The files of [`CompletedJob::add_figures`].
 pub const FIGURES: [&str; 2] = ["keypoints.png", "matches.png"];
+
+/// The file that `--mesh` adds.
+pub const MESH: &str = "mesh.ply";
 
 /// The file of [`CompletedJob::add_matches`].
 pub const MATCHES: &str = "matches.csv";
@@ -65,8 +70,14 @@ impl CompletedJob {
         if let Some(calibration) = self.job.calibration.filter(|_| has_depth) {
             let filter = cloud.filter(&calibration)?;
             let depth = self.depth(&calibration);
-            let (points, left_out) = self.points(calibration, &filter)?;
-            let cloud = WrittenCloud(Cloud { points: points.len(), filter, left_out });
+            let (positions, left_out) = self.positions(calibration, &filter);
+            let picture = match self.job.config.reference {
+                View::Left => &self.job.left,
+                View::Right => &self.job.right,
+            };
+            let points = ply::colored(&positions, picture)?;
+            let mesh = cloud.mesh.then(|| Mesh::new(&positions, &dense.disparity, picture)).transpose()?;
+            let written = WrittenCloud(Cloud { points: points.len(), filter, left_out });
             if depth.data().iter().all(|z| z.is_infinite()) && dense.disparity.data().iter().any(|&d| d != NONE) {
                 self.miss_depth(format!(
                     "no pixel has a depth: with doffs {} all disparities lie at infinity or beyond; check the calibration, and that left and \
@@ -74,12 +85,15 @@ impl CompletedJob {
                     calibration.doffs
                 ));
             } else {
-                self.warnings.extend(cloud.warning());
+                self.warnings.extend(written.warning());
             }
             output.add(ResultFile::Depths.name(), |out| pfm::write(out, &depth))?;
             self.depth_png = Some(output.add(ResultFile::DepthPng.name(), |out| depth_png::write(out, &depth))?);
             output.add(ResultFile::Cloud.name(), |out| ply::write(out, &points))?;
-            self.cloud = Some(cloud);
+            if let Some(mesh) = mesh {
+                output.add(MESH, |out| mesh::write(out, &mesh))?;
+            }
+            self.cloud = Some(written);
         }
         Ok(())
     }
@@ -109,20 +123,18 @@ impl CompletedJob {
         }
     }
 
-    /// The points that `filter` keeps, in coordinates of the reference view's camera as it stood, in metres.
-    fn points(&self, calibration: Calibration, filter: &PointFilter) -> Result<(Vec<Point>, LeftOut)> {
+    /// The positions of the pixels that `filter` keeps, in coordinates of the reference view's camera as it stood, in metres; not finite
+    /// where a pixel is no point.
+    fn positions(&self, calibration: Calibration, filter: &PointFilter) -> (Plane<[f32; 3]>, LeftOut) {
         let (dense, reference) = (&self.outcome.dense, self.job.config.reference);
-        let (picture, calibration) = match reference {
-            View::Left => (&self.job.left, calibration),
-            View::Right => (&self.job.right, calibration.seen_from_right()),
+        let calibration = match reference {
+            View::Left => calibration,
+            View::Right => calibration.seen_from_right(),
         };
-        if let Some(pair) = &self.rectified {
-            let (kept, left_out) = filter.apply(dense, &calibration);
-            if let Some(positions) = pair.points_in_metres(&kept, reference, self.back.as_ref()) {
-                return Ok((ply::colored(&positions, picture)?, left_out));
-            }
-        }
-        ply::points(dense, picture, &calibration, filter)
+        let (kept, left_out) = filter.apply(dense, &calibration);
+        let stood =
+            self.rectified.as_ref().and_then(|pair| pair.points_in_metres(&kept, reference, self.back.as_ref()));
+        (stood.unwrap_or_else(|| ply::positions(&depth_map(&kept, &calibration), &calibration)), left_out)
     }
 
     /// Adds the paper's figures 4 and 5: interest points in both views, and matches between them.

@@ -109,6 +109,7 @@ impl Recipe {
     fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
         let figures = products::FIGURES.into_iter().filter(|_| self.figures);
         let tables = self.matches.then_some(products::MATCHES);
-        products::maps(is_calibrated).chain(figures).chain(tables).try_for_each(|name| output.check(name))
+        let mesh = self.cloud.mesh.then_some(products::MESH);
+        products::maps(is_calibrated).chain(figures).chain(tables).chain(mesh).try_for_each(|name| output.check(name))
     }
 }

@@ -37,6 +37,7 @@ mod jpeg;
 mod jps;
 #[cfg(feature = "pictures")]
 pub mod load;
+pub mod mesh;
 #[cfg(feature = "pictures")]
 mod mpo;
 pub mod pfm;

@@ -47,18 +47,17 @@ pub fn points(
 /// [`crate::Error::Parameter`] if depth map and picture differ in size.
 pub fn of_depth(depth: &Plane<f32>, picture: &Picture, calibration: &Calibration) -> Result<Vec<Point>> {
     check_size("the depth map", depth.size(), picture)?;
+    colored(&positions(depth, calibration), picture)
+}
+
+/// The position of each pixel of a depth map in metres, not finite where the depth is not.
+pub fn positions(depth: &Plane<f32>, calibration: &Calibration) -> Plane<[f32; 3]> {
     let Calibration { focal, cx, cy, .. } = *calibration;
-    let mut points = Vec::new();
-    for y in 0..depth.height() {
-        for x in 0..depth.width() {
-            let z = depth.get(x, y);
-            if z.is_finite() {
-                let across = |pixel: u32, centre: f64| ((f64::from(pixel) - centre) * f64::from(z) / focal) as f32;
-                points.push(Point { position: [across(x, cx), across(y, cy), z], color: picture.rgb(x, y) });
-            }
-        }
-    }
-    Ok(points)
+    Plane::from_fn(depth.size(), |x, y| {
+        let z = depth.get(x, y);
+        let across = |pixel: u32, centre: f64| ((f64::from(pixel) - centre) * f64::from(z) / focal) as f32;
+        [across(x, cx), across(y, cy), z]
+    })
 }
 
 /// The points of a picture's pixels, in metres, in raster order. Points that are not finite are left out.

@@ -1,6 +1,6 @@
 //! `cloud.ply` of `hsad match`: which pixels become points.
 
-use std::path::Path;
+use std::{fs, path::Path};
 
 use hsad::io::{load, pfm};
 use predicates::str::contains;
@@ -26,6 +26,28 @@ fn check_millimetres(out: &Path, depths: &[f32]) {
     let told =
         json!({ "metres_per_value": 0.001, "left_out": { "beyond_65.535_m": beyond, "nearer_than_half_a_value": 0 } });
     assert_eq!(report(out)["depth_png"], told);
+}
+
+/// `mesh.ply` joins most of the cloud's points, of which there are `points`, and faces the camera.
+fn check_mesh(out: &Path, points: usize) {
+    let bytes = fs::read(out.join("mesh.ply")).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let count = |element: &str| -> usize {
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("element {element} "))).unwrap();
+        line.parse().unwrap()
+    };
+    let (vertices, faces) = (count("vertex"), count("face"));
+    assert!(
+        vertices <= points && 10 * vertices > 9 * points && faces > vertices && faces < 2 * vertices,
+        "{points} {text:.300}"
+    );
+    let body = &bytes[bytes.len() - 27 * vertices - 13 * faces..];
+    let number = |vertex: &[u8], place: usize| f32::from_le_bytes(vertex[4 * place..4 * place + 4].try_into().unwrap());
+    for vertex in body[..27 * vertices].chunks_exact(27) {
+        let [x, y, z, nx, ny, nz] = [0, 1, 2, 3, 4, 5].map(|place| number(vertex, place));
+        assert!(z <= 1.0 && x * nx + y * ny + z * nz < 0.0, "{x} {y} {z} {nx} {ny} {nz}");
+    }
+    assert!(report(out)["files"].as_array().unwrap().contains(&json!("mesh.ply")));
 }
 
 #[test]
@@ -59,8 +81,9 @@ fn the_cloud_has_measured_points_of_known_depth() {
     assert!((max_depth.unwrap() - 6.0).abs() < 1e-9 && points > 10_000, "{points}");
     let (filled, _) = check("filled", &["--filled"], 6.0, 1);
     let (sure, _) = check("sure", &["--min-confidence", "200"], 6.0, 200);
-    let (near, nearest) = check("near", &["--max-depth", "1"], 1.0, 16);
+    let (near, nearest) = check("near", &["--max-depth", "1", "--mesh"], 1.0, 16);
     let (all, farthest) = check("all", &["--max-depth", "inf"], f32::MAX, 16);
+    check_mesh(&temporary.path().join("near"), near);
     assert!(near < points && sure < points && points < filled && points < all, "{near} {sure} {points} {filled} {all}");
     assert_eq!((nearest, farthest), (Some(1.0), None));
     let told = contains("lie beyond 0.600 m and are not in cloud.ply: --max-depth keeps them");
@@ -79,7 +102,7 @@ fn options_of_a_cloud_that_is_not_written_are_refused() {
         fails(command, 2, expected);
         assert!(!out.exists());
     };
-    for args in [&["--max-depth", "30"][..], &["--min-confidence", "99"], &["--filled"]] {
+    for args in [&["--max-depth", "30"][..], &["--min-confidence", "99"], &["--filled"], &["--mesh"]] {
         refused(
             args,
             "without a calibration there is no point cloud: name one with --calib, or give --focal and --baseline",
