@@ -66,6 +66,7 @@ impl Kept {
     /// A matcher for pairs such as `pair`.
     async fn new(gpu: &Gpu, purpose: &Purpose, pair: &UploadedPair) -> Result<Self> {
         let Purpose { size, config, .. } = purpose;
+        let gpu = &gpu.not_keeping();
         let own = guarded(gpu, "the pair", || pair.another(gpu, *size)).await?;
         let of_colours = own.colours.as_ref().map_or(0, Colours::bytes);
         let matcher = Matcher::build(gpu, *size, config, Views::Uploaded(own), u32::MAX).await?;

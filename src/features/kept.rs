@@ -15,8 +15,8 @@ pub(crate) async fn detect_both(
 ) -> Result<[Detected; 2]> {
     let detector = match gpu.take_kept(|kept: &Detector| kept.serves(size, config)) {
         Some(kept) => kept,
-        None => match Detector::new(gpu, size, config).await {
-            built if gpu.has_made_room(&built) => Detector::new(gpu, size, config).await?,
+        None => match Detector::new(&gpu.not_keeping(), size, config).await {
+            built if gpu.has_made_room(&built) => Detector::new(&gpu.not_keeping(), size, config).await?,
             built => built?,
         },
     };

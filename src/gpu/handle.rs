@@ -177,6 +177,11 @@ impl Gpu {
         self.shelf.most() > 0
     }
 
+    /// A clone that keeps nothing, for what is kept: it holds its `Gpu`, and what is kept would else hold itself.
+    pub(crate) fn not_keeping(&self) -> Self {
+        self.clone().keeping(0)
+    }
+
     /// Takes a kept `T` that `fits` accepts.
     pub(crate) fn take_kept<T: Any>(&self, fits: impl Fn(&T) -> bool) -> Option<T> {
         self.shelf.take(fits)
