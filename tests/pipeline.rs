@@ -16,7 +16,7 @@ use hsad::{
     gpu::DeviceChoice,
     image::Size,
     io::{Picture, load, pfm},
-    pipeline::{self, RangeSource},
+    pipeline::{self, Precedent, RangeSource, Task, Way},
     wgpu,
 };
 
@@ -200,4 +200,48 @@ fn what_is_kept_serves_the_next_pairs_and_changes_no_map() {
     assert!(buffers[3] > buffers[2] && buffers[3] == buffers[4], "a pair with masks has a matcher: {buffers:?}");
     drop(keeping);
     assert!(existing() < buffers[0], "nothing is kept any more");
+}
+
+/// A precedent holds for the frames that its bounds let pass, and no others.
+#[test]
+fn a_frame_follows_its_precedent_as_long_as_it_holds() {
+    let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let folder = scene("curved");
+    let [left, right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    let config = Preset::Fast.config();
+    let matched = |views: (&Picture, &Picture), precedent: Option<&Precedent>| {
+        let (backend, config, way) = (&backend, &config, &Way::AsNeeded);
+        let (begin, progress) = (&|_| (), &|_| ());
+        Task { backend, views, config, way, calibration: None, precedent, begin, progress }.run().unwrap()
+    };
+    let views = (&left, &right);
+    let first = matched(views, None);
+    let precedent = first.precedent(views).expect("a frame to be trusted");
+    let again = matched(views, Some(&precedent));
+    assert!(!first.follows && again.follows && again.precedent(views).is_none());
+    assert!(!first.outcome.features[0].is_empty() && again.outcome.features[0].is_empty());
+    assert_eq!(again.outcome.range, first.outcome.range);
+    assert_eq!(again.outcome.brightness, first.outcome.brightness);
+    assert_eq!(again.outcome.dense.disparity, first.outcome.dense.disparity);
+
+    let Size { width, height } = left.size();
+    let nearer = |shift: u32| Picture::from_fn(right.size(), |x, y| right.get((x + shift).min(width - 1), y));
+    let darker = right.map(|&[r, g, b, a]| {
+        let [r, g, b] = [r, g, b].map(|level| (u16::from(level) * 15 / 16) as u8);
+        [r, g, b, a]
+    });
+    let smaller = |view: &Picture| Picture::from_fn((width - 8, height), |x, y| view.get(x, y));
+    let (smaller_left, smaller_right) = (smaller(&left), smaller(&right));
+    let lower = Picture::from_fn(right.size(), |x, y| right.get(x, (y + 3).min(height - 1)));
+    for (what, (left, right)) in [
+        ("all surfaces are nearer", (&left, &nearer(40))),
+        ("the right view is darker", (&left, &darker)),
+        ("the views are smaller", (&smaller_left, &smaller_right)),
+        ("the rows are off", (&left, &lower)),
+    ] {
+        let own = matched((left, right), None);
+        let found = matched((left, right), Some(&precedent));
+        assert!(!found.follows, "{what}");
+        assert_eq!(found.outcome.dense, own.outcome.dense, "{what}");
+    }
 }

@@ -226,11 +226,12 @@ fn run(
         config,
         way: &way,
         calibration,
+        precedent: None,
         begin: &|_| (),
         progress: &|_| (),
     }
     .run()?;
-    let Matched { outcome, rectified, calibration, warnings: doubts, not_trusted } = matched;
+    let Matched { outcome, rectified, calibration, warnings: doubts, not_trusted, .. } = matched;
     // Options stand between backticks; here they are keywords, spelled as they are.
     warnings.extend(doubts.iter().map(|doubt| doubt.replace('`', "")));
     let report = report::run(&report::Run {

@@ -7,7 +7,7 @@ use hsad::{
     Backend,
     config::Config,
     io::{Calibration, Picture, depth_png::Unheld, load::Stretch},
-    pipeline::{Matched, Outcome, RectifiedPair, Task, Way, WayBack},
+    pipeline::{Matched, Outcome, Precedent, RectifiedPair, Task, Way, WayBack},
 };
 
 use super::{
@@ -59,6 +59,10 @@ pub struct CompletedJob {
     pub depth_png: Option<Unheld>,
     /// The point cloud, once it was written.
     pub cloud: Option<WrittenCloud>,
+    /// Whether the pair was matched by the precedent of an earlier frame.
+    pub follows: bool,
+    /// What the pair tells the frames after it.
+    pub precedent: Option<Precedent>,
 }
 
 impl Job {
@@ -66,23 +70,32 @@ impl Job {
     pub fn run(self, options: &RunOptions) -> Result<CompletedJob> {
         let start = Instant::now();
         let cached = options.open()?;
-        let completed = self.run_on(&cached.backend, &Progress::new(options.quiet), start)?;
+        let completed = self.run_on(&cached.backend, None, &Progress::new(options.quiet), start)?;
         cached.save();
         Ok(completed)
     }
 
-    /// Matches the pair on an open device, for a job that began at `start`; writes no files.
-    pub fn run_on(mut self, backend: &Backend, progress: &Progress, start: Instant) -> Result<CompletedJob> {
-        let Matched { mut outcome, rectified, calibration, warnings, not_trusted } = Task {
+    /// Matches the pair on an open device, as a frame after a `precedent` if there is one, for a job that began at `start`; writes no files.
+    pub fn run_on(
+        mut self,
+        backend: &Backend,
+        precedent: Option<&Precedent>,
+        progress: &Progress,
+        start: Instant,
+    ) -> Result<CompletedJob> {
+        let matched = Task {
             backend,
             views: (&self.left, &self.right),
             config: &self.config,
             way: &self.way,
             calibration: self.calibration,
+            precedent,
             begin: &|activity| progress.activity(activity),
             progress: &|share| progress.share(share),
         }
         .run()?;
+        let precedent = matched.precedent((&self.left, &self.right));
+        let Matched { mut outcome, rectified, calibration, warnings, not_trusted, follows } = matched;
         let warnings: Vec<String> = warnings.iter().map(|warning| in_words_of_options(warning)).collect();
         let not_trusted = not_trusted.map(|reason| NotTrusted { reason });
         let (mut back, mut no_depth) = (None, None);
@@ -121,6 +134,8 @@ impl Job {
             no_depth: None,
             depth_png: None,
             cloud: None,
+            follows,
+            precedent,
         };
         no_depth.into_iter().for_each(|reason| completed.miss_depth(reason));
         Ok(completed)

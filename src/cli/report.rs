@@ -13,8 +13,20 @@ pub use hsad::report::{device, searched};
 impl CompletedJob {
     /// The report without the list of files.
     pub fn report(&self) -> Value {
-        let Self { job, backend, outcome, rectified, back, total, warnings, not_trusted, no_depth, depth_png, cloud } =
-            self;
+        let Self {
+            job,
+            backend,
+            outcome,
+            rectified,
+            back,
+            total,
+            warnings,
+            not_trusted,
+            no_depth,
+            depth_png,
+            cloud,
+            ..
+        } = self;
         let mut value = report::run(&Run {
             names: job.names.each_ref().map(String::as_str),
             size: job.left.size(),
@@ -33,6 +45,9 @@ impl CompletedJob {
             total: *total,
         });
         value["parameters"] = parameters(&job.config, job.strongest);
+        if self.follows {
+            value["follows"] = true.into();
+        }
         value
     }
 }

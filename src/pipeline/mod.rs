@@ -1,13 +1,16 @@
 //! The pipeline from two pictures to a disparity map.
 
 mod back;
+mod clock;
 mod confidence;
 pub mod doubts;
 #[cfg(feature = "calibrations")]
 mod geometry;
+mod known;
 mod metric;
 mod mirror;
 mod no_depth;
+mod precedent;
 mod range;
 mod rectified;
 mod reduction;
@@ -27,6 +30,7 @@ pub use geometry::Geometry;
 pub use mirror::mirrored;
 pub use mirror::{Mirrored, mirrored_async};
 pub use no_depth::NoDepth;
+pub use precedent::Precedent;
 pub use range::RangeSource;
 #[cfg(not(target_arch = "wasm32"))]
 pub use rectified::rectify_by;
@@ -40,24 +44,22 @@ pub use task::{Activity, Matched, Task};
 pub use trust::TRUSTED;
 pub use way::Way;
 
-use web_time::{Duration, Instant};
+use web_time::Duration;
 
-use confidence::{by_detail, in_proportion, without_constant, without_ends};
+use clock::Clock;
+use known::{Known, brightness, repetition_of};
 use range::range_to_search;
-use search::{Found, Search};
-use trust::{of_steps, shows_no_parallax, trust};
 use views::Views;
 
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::block_on;
 use crate::{
     backend::Backend,
-    config::{Config, Method},
-    dense::{Brightness, Dense, View},
+    config::Config,
+    dense::{Brightness, Dense},
     disparity::DisparityRange,
     error::{Error, Result},
     features::{Detected, Feature, FeatureConfig},
-    filter::repetition,
     image::{Plane, Size},
     io::Picture,
     names::names,
@@ -218,36 +220,27 @@ async fn run_on(
     given: Given<'_>,
     config: &Config,
     is_unfit: impl FnOnce(&Rectification) -> bool,
-    mut begin: impl FnMut(Step),
+    begin: impl FnMut(Step),
     progress: impl FnMut(f32),
 ) -> Result<Option<Outcome>> {
-    let mut times = Vec::new();
-    let mut begun = None;
-    let mut enter = |step: Option<Step>| {
-        if let Some((step, start)) = begun.replace((step, Instant::now())) {
-            times.extend(step.map(|step| (step, Instant::elapsed(&start))));
-        }
-        step.into_iter().for_each(&mut begin);
-    };
-
+    let mut clock = Clock::new(begin);
     config.validate()?;
     let [left, right] = given.pictures;
     check_window(left.size(), config)?;
-    enter(Some(Step::Luma));
+    clock.enter(Step::Luma);
     let views = match given.rectified {
         Some(pair) => Views::of_rectified(backend, pair, config).await?,
         None => Views::new(backend, [left, right], config).await?,
     };
     let size = views.size();
-    let (left, right) = views.pair.views();
-    let repetition = repetition(left).min(repetition(right));
+    let repetition = repetition_of(&views);
 
-    enter(Some(Step::Features));
+    clock.enter(Step::Features);
     // The rows of a rectified pair correspond, as far as points in pictures of half a megapixel tell.
     let factor = if given.rectified.is_some() { geometry_reduction(size) } else { reduction(size) };
     let detected = views.features(factor, &config.features).await?;
 
-    enter(Some(Step::Seeding));
+    clock.enter(Step::Seeding);
     let (detected, mut matches) = matched(&views, factor, detected, config).await?;
     let points_found = detected.each_ref().map(|view| view.found);
     let features = detected.map(|view| view.features);
@@ -269,50 +262,14 @@ async fn run_on(
     };
     let seeding = seeding.enlarged(factor);
     let features = features.map(|view| view.into_iter().map(|point| enlarged_feature(point, factor)).collect());
-    let brightness = match seeding.brightness {
-        Some(found) if config.equalise => found.equalising(),
-        _ => Brightness::SAME,
-    };
+    let brightness = brightness(config, &seeding);
     let (range, range_source) = range_to_search(config, &seeding, size.width)?;
 
-    enter(Some(Step::Dense));
-    let views = views.drowned().await?;
-    let search = Search { views: &views, pictures: given.pictures, config, brightness };
-    let Found { range, dense, at_ends } = search.widening(range, range_source, progress).await?;
-    let dense = without_ends(dense, range, range_source.ends_at_zero());
-    let (left, right) = views.pair.views();
-    let own = if config.reference == View::Left { left } else { right };
-    let dense = without_constant(dense, own);
-    let no_depth = match given.rectified.and_then(|pair| pair.rectification.calibration()) {
-        _ if shows_no_parallax(&dense) => Some(NoDepth::NoParallax),
-        Some(_) => None,
-        None => NoDepth::of(&seeding.seeds, &seeding.rectification.rows, size, factor),
-    };
-    let dense = match config.method {
-        Method::Hsad(_) => by_detail(dense, own),
-        // Its confidences tell how alike the views look, and not how many neighbours agree.
-        Method::Kamencay(_) => dense,
-    };
-    let trust = if no_depth.is_some() { 0.0 } else { trust(&dense, config, &seeding) * of_steps(repetition) };
-    let dense = in_proportion(dense, trust);
-    enter(None);
-    Ok(Some(Outcome {
-        features,
-        points_found,
-        reduction: factor,
-        no_depth,
-        trust,
-        seeding,
-        range,
-        range_source,
-        at_ends,
-        brightness,
-        masks: views.masks,
-        mosaics: views.mosaics,
-        repetition,
-        dense,
-        times,
-    }))
+    clock.enter(Step::Dense);
+    let known =
+        Known { features, points_found, seeding, range, range_source, widens: true, brightness, repetition, factor };
+    let outcome = known.matched(views, &given, config, progress).await?;
+    Ok(Some(Outcome { times: clock.finish(), ..outcome }))
 }
 
 /// Matches the features of the views in any row, or features with orientations where upright ones do not tell how rows

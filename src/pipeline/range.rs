@@ -62,6 +62,12 @@ pub(super) fn at_ends(map: &DisparityMap, range: DisparityRange) -> [f32; 2] {
     ends.map(|end| end as f32 / count.max(1) as f32)
 }
 
+/// Whether the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end.
+pub(super) fn is_cut(source: RangeSource, ends: [f32; 2]) -> bool {
+    let RangeSource::Found(_) = source else { return false };
+    ends[0] > MOST_AT_END && !source.ends_at_zero() || ends[1] > MOST_AT_END
+}
+
 /// A wider range, if the map of a range that was found touches an end of the range, as surfaces do that go on beyond the end;
 /// within what a `width` of the views in pixels allows.
 /// A range that does not reach below 0 stays so, since neither seeds nor coarse map show a disparity there.

@@ -1,7 +1,7 @@
 //! From two pictures, as someone has them, to a map and the doubts about it.
 
 use super::{
-    Mirrored, Outcome, RectifiedPair, Step, TRUSTED, doubts,
+    Mirrored, Outcome, Precedent, RectifiedPair, Step, TRUSTED, doubts,
     mirror::mirrored_async,
     way::{Found, Way},
 };
@@ -27,6 +27,9 @@ pub struct Task<'a> {
     pub way: &'a Way,
     /// The geometry of the pair if its pictures are rectified already.
     pub calibration: Option<Calibration>,
+    /// An earlier frame of the sequence that the pair belongs to: what it was found to be holds for the pair too, unless that shows
+    /// otherwise.
+    pub precedent: Option<&'a Precedent>,
     /// Called with what begins.
     pub begin: &'a dyn Fn(Activity),
     /// Called with the share of [`Step::Dense`] that a device has done, see [`super::run_with_progress`].
@@ -57,6 +60,8 @@ pub struct Matched {
     pub warnings: Vec<String>,
     /// Why the map is not to be trusted; `None` for a map that is, and with [`Config::force`].
     pub not_trusted: Option<String>,
+    /// Whether the precedent held.
+    pub follows: bool,
 }
 
 impl Task<'_> {
@@ -74,7 +79,12 @@ impl Task<'_> {
     /// # Errors
     /// See [`Self::run`].
     pub async fn run_async(&self) -> Result<Matched> {
-        let found = self.on_its_way().await;
+        let followed = self.followed().await?;
+        let follows = followed.is_some();
+        let found = match followed {
+            Some(outcome) => Ok(Found { outcome, rectified: None, warnings: Vec::new() }),
+            None => self.on_its_way().await,
+        };
         let mirrored = self.mirrored(&found).await?;
         let Found { outcome, rectified, mut warnings } = match (found, mirrored) {
             (Err(_), Some(sides)) => return Err(Error::NotRectifiable { reason: doubts::mirrored(sides) }),
@@ -98,7 +108,15 @@ impl Task<'_> {
             warnings.push(doubt);
             calibration = None;
         }
-        Ok(Matched { outcome, rectified, calibration, warnings, not_trusted })
+        Ok(Matched { outcome, rectified, calibration, warnings, not_trusted, follows })
+    }
+
+    /// The outcome by the precedent, if there is one and it holds.
+    async fn followed(&self) -> Result<Option<Outcome>> {
+        let Some(precedent) = self.precedent else { return Ok(None) };
+        self.config.validate()?;
+        let begin = |step| (self.begin)(Activity::Step(step));
+        precedent.followed(self.backend, self.views, self.config, begin, self.progress).await
     }
 
     /// How one view mirrors the other, which is found out where the pair was refused or its map is not to be trusted.

@@ -99,6 +99,24 @@ impl Seeding {
         let aligned = map.map(|map| cpu::rectify::warp(right, &map));
         matches.seeding((left, aligned.as_ref().unwrap_or(right)), None, features, config)
     }
+
+    /// What holds for another frame of the same cameras, with the coarse map of its `views`, which are downscaled by `factor` and whose
+    /// right one has a change of `brightness`; `seen` masks the left one.
+    pub(crate) fn followed(
+        &self,
+        views: (&Luma, &Luma),
+        seen: Option<&Mask>,
+        factor: u32,
+        brightness: Brightness,
+    ) -> Result<Self> {
+        let coarse = range::coarse_map(views, seen, &[], brightness)?.enlarged(factor);
+        Ok(Self { coarse, ..self.clone() })
+    }
+
+    /// Whether `range` holds what the coarse map shows, see [`range::holds`].
+    pub(crate) fn holds(&self, range: DisparityRange, ends_at_zero: bool) -> bool {
+        range::holds(&self.coarse, range, ends_at_zero)
+    }
 }
 
 /// Matches of the features of two views in any row, and what they tell of the rows.

@@ -185,6 +185,15 @@ fn joined(surfaces: [f32; 2], seeds: [f32; 2], error: f32, negative: f32, covera
     Ok(FoundRange { range: range([far, seen[1] + margin])?, seen, ends })
 }
 
+/// Whether `range`, which may end at 0 since nothing lies below, holds the surfaces of a coarse map with at least half of the margins that
+/// [`joined`] leaves.
+pub(super) fn holds(coarse: &CoarseMap, range: DisparityRange, ends_at_zero: bool) -> bool {
+    let Some([far, near]) = coarse.extent().filter(|_| coarse.coverage() >= COVERAGE) else { return false };
+    let margin = coarse.error().max(LEAST_MARGIN) / 2.0;
+    let is_above = if ends_at_zero { coarse.negative() < NEGATIVE } else { far - margin >= range.min as f32 };
+    is_above && near + margin <= range.last() as f32
+}
+
 /// The whole disparities that hold `[far, near]`.
 fn range([far, near]: [f32; 2]) -> Result<DisparityRange> {
     DisparityRange::inclusive(far.floor() as i32, near.ceil() as i32)

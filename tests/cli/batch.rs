@@ -202,3 +202,61 @@ fn what_is_no_batch_is_told() {
     fs::write(&list, "left,right\n").unwrap();
     fails(&[list.to_str().unwrap()], 1, "no pairs");
 }
+
+#[test]
+fn frames_follow_one_another_alike_in_one_run_in_shares_and_after_an_interruption() {
+    let temporary = folder();
+    let root = temporary.path();
+    for number in 0..6 {
+        let [_, right] = small_pair(root, &number.to_string(), 4 * number);
+        if number >= 2 {
+            // The right camera's exposure changes.
+            let view = hsad::io::load::load(&right).unwrap().luma();
+            grey_png(&right, &view.map(|&level| (u16::from(level) * 3 / 4) as u8));
+        }
+    }
+    let run = |name: &str, more: &[&str]| {
+        let arguments = ["--temporal", "4", "-q"];
+        batch(&[&[root.to_str().unwrap()], &arguments[..], more].concat(), &root.join(name)).success();
+    };
+    let maps = |name: &str| {
+        let map = |number: u32| fs::read(root.join(name).join(number.to_string()).join("disparity.pfm")).unwrap();
+        (0..6).map(map).collect::<Vec<_>>()
+    };
+    run("whole", &["--jobs", "2"]);
+    let journal = root.join("whole/report.jsonl");
+    let follows: Vec<Value> = records(&journal).iter().map(|record| record["follows"].clone()).collect();
+    assert_eq!(
+        follows,
+        [false, true, false, true, false, true],
+        "frames 0 and 4 begin, and frame 2 shows another exposure"
+    );
+    let whole = maps("whole");
+
+    for share in ["0/2", "1/2"] {
+        run("shares", &["--shard", share]);
+    }
+    assert_eq!(records(&root.join("shares/report-1-of-2.jsonl")).len(), 2, "frames 4 and 5");
+    assert!(maps("shares") == whole);
+
+    // Killed while frame 3 was written: frames 0 to 2 are in their place, and so is frame 4.
+    let out = root.join("killed");
+    run("killed", &["--jobs", "1"]);
+    let text = fs::read_to_string(out.join("report.jsonl")).unwrap();
+    let kept: String = text
+        .lines()
+        .filter(|line| !["3", "5"].iter().any(|name| line.contains(&format!("\"name\":\"{name}\""))))
+        .fold(String::new(), |all, line| all + line + "\n");
+    fs::write(out.join("report.jsonl"), kept).unwrap();
+    for number in ["3", "5"] {
+        fs::remove_dir_all(out.join(number)).unwrap();
+    }
+    let written = |number: &str| fs::metadata(out.join(number).join("report.json")).unwrap().modified().unwrap();
+    let before = ["0", "1", "2", "4"].map(written);
+    run("killed", &["--resume"]);
+    assert_eq!(["0", "1", "2", "4"].map(written), before, "nothing is redone");
+    assert!(maps("killed") == whole);
+    let report: Value = serde_json::from_slice(&fs::read(out.join("3/report.json")).unwrap()).unwrap();
+    assert_eq!((&report["follows"], &report["features"]["left"]), (&true.into(), &0.into()));
+    batch(&[root.to_str().unwrap(), "--temporal", "4", "--figures"], &root.join("none")).code(2);
+}

@@ -1,5 +1,6 @@
 //! `hsad batch`: many pairs on one device.
 
+mod group;
 mod journal;
 mod list;
 mod load;
@@ -26,9 +27,11 @@ use anyhow::{Result, anyhow, bail};
 use clap::Args;
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
+use group::{Group, grouped};
 use journal::Journal;
 use load::Load;
 use pair::Pair;
+use record::Record;
 use results::Results;
 use shard::Shard;
 use tally::Tally;
@@ -63,8 +66,8 @@ pub struct Batch {
     /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair
     #[arg(required_unless_present = "left")]
     source: Option<PathBuf>,
-    /// Left views: a path with one *, whose text names the pair
-    #[arg(long, value_name = "PATTERN", requires = "right", conflicts_with = "source")]
+    /// Left views: a path with one *, whose text names the pair; or pictures with both views, with --side-by-side or --top-bottom
+    #[arg(long, value_name = "PATTERN", requires = "second_view", conflicts_with = "source")]
     left: Option<String>,
     /// Right views: a path with one *
     #[arg(long, value_name = "PATTERN", requires = "left", group = "second_view")]
@@ -78,6 +81,18 @@ pub struct Batch {
     /// Work on every N-th pair from pair I on, I from 0 to N-1; the journal is report-I-of-N.jsonl then
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// The pairs are frames of a sequence, in order, from cameras that stand still against each other: one frame in N [default: 16] is
+    /// matched by itself, and what it was found to be (rows, range, brightness) holds for those after it, unless they show otherwise.
+    /// Frames of N are worked on one after the other, and belong to one shard
+    #[arg(
+        long,
+        value_name = "N",
+        num_args = 0..=1,
+        default_missing_value = "16",
+        value_parser = clap::value_parser!(u16).range(2..),
+        conflicts_with_all = ["figures", "matches"]
+    )]
+    temporal: Option<u16>,
     /// Pairs that are worked on at once [default: one per processor, 2 to 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -108,20 +123,25 @@ impl Batch {
         let parameters = parameters(&config, strongest);
         let pairs = self.pairs()?;
         pair::check_names(&pairs)?;
-        let shard = |&(number, _): &(usize, Pair)| self.shard.is_none_or(|shard| shard.has(number));
-        let pairs: Vec<Pair> = pairs.into_iter().enumerate().filter(shard).map(|(_, pair)| pair).collect();
+        let groups = grouped(pairs, self.temporal.map_or(1, usize::from), self.shard);
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
-        let recipe = format!("{:?} {:?}", self.recipe, self.halves);
+        let temporal = self.temporal.map(|length| format!(" temporal {length}")).unwrap_or_default();
+        let recipe = format!("{:?} {:?}{temporal}", self.recipe, self.halves);
         let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
         let results = Results { folder: &self.output, resumes: self.resume, parameters };
-        let mut tally = Tally::new(pairs.len(), self.run.quiet);
+        let mut tally = Tally::new(groups.iter().map(Vec::len).sum(), self.run.quiet);
         let mut open = Vec::new();
-        for pair in pairs {
-            // Results that were removed since are made again.
-            match earlier.finished(&pair)?.filter(|_| results.report_of(&pair).is_some()) {
-                Some(record) => tally.count_earlier(record),
-                None => open.push(pair),
+        for pairs in groups {
+            let mut group = Group(Vec::new());
+            for pair in pairs {
+                // Results that were removed since are made again.
+                let record = earlier.finished(&pair)?.filter(|_| results.report_of(&pair).is_some()).cloned();
+                record.iter().for_each(|record| tally.count_earlier(record));
+                group.0.push((pair, record));
+            }
+            if !group.is_finished() {
+                open.push(group);
             }
         }
 
@@ -145,6 +165,7 @@ impl Batch {
     fn pairs(&self) -> Result<Vec<Pair>> {
         let pairs = match (&self.source, &self.left, &self.right) {
             (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
+            (None, Some(both), None) => patterns::pictures_of_both(both)?,
             (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
             (Some(source), ..) if list::is_list(source) => list::read(source)?,
             (Some(source), ..) => bail!(
@@ -159,22 +180,22 @@ impl Batch {
         Ok(pairs)
     }
 
-    /// Works on `pairs`, several at once, and records each when it is done. Ends with the first record that cannot be written, and with a
+    /// Works on the pairs of `groups`, several groups at once, and records each pair when it is done. Ends with the first record that cannot be written, and with a
     /// device that is lost.
-    fn work_on(&self, pairs: &[Pair], work: &Work<'_>, journal: Journal, tally: &mut Tally) -> hsad::Result<()> {
+    fn work_on(&self, groups: &[Group], work: &Work<'_>, journal: Journal, tally: &mut Tally) -> hsad::Result<()> {
         let jobs = self
             .jobs
             .map_or_else(|| thread::available_parallelism().map_or(1, NonZero::get).clamp(2, MOST_JOBS), usize::from);
         let recorded = Mutex::new((journal, tally, Ok(())));
-        side_by_side(pairs, jobs, |pair| {
-            let record = work.on(pair);
+        let record = |record: hsad::Result<Record>| {
             let mut recorded = recorded.lock().expect("no panic while it is held");
             let (journal, tally, result) = &mut *recorded;
             if result.is_ok() {
                 *result = record.and_then(|record| journal.add(&record).and_then(|()| tally.count(&record)));
             }
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
+        };
+        side_by_side(groups, jobs, |group| work.on_group(group, record));
         recorded.into_inner().expect("no panic while it is held").2
     }
 }

@@ -33,6 +33,19 @@ pub fn pairs(left: &str, right: &str) -> Result<Vec<Pair>> {
     Ok(pairs)
 }
 
+/// The pairs of the pictures that the pattern matches, each of which has both views; sorted as [`pairs`] are.
+///
+/// # Errors
+/// A pattern without exactly one `*`, a folder that cannot be read, and no file at all.
+pub fn pictures_of_both(pattern: &str) -> Result<Vec<Pair>> {
+    let pictures = matches(pattern)?;
+    if pictures.is_empty() {
+        bail!("no file matches {pattern}");
+    }
+    let pair = |((_, name), file)| Pair { name, left: file, right: None, calibration: None };
+    Ok(pictures.into_iter().map(pair).collect())
+}
+
 /// What `*` stands for, behind its digits as a number: texts with numbers are sorted by them.
 type Name = (u128, String);
 
@@ -100,6 +113,15 @@ mod tests {
         let files = ["s1/im0.png", "s1/im1.png", "s2/im0.png", "s2/im1.png", "more/a.png"];
         let expected = ["1: s1/im0.png s1/im1.png", "2: s2/im0.png s2/im1.png"];
         assert_eq!(paired(&files, "s*/im0.png", "s*/im1.png").expect("pairs"), expected);
+    }
+
+    #[test]
+    fn pictures_of_both_views_need_no_partner() {
+        let folder = folder(&["f/10.png", "f/9.png", "f/9.txt"]);
+        let pairs = pictures_of_both(&format!("{}/f/*.png", folder.path().display())).expect("pairs");
+        let names: Vec<_> = pairs.iter().map(|pair| (pair.name.as_str(), pair.right.is_none())).collect();
+        assert_eq!(names, [("9", true), ("10", true)]);
+        assert!(pictures_of_both(&format!("{}/f/*.jpg", folder.path().display())).is_err());
     }
 
     #[test]

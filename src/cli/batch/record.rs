@@ -126,6 +126,7 @@ impl Record {
         value["min_disparity"] = outcome.range.min.into();
         value["disparities"] = outcome.range.count.into();
         value["warnings"] = json!(completed.warnings);
+        value["follows"] = completed.follows.into();
         value["seconds"] = Stages::of(times, &outcome.times).to_json();
         Self(value)
     }
@@ -148,6 +149,7 @@ impl Record {
         for field in ["width", "height", "trust", "warnings"] {
             value[field] = report[field].clone();
         }
+        value["follows"] = (report["follows"] == true).into();
         Self(value)
     }
 
@@ -178,6 +180,11 @@ impl Record {
 
     pub fn has_failed(&self) -> bool {
         self.status() == Status::Failed
+    }
+
+    /// Whether the pair was matched by the precedent of an earlier frame.
+    pub fn follows(&self) -> bool {
+        self.0["follows"] == true
     }
 
     /// Why the pair is not simply done.

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-/// Every `of`-th pair, from pair `index` on.
+/// Every `of`-th pair, or group of frames, from number `index` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -10,7 +10,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Whether the pair of this number, from 0, belongs to the share.
+    /// Whether the pair or group of this number, from 0, belongs to the share.
     pub fn has(self, number: usize) -> bool {
         number % self.of == self.index
     }

@@ -1,18 +1,23 @@
 //! The work on a pair: as `hsad match` does it, on a device that is open.
 
-use std::{path::Path, time::Instant};
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
 
 use anyhow::Result;
-use hsad::{Backend, Error, io::load::Halves};
+use hsad::{Backend, Error, io::load::Halves, pipeline::Precedent};
 
 use super::{
     super::{
         exit_code,
+        job::CompletedJob,
         output::Output,
         recipe::{Prepared, Recipe},
         terminal::{Progress, described},
         view_files::Views,
     },
+    group::Group,
     pair::Pair,
     record::{Record, Times},
     results::Results,
@@ -26,41 +31,120 @@ pub struct Work<'a> {
     pub results: &'a Results<'a>,
 }
 
+/// What comes of a pair.
+struct Done {
+    record: Record,
+    /// What frames after it know, unless they know what the pair knew.
+    told: Option<Before>,
+}
+
+/// What a frame knows of those before it.
+enum Before {
+    Nothing,
+    Known(Box<Precedent>),
+    /// An earlier run has matched this pair by itself.
+    Finished(Pair),
+}
+
 impl Work<'_> {
-    /// Matches a pair and writes its files, unless they are there.
+    /// Works on the pairs of a group, one after the other, and calls `then` with the record of each until it breaks.
     ///
-    /// # Errors
-    /// [`hsad::Error::DeviceLost`], after which no pair can be matched; whatever else is wrong with a pair is in its record.
-    pub fn on(&self, pair: &Pair) -> hsad::Result<Record> {
-        let folder = self.results.folder.join(&pair.name);
-        if let Some(report) = self.results.report_of(pair) {
-            return Ok(Record::found(pair, &report));
+    /// An error that `then` gets is [`hsad::Error::DeviceLost`], after which no pair can be matched; whatever else is wrong with a pair is in
+    /// its record.
+    pub fn on_group(
+        &self,
+        Group(pairs): &Group,
+        then: impl Fn(hsad::Result<Record>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut before = Before::Nothing;
+        for (pair, finished) in pairs {
+            let told = match finished {
+                Some(record) => told_by_earlier(pair, record.follows()),
+                None => match self.known(&mut before).and_then(|precedent| self.on(pair, precedent)) {
+                    Ok(Done { record, told }) => {
+                        then(Ok(record))?;
+                        told
+                    }
+                    Err(error) => return then(Err(error)),
+                },
+            };
+            before = told.unwrap_or(before);
         }
-        self.matched(pair, &folder).or_else(|error| match error.downcast::<Error>() {
-            Ok(lost @ Error::DeviceLost(_)) => Err(lost),
-            Ok(error) => Ok(failed(pair, &error.into())),
-            Err(error) => Ok(failed(pair, &error)),
+        ControlFlow::Continue(())
+    }
+
+    /// The precedent that is known before a frame. One of an earlier run is matched again, and its files stay as they are.
+    fn known<'b>(&self, before: &'b mut Before) -> hsad::Result<Option<&'b Precedent>> {
+        if let Before::Finished(pair) = before {
+            let precedent = match self.matched(pair, None) {
+                Ok(matched) => matched.completed.precedent,
+                Err(error) => lost(error)?,
+            };
+            *before = Before::of(precedent);
+        }
+        Ok(if let Before::Known(precedent) = before { Some(precedent) } else { None })
+    }
+
+    /// Matches a pair and writes its files, unless they are there.
+    fn on(&self, pair: &Pair, precedent: Option<&Precedent>) -> hsad::Result<Done> {
+        if let Some(report) = self.results.report_of(pair) {
+            let record = Record::found(pair, &report);
+            let told = told_by_earlier(pair, record.follows());
+            return Ok(Done { record, told });
+        }
+        self.matched(pair, precedent).and_then(|matched| self.written(pair, matched)).or_else(|error| {
+            let record = Record::failed(pair, exit_code(&error), &described(&error));
+            lost(error).map(|told| Done { record, told })
         })
     }
 
-    fn matched(&self, pair: &Pair, folder: &Path) -> Result<Record> {
+    fn matched(&self, pair: &Pair, precedent: Option<&Precedent>) -> Result<Matched> {
         let start = Instant::now();
-        let mut output = Output::open_set(folder)?;
+        let mut output = Output::open_set(&self.results.folder.join(&pair.name))?;
         let views = Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves };
         let Prepared { job, warnings } = self.recipe.prepare(&views, pair.calibration.as_deref(), &mut output)?;
         let read = start.elapsed();
-        let mut completed = job.run_on(self.backend, &Progress::new(true), Instant::now())?;
+        let mut completed = job.run_on(self.backend, precedent, &Progress::new(true), Instant::now())?;
         completed.warnings.splice(0..0, warnings);
-        let matched = start.elapsed() - read;
+        Ok(Matched { output, completed, read, matched: start.elapsed() - read })
+    }
+
+    fn written(&self, pair: &Pair, Matched { mut output, mut completed, read, matched }: Matched) -> Result<Done> {
+        let start = Instant::now();
         self.recipe.add_files(&mut completed, &mut output)?;
         output.finish()?;
-        let times = Times { read, matched, written: start.elapsed() - read - matched };
+        let times = Times { read, matched, written: start.elapsed() };
         let shortfall = completed.shortfall().map(|error| (exit_code(&error), described(&error)));
         let (code, reason) = shortfall.as_ref().map_or((0, None), |(code, reason)| (*code, Some(reason.as_str())));
-        Ok(Record::written(pair, &completed, (code, reason), times))
+        let record = Record::written(pair, &completed, (code, reason), times);
+        let told = (!completed.follows).then(|| Before::of(completed.precedent));
+        Ok(Done { record, told })
     }
 }
 
-fn failed(pair: &Pair, error: &anyhow::Error) -> Record {
-    Record::failed(pair, exit_code(error), &described(error))
+/// A matched pair, whose files are not written.
+struct Matched {
+    output: Output,
+    completed: CompletedJob,
+    read: Duration,
+    matched: Duration,
+}
+
+impl Before {
+    fn of(precedent: Option<Precedent>) -> Self {
+        precedent.map_or(Self::Nothing, |precedent| Self::Known(Box::new(precedent)))
+    }
+}
+
+/// What a pair tells that an earlier run has finished.
+fn told_by_earlier(pair: &Pair, follows: bool) -> Option<Before> {
+    (!follows).then(|| Before::Finished(pair.clone()))
+}
+
+/// The error of a device that is lost; nothing for any other one, which is that of a pair.
+fn lost<T>(error: anyhow::Error) -> hsad::Result<Option<T>> {
+    match error.downcast::<Error>() {
+        Ok(lost @ Error::DeviceLost(_)) => Err(lost),
+        _ => Ok(None),
+    }
 }

@@ -47,6 +47,7 @@ impl Session {
         let start = Instant::now();
         let task = Task::read(task, [left.0.size(), right.0.size()]).map_err(thrown)?;
         let pair = pipeline::Task {
+            precedent: None,
             backend: &self.backend,
             views: (&left.0, &right.0),
             config: &task.config,
