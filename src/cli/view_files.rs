@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use hsad::{
     Result,
-    io::load::{Halves, LoadedPair, Unseen, load_both, load_pair},
+    io::load::{Halves, LoadedPair, Unseen, decode_halves, load_both, load_pair},
 };
 
 /// The files of a pair.
@@ -44,12 +44,14 @@ pub struct Views<'a> {
     pub left: &'a Path,
     pub right: Option<&'a Path>,
     pub halves: Option<Halves>,
+    /// The bytes of the picture file with both, if they do not come from a file called `left`.
+    pub bytes: Option<&'a [u8]>,
 }
 
 impl ViewOptions {
     /// The files.
     pub fn views(&self) -> Views<'_> {
-        Views { left: &self.left, right: self.right.as_deref(), halves: self.halves.halves() }
+        Views { left: &self.left, right: self.right.as_deref(), halves: self.halves.halves(), bytes: None }
     }
 }
 
@@ -64,9 +66,10 @@ impl Views<'_> {
     /// # Errors
     /// As [`load_pair`] and [`load_both`].
     pub fn load(&self, unseen: &Unseen) -> Result<LoadedPair> {
-        match self.right {
-            Some(right) => load_pair(self.left, right, unseen),
-            None => load_both(self.left, self.halves, unseen),
+        match (self.bytes, self.right) {
+            (Some(bytes), _) => decode_halves(bytes, self.left, self.halves.unwrap_or(Halves::LeftRight), unseen),
+            (None, Some(right)) => load_pair(self.left, right, unseen),
+            (None, None) => load_both(self.left, self.halves, unseen),
         }
     }
 }

@@ -260,3 +260,48 @@ fn frames_follow_one_another_alike_in_one_run_in_shares_and_after_an_interruptio
     assert_eq!((&report["follows"], &report["features"]["left"]), (&true.into(), &0.into()));
     batch(&[root.to_str().unwrap(), "--temporal", "4", "--figures"], &root.join("none")).code(2);
 }
+
+/// Frames with both views side by side, grey levels as they are.
+fn video(frames: &[[PathBuf; 2]]) -> Vec<u8> {
+    let views: Vec<_> =
+        frames.iter().map(|both| both.each_ref().map(|view| hsad::io::load::load(view).unwrap().luma())).collect();
+    let (width, height) = (views[0][0].width(), views[0][0].height());
+    let mut bytes = format!("YUV4MPEG2 W{} H{height} F25:1 Ip Cmono XCOLORRANGE=FULL\n", 2 * width).into_bytes();
+    for [left, right] in &views {
+        bytes.extend(b"FRAME\n");
+        (0..height).for_each(|y| bytes.extend([left.row(y), right.row(y)].concat()));
+    }
+    bytes
+}
+
+#[test]
+fn frames_of_a_video_are_pairs() {
+    let temporary = folder();
+    let root = temporary.path();
+    let frames = ["a", "b"].map(|name| small_pair(root, name, if name == "a" { 0 } else { 30 }));
+    let bytes = video(&frames);
+    let single = root.join("single");
+    hsad().arg("match").args(&frames[1]).args(["-q", "--disparities", "64", "-o"]).arg(&single).assert().success();
+    let options = ["batch", "--side-by-side", "left-right", "--disparities", "64", "-o"];
+    let is_second = |out: &Path| {
+        fs::read(out.join("000002/disparity.pfm")).unwrap() == fs::read(single.join("disparity.pfm")).unwrap()
+    };
+
+    let piped = root.join("piped");
+    hsad().args(options).arg(&piped).arg("-").write_stdin(bytes.clone()).assert().success();
+    assert_eq!(statuses(&piped.join("report.jsonl")), of(&[("000001", "done"), ("000002", "done")]));
+    assert!(is_second(&piped));
+
+    // What was there of a video that is cut off is matched, and goes on when the rest is there.
+    let (file, out) = (root.join("video.y4m"), root.join("out"));
+    fs::write(&file, &bytes[..bytes.len() - 9]).unwrap();
+    let run = |more: &str| hsad().args(options).arg(&out).arg(&file).args((!more.is_empty()).then_some(more)).assert();
+    run("").code(1).stderr(contains("after frame 1: the video is cut off"));
+    assert_eq!(statuses(&out.join("report.jsonl")), of(&[("000001", "done")]));
+    let written = || fs::metadata(out.join("000001/report.json")).unwrap().modified().unwrap();
+    let before = written();
+    fs::write(&file, &bytes).unwrap();
+    run("--resume").success();
+    assert!(written() == before && is_second(&out));
+    hsad().args(["batch", "-o"]).arg(root.join("none")).arg(&file).assert().code(1).stderr(contains("--side-by-side"));
+}

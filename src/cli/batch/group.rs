@@ -1,21 +1,70 @@
 //! Pairs that are worked on one after the other: a pair, or frames of a sequence.
 
-use super::{pair::Pair, record::Record, shard::Shard};
+use anyhow::Result;
 
-/// Pairs in their order, with what an earlier run recorded of those that it has finished.
-pub struct Group(pub Vec<(Pair, Option<Record>)>);
+use super::{pair::Pair, record::Record, shard::Shard, video::Frame};
+
+/// A pair of a group.
+pub struct Member {
+    pub pair: Pair,
+    /// The picture of both views, if it was read already.
+    pub frame: Option<Frame>,
+    /// What an earlier run recorded that has finished the pair.
+    pub finished: Option<Record>,
+}
+
+/// Pairs in their order.
+pub struct Group(pub Vec<Member>);
 
 impl Group {
-    /// Whether an earlier run has finished all pairs.
+    /// Whether earlier runs have finished all pairs.
     pub fn is_finished(&self) -> bool {
-        self.0.iter().all(|(_, record)| record.is_some())
+        self.0.iter().all(|member| member.finished.is_some())
     }
 }
 
-/// The pairs in groups of `length`, as far as they belong to the `shard`.
-pub fn grouped(pairs: Vec<Pair>, length: usize, shard: Option<Shard>) -> Vec<Vec<Pair>> {
-    let groups = pairs.chunks(length).enumerate();
-    groups.filter(|&(number, _)| shard.is_none_or(|shard| shard.has(number))).map(|(_, group)| group.to_vec()).collect()
+/// How pairs are grouped.
+#[derive(Clone, Copy)]
+pub struct Grouping {
+    /// Pairs of a group, at least 1.
+    pub length: usize,
+    pub shard: Option<Shard>,
+}
+
+impl Grouping {
+    /// How many of `count` pairs belong to the shard.
+    pub fn count(self, count: usize) -> usize {
+        (0..count).filter(|number| self.has(number / self.length)).count()
+    }
+
+    fn has(self, group: usize) -> bool {
+        self.shard.is_none_or(|shard| shard.has(group))
+    }
+
+    /// The groups of the shard in which there is something to do, without reading further than a group. `finished` looks for what an earlier
+    /// run has recorded.
+    pub fn of(
+        self,
+        mut pairs: impl Iterator<Item = Result<(Pair, Option<Frame>)>>,
+        mut finished: impl FnMut(&Pair) -> Result<Option<Record>>,
+    ) -> impl Iterator<Item = Result<Group>> {
+        let mut groups = 0..;
+        let mut group = move || -> Result<Option<Group>> {
+            let is_here = self.has(groups.next().unwrap_or_default());
+            let mut group = Vec::new();
+            for pair in pairs.by_ref().take(self.length) {
+                let (pair, frame) = pair?;
+                let finished = if is_here { finished(&pair)? } else { None };
+                group.push(Member { pair, frame: frame.filter(|_| is_here), finished });
+            }
+            if group.is_empty() {
+                return Ok(None);
+            }
+            let group = Group(if is_here { group } else { Vec::new() });
+            Ok(Some(group))
+        };
+        std::iter::from_fn(move || group().transpose()).filter(|group| !group.as_ref().is_ok_and(Group::is_finished))
+    }
 }
 
 #[cfg(test)]
@@ -27,8 +76,12 @@ mod tests {
         let pair =
             |number: u32| Pair { name: number.to_string(), left: "left.png".into(), right: None, calibration: None };
         let names = |length, shard: Option<&str>| {
-            let groups = grouped((0..7).map(pair).collect(), length, shard.map(|shard| shard.parse().unwrap()));
-            groups.iter().map(|group| group.iter().map(|pair| &*pair.name).collect::<String>()).collect::<Vec<_>>()
+            let grouping = Grouping { length, shard: shard.map(|shard| shard.parse().unwrap()) };
+            let groups = grouping.of((0..7).map(|number| Ok((pair(number), None))), |_| Ok(None));
+            let name = |group: Result<Group>| group.unwrap().0.into_iter().map(|member| member.pair.name).collect();
+            let names: Vec<String> = groups.map(name).collect();
+            assert_eq!(names.concat().len(), grouping.count(7));
+            names
         };
         assert_eq!(names(3, None), ["012", "345", "6"]);
         assert_eq!(names(3, Some("0/2")), ["012", "6"]);

@@ -1,5 +1,6 @@
 //! `hsad batch`: many pairs on one device.
 
+mod desk;
 mod group;
 mod journal;
 mod list;
@@ -11,15 +12,14 @@ mod results;
 mod shard;
 mod tally;
 mod tree;
+mod video;
 mod work;
 mod workers;
 
 use std::{
     fs,
     num::NonZero,
-    ops::ControlFlow,
     path::{Path, PathBuf},
-    sync::Mutex,
     thread,
 };
 
@@ -27,14 +27,15 @@ use anyhow::{Result, anyhow, bail};
 use clap::Args;
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
-use group::{Group, grouped};
-use journal::Journal;
+use desk::Desk;
+use group::Grouping;
+use journal::{Earlier, Journal};
 use load::Load;
 use pair::Pair;
-use record::Record;
 use results::Results;
 use shard::Shard;
 use tally::Tally;
+use video::{Frame, Video, is_video};
 use work::Work;
 use workers::side_by_side;
 
@@ -57,13 +58,15 @@ const KEPT: u64 = 1 << 30;
   hsad batch KITTI/training -o out --calib calib.txt
   hsad batch --left 'cam0/*.png' --right 'cam1/*.png' -o out --resume
   hsad batch pairs.jsonl -o out --shard $SLURM_ARRAY_TASK_ID/64
+  ffmpeg -i video.mp4 -f yuv4mpegpipe - | hsad batch - --side-by-side left-right -o out --temporal
 
 A list is CSV with the columns left, right, name and calib in any order (right is missing where left has both views), or JSON lines with
 the same fields; paths are relative to the list.
 
 Exit codes: 0 all pairs done, 1 some failed, 4 all files are written and some maps are not to be trusted or have no depth, 2 usage"))]
 pub struct Batch {
-    /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair
+    /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair;
+    /// or a video with both views in each frame, as ffmpeg -f yuv4mpegpipe writes it (.y4m, or - for standard input)
     #[arg(required_unless_present = "left")]
     source: Option<PathBuf>,
     /// Left views: a path with one *, whose text names the pair; or pictures with both views, with --side-by-side or --top-bottom
@@ -121,39 +124,18 @@ impl Batch {
     pub fn run(self) -> Result<()> {
         let (config, strongest) = self.recipe.config()?;
         let parameters = parameters(&config, strongest);
-        let pairs = self.pairs()?;
-        pair::check_names(&pairs)?;
-        let groups = grouped(pairs, self.temporal.map_or(1, usize::from), self.shard);
+        let source = self.source()?;
+        let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
         let temporal = self.temporal.map(|length| format!(" temporal {length}")).unwrap_or_default();
         let recipe = format!("{:?} {:?}{temporal}", self.recipe, self.halves);
         let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
         let results = Results { folder: &self.output, resumes: self.resume, parameters };
-        let mut tally = Tally::new(groups.iter().map(Vec::len).sum(), self.run.quiet);
-        let mut open = Vec::new();
-        for pairs in groups {
-            let mut group = Group(Vec::new());
-            for pair in pairs {
-                // Results that were removed since are made again.
-                let record = earlier.finished(&pair)?.filter(|_| results.report_of(&pair).is_some()).cloned();
-                record.iter().for_each(|record| tally.count_earlier(record));
-                group.0.push((pair, record));
-            }
-            if !group.is_finished() {
-                open.push(group);
-            }
-        }
-
-        if !open.is_empty() {
-            let cached = self.run.open()?.keeping(KEPT);
-            let load = Load::begin(&cached.backend);
-            let halves = self.halves.halves();
-            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, results: &results };
-            self.work_on(&open, &work, journal, &mut tally)?;
-            tally.note_load(load.elapsed(), &load.shares(&cached.backend));
-            cached.save();
-        }
+        let tally = Tally::new(source.len().map(|count| grouping.count(count)), self.run.quiet);
+        let desk = Desk::new(journal, tally);
+        self.work_on(source, grouping, &earlier, &results, &desk)?;
+        let tally = desk.into_tally()?;
         tally.finish(&self.output.join(name))?;
         match tally.shortfall() {
             None => Ok(()),
@@ -161,15 +143,64 @@ impl Batch {
         }
     }
 
-    /// The pairs of the source, in order.
-    fn pairs(&self) -> Result<Vec<Pair>> {
+    /// Works on the pairs of `source`, several groups at once, and brings their records to the `desk`. Ends with the first record that cannot
+    /// be written, and with a device that is lost.
+    fn work_on(
+        &self,
+        source: Source,
+        grouping: Grouping,
+        earlier: &Earlier,
+        results: &Results<'_>,
+        desk: &Desk,
+    ) -> Result<()> {
+        let mut groups = grouping
+            .of(source.into_pairs(), |pair| {
+                // Results that were removed since are made again.
+                let record = earlier.finished(pair)?.filter(|_| results.report_of(pair).is_some());
+                record.iter().for_each(|record| desk.count_earlier(record));
+                Ok(record.cloned())
+            })
+            .peekable();
+
+        if groups.peek().is_some() {
+            let cached = self.run.open()?.keeping(KEPT);
+            let load = Load::begin(&cached.backend);
+            let halves = self.halves.halves();
+            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, results };
+            side_by_side(groups, self.jobs(), |group| match group {
+                Ok(group) => work.on_group(group, |record| desk.record(record.map_err(Into::into))),
+                Err(error) => desk.record(Err(error)),
+            });
+            desk.note_load(load.elapsed(), &load.shares(&cached.backend));
+            cached.save();
+        }
+        Ok(())
+    }
+
+    /// Groups of pairs that are worked on at once.
+    fn jobs(&self) -> usize {
+        let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+        self.jobs.map_or_else(|| processors().clamp(2, MOST_JOBS), usize::from)
+    }
+
+    /// Where the pairs come from.
+    fn source(&self) -> Result<Source> {
         let pairs = match (&self.source, &self.left, &self.right) {
             (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
             (None, Some(both), None) => patterns::pictures_of_both(both)?,
+            (Some(source), ..) if is_video(source) => {
+                if self.halves.halves().is_none() {
+                    bail!(
+                        "{}: tell where both views lie in a frame (--side-by-side, --top-bottom)",
+                        hsad::shown(source)
+                    );
+                }
+                return Ok(Source::Video(Video::open(source)?));
+            }
             (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
             (Some(source), ..) if list::is_list(source) => list::read(source)?,
             (Some(source), ..) => bail!(
-                "{}: neither a folder nor a list of pairs (.csv, .jsonl); hsad match matches a pair",
+                "{}: neither a folder nor a list of pairs (.csv, .jsonl) nor a video (.y4m); hsad match matches a pair",
                 hsad::shown(source)
             ),
             _ => return Err(anyhow!("name a list or a folder, or --left and --right")),
@@ -177,25 +208,28 @@ impl Batch {
         if pairs.is_empty() {
             bail!("{}: no pairs", hsad::shown(self.source.as_deref().unwrap_or(Path::new("the list"))));
         }
-        Ok(pairs)
+        pair::check_names(&pairs)?;
+        Ok(Source::Pairs(pairs))
+    }
+}
+
+/// Where pairs come from.
+enum Source {
+    Pairs(Vec<Pair>),
+    Video(Video),
+}
+
+impl Source {
+    /// The number of pairs, if it is known.
+    fn len(&self) -> Option<usize> {
+        if let Self::Pairs(pairs) = self { Some(pairs.len()) } else { None }
     }
 
-    /// Works on the pairs of `groups`, several groups at once, and records each pair when it is done. Ends with the first record that cannot be written, and with a
-    /// device that is lost.
-    fn work_on(&self, groups: &[Group], work: &Work<'_>, journal: Journal, tally: &mut Tally) -> hsad::Result<()> {
-        let jobs = self
-            .jobs
-            .map_or_else(|| thread::available_parallelism().map_or(1, NonZero::get).clamp(2, MOST_JOBS), usize::from);
-        let recorded = Mutex::new((journal, tally, Ok(())));
-        let record = |record: hsad::Result<Record>| {
-            let mut recorded = recorded.lock().expect("no panic while it is held");
-            let (journal, tally, result) = &mut *recorded;
-            if result.is_ok() {
-                *result = record.and_then(|record| journal.add(&record).and_then(|()| tally.count(&record)));
-            }
-            if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        };
-        side_by_side(groups, jobs, |group| work.on_group(group, record));
-        recorded.into_inner().expect("no panic while it is held").2
+    /// The pairs in order, and the frames that were read for them.
+    fn into_pairs(self) -> Box<dyn Iterator<Item = Result<(Pair, Option<Frame>)>> + Send> {
+        match self {
+            Self::Pairs(pairs) => Box::new(pairs.into_iter().map(|pair| Ok((pair, None)))),
+            Self::Video(video) => Box::new(video.map(|frame| frame.map(|(pair, frame)| (pair, Some(frame))))),
+        }
     }
 }

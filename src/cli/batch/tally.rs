@@ -19,7 +19,8 @@ const LISTED: usize = 10;
 
 /// The pairs by their status.
 pub struct Tally {
-    all: usize,
+    /// How many pairs there are, if that is known.
+    expected: Option<usize>,
     /// Pairs that earlier runs have finished.
     earlier: usize,
     /// Names and reasons, by the number of [`Status::ALL`].
@@ -35,16 +36,19 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// For `all` pairs; with `quiet` nothing is shown.
-    pub fn new(all: usize, quiet: bool) -> Self {
-        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(all as u64) };
-        let template = "{wide_bar} {pos} of {len}, {per_sec}, {eta} left {msg}";
+    /// For as many pairs as `expected`, if that is known; with `quiet` nothing is shown.
+    pub fn new(expected: Option<usize>, quiet: bool) -> Self {
+        let (bar, template) = match expected {
+            _ if quiet => (ProgressBar::hidden(), ""),
+            Some(all) => (ProgressBar::new(all as u64), "{wide_bar} {pos} of {len}, {per_sec}, {eta} left {msg}"),
+            None => (ProgressBar::new_spinner(), "{spinner} {pos}, {per_sec} {msg}"),
+        };
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
         let prints = !quiet && !io::stdout().is_terminal();
         Self {
-            all,
+            expected,
             earlier: 0,
             found: Default::default(),
             stages: Stages::default(),
@@ -53,6 +57,11 @@ impl Tally {
             prints,
             quiet,
         }
+    }
+
+    /// Pairs so far.
+    fn all(&self) -> usize {
+        self.found.iter().map(Vec::len).sum()
     }
 
     fn note(&mut self, record: &Record) {
@@ -64,7 +73,9 @@ impl Tally {
     pub fn count_earlier(&mut self, record: &Record) {
         self.earlier += 1;
         self.note(record);
-        self.bar.set_length((self.all - self.earlier) as u64);
+        if let Some(all) = self.expected {
+            self.bar.set_length((all - self.earlier) as u64);
+        }
     }
 
     /// Counts a pair, and tells of it.
@@ -88,7 +99,7 @@ impl Tally {
 
     /// Notes how long the run took, and how busy it kept the machine.
     pub fn note_load(&mut self, time: Duration, shares: &Shares) {
-        let (here, seconds) = (self.all - self.earlier, time.as_secs_f64());
+        let (here, seconds) = (self.all() - self.earlier, time.as_secs_f64());
         let percent = |share: f64| 100.0 * share;
         self.load = format!("\n{here} in {seconds:.1} s, {:.2} per second", here as f64 / seconds.max(1e-9));
         if let Some(share) = shares.processors {
@@ -112,7 +123,7 @@ impl Tally {
             return Ok(());
         }
         let [done, doubtful, failed] = self.found.each_ref().map(Vec::len);
-        let mut text = format!("{} pairs: {done} done, {doubtful} doubtful, {failed} failed", self.all);
+        let mut text = format!("{} pairs: {done} done, {doubtful} doubtful, {failed} failed", self.all());
         if self.earlier > 0 {
             text += &format!("; {} by earlier runs", self.earlier);
         }
@@ -139,8 +150,8 @@ impl Tally {
         let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
         match (failed, doubtful) {
             (0, 0) => None,
-            (0, _) => Some((format!("{doubtful} of {} maps are doubtful; their files were written", self.all), 4)),
-            _ => Some((format!("{failed} of {} pairs failed", self.all), 1)),
+            (0, _) => Some((format!("{doubtful} of {} maps are doubtful; their files were written", self.all()), 4)),
+            _ => Some((format!("{failed} of {} pairs failed", self.all()), 1)),
         }
     }
 }

@@ -17,10 +17,11 @@ use super::{
         terminal::{Progress, described},
         view_files::Views,
     },
-    group::Group,
+    group::{Group, Member},
     pair::Pair,
     record::{Record, Times},
     results::Results,
+    video::Frame,
 };
 
 /// What all pairs share.
@@ -43,7 +44,7 @@ enum Before {
     Nothing,
     Known(Box<Precedent>),
     /// An earlier run has matched this pair by itself.
-    Finished(Pair),
+    Finished(Pair, Option<Frame>),
 }
 
 impl Work<'_> {
@@ -53,14 +54,14 @@ impl Work<'_> {
     /// its record.
     pub fn on_group(
         &self,
-        Group(pairs): &Group,
+        Group(members): Group,
         then: impl Fn(hsad::Result<Record>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut before = Before::Nothing;
-        for (pair, finished) in pairs {
+        for Member { pair, frame, finished } in members {
             let told = match finished {
-                Some(record) => told_by_earlier(pair, record.follows()),
-                None => match self.known(&mut before).and_then(|precedent| self.on(pair, precedent)) {
+                Some(record) => (!record.follows()).then_some(Before::Finished(pair, frame)),
+                None => match self.known(&mut before).and_then(|precedent| self.on(pair, frame, precedent)) {
                     Ok(Done { record, told }) => {
                         then(Ok(record))?;
                         told
@@ -75,8 +76,8 @@ impl Work<'_> {
 
     /// The precedent that is known before a frame. One of an earlier run is matched again, and its files stay as they are.
     fn known<'b>(&self, before: &'b mut Before) -> hsad::Result<Option<&'b Precedent>> {
-        if let Before::Finished(pair) = before {
-            let precedent = match self.matched(pair, None) {
+        if let Before::Finished(pair, frame) = before {
+            let precedent = match self.matched(pair, frame.as_ref(), None) {
                 Ok(matched) => matched.completed.precedent,
                 Err(error) => lost(error)?,
             };
@@ -86,22 +87,25 @@ impl Work<'_> {
     }
 
     /// Matches a pair and writes its files, unless they are there.
-    fn on(&self, pair: &Pair, precedent: Option<&Precedent>) -> hsad::Result<Done> {
-        if let Some(report) = self.results.report_of(pair) {
-            let record = Record::found(pair, &report);
-            let told = told_by_earlier(pair, record.follows());
+    fn on(&self, pair: Pair, frame: Option<Frame>, precedent: Option<&Precedent>) -> hsad::Result<Done> {
+        if let Some(report) = self.results.report_of(&pair) {
+            let record = Record::found(&pair, &report);
+            let told = (!record.follows()).then_some(Before::Finished(pair, frame));
             return Ok(Done { record, told });
         }
-        self.matched(pair, precedent).and_then(|matched| self.written(pair, matched)).or_else(|error| {
-            let record = Record::failed(pair, exit_code(&error), &described(&error));
+        let matched = self.matched(&pair, frame.as_ref(), precedent);
+        matched.and_then(|matched| self.written(&pair, matched)).or_else(|error| {
+            let record = Record::failed(&pair, exit_code(&error), &described(&error));
             lost(error).map(|told| Done { record, told })
         })
     }
 
-    fn matched(&self, pair: &Pair, precedent: Option<&Precedent>) -> Result<Matched> {
+    fn matched(&self, pair: &Pair, frame: Option<&Frame>, precedent: Option<&Precedent>) -> Result<Matched> {
         let start = Instant::now();
         let mut output = Output::open_set(&self.results.folder.join(&pair.name))?;
-        let views = Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves };
+        let bytes = frame.map(Frame::to_pnm);
+        let views =
+            Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, bytes: bytes.as_deref() };
         let Prepared { job, warnings } = self.recipe.prepare(&views, pair.calibration.as_deref(), &mut output)?;
         let read = start.elapsed();
         let mut completed = job.run_on(self.backend, precedent, &Progress::new(true), Instant::now())?;
@@ -134,11 +138,6 @@ impl Before {
     fn of(precedent: Option<Precedent>) -> Self {
         precedent.map_or(Self::Nothing, |precedent| Self::Known(Box::new(precedent)))
     }
-}
-
-/// What a pair tells that an earlier run has finished.
-fn told_by_earlier(pair: &Pair, follows: bool) -> Option<Before> {
-    (!follows).then(|| Before::Finished(pair.clone()))
 }
 
 /// The error of a device that is lost; nothing for any other one, which is that of a pair.

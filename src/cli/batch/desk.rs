@@ -1,0 +1,61 @@
+//! Where the records of all pairs come together.
+
+use std::{
+    ops::ControlFlow,
+    sync::{Mutex, MutexGuard},
+    time::Duration,
+};
+
+use anyhow::Result;
+
+use super::{journal::Journal, load::Shares, record::Record, tally::Tally};
+
+/// The journal and the tally, shared by the threads of a run, and the error that ends it.
+pub struct Desk(Mutex<State>);
+
+struct State {
+    journal: Journal,
+    tally: Tally,
+    result: Result<()>,
+}
+
+impl Desk {
+    pub fn new(journal: Journal, tally: Tally) -> Self {
+        Self(Mutex::new(State { journal, tally, result: Ok(()) }))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().expect("no panic while it is held")
+    }
+
+    /// Counts a pair that an earlier run has finished.
+    pub fn count_earlier(&self, record: &Record) {
+        self.state().tally.count_earlier(record);
+    }
+
+    /// Records a pair that is done, until there is an error, which ends the run: that of a record that cannot be written is one, too.
+    pub fn record(&self, record: Result<Record>) -> ControlFlow<()> {
+        let State { journal, tally, result } = &mut *self.state();
+        if result.is_ok() {
+            *result = record.and_then(|record| {
+                journal.add(&record)?;
+                Ok(tally.count(&record)?)
+            });
+        }
+        if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
+    /// Notes how long the run took, and how busy it kept the machine.
+    pub fn note_load(&self, time: Duration, shares: &Shares) {
+        self.state().tally.note_load(time, shares);
+    }
+
+    /// The tally of a run that was not ended by an error.
+    ///
+    /// # Errors
+    /// The one that ended it.
+    pub fn into_tally(self) -> Result<Tally> {
+        let State { tally, result, .. } = self.0.into_inner().expect("no panic while it is held");
+        result.map(|()| tally)
+    }
+}
