@@ -93,7 +93,7 @@ impl Known {
             at_ends,
             brightness,
             masks: views.masks,
-            mosaics: views.mosaics,
+            mosaics: given.rectified.map_or(views.mosaics, |pair| pair.mosaics),
             repetition,
             dense,
             times: Vec::new(),

@@ -233,7 +233,7 @@ async fn run_on(
         None => Views::new(backend, [left, right], config).await?,
     };
     let size = views.size();
-    let repetition = repetition_of(&views);
+    let repetition = given.rectified.map_or_else(|| repetition_of(&views), |pair| pair.repetition);
 
     clock.enter(Step::Features);
     // The rows of a rectified pair correspond, as far as points in pictures of half a megapixel tell.

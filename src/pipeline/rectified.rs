@@ -13,6 +13,7 @@ use crate::{
     dense::View,
     error::{Error, Result},
     features::FeatureConfig,
+    filter::repetition,
     image::{self, Luma, Plane, Size},
     io::Picture,
     mask,
@@ -46,9 +47,26 @@ pub struct RectifiedPair {
     pub(super) luma: [Luma; 2],
     /// The right view, which is resampled anew if its rows are still slightly off.
     pub(super) right: TakenView,
+    /// Whether the views are raw mosaics, and the factor by which both were enlarged without interpolation, as they were taken.
+    pub(super) mosaics: [bool; 2],
+    pub(super) repetition: u32,
 }
 
 impl RectifiedPair {
+    /// The pair of `views`, which `rectification` resampled to pictures and luma.
+    pub(super) fn new(
+        views: [TakenView; 2],
+        rectification: StereoRectification,
+        (pictures, luma): ([Picture; 2], [Luma; 2]),
+        points: Vec<Correspondence>,
+        residual: Residual,
+    ) -> Self {
+        let mosaics = views.each_ref().map(|view| view.is_mosaic);
+        let [left, right] = views;
+        let repetition = repetition(&left.seen.luma).min(repetition(&right.seen.luma));
+        Self { rectification, pictures, points, residual, luma, right, mosaics, repetition }
+    }
+
     /// Which pixels of the left and of the right picture show the scene: 255, otherwise 0.
     pub fn masks(&self) -> [Plane<u8>; 2] {
         self.pictures.each_ref().map(|picture| picture.map(|&[.., alpha]| alpha))
@@ -119,8 +137,7 @@ pub async fn rectify_by_async(
         Some(Correspondence { left: rectification.source_of(0, *left)?, right: rectification.source_of(1, *right)? })
     };
     let points = level.iter().filter_map(taken).collect();
-    let [_, right] = views;
-    Ok(RectifiedPair { rectification, pictures, points, residual, luma, right })
+    Ok(RectifiedPair::new(views, rectification, (pictures, luma), points, residual))
 }
 
 /// Refuses a pair of whose matched points, in a pair rectified by a calibration and reduced by `factor`, most lie behind the cameras.

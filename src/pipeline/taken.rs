@@ -20,6 +20,8 @@ pub(super) struct TakenView {
     /// Colours, grey for a raw mosaic; alpha is 0 where the view does not show the scene, and else 255.
     pub picture: Picture,
     pub seen: Seen,
+    /// Whether the view is a raw mosaic.
+    pub is_mosaic: bool,
 }
 
 /// The luma of a view, continued where it does not show the scene.
@@ -39,7 +41,9 @@ impl TakenView {
         let luma = picture.luma();
         // Before demosaicking, which mixes the edge of a border with the scene.
         let mask = mask::mask_of(picture, &luma);
-        let (colors, luma) = match demosaicked(picture, &luma) {
+        let demosaicked = demosaicked(picture, &luma);
+        let is_mosaic = demosaicked.is_some();
+        let (colors, luma) = match demosaicked {
             Some(luma) => ([luma.clone(), luma.clone(), luma.clone()], luma),
             None => ([0, 1, 2].map(|channel| picture.map(|pixel| pixel[channel])), luma),
         };
@@ -49,7 +53,7 @@ impl TakenView {
             let alpha = mask.as_ref().map_or(mask::SEEN, |mask| mask.get(x, y));
             [red.get(x, y), green.get(x, y), blue.get(x, y), alpha]
         });
-        Ok(Self { picture, seen: Seen { luma: continued(luma), mask } })
+        Ok(Self { picture, seen: Seen { luma: continued(luma), mask }, is_mosaic })
     }
 
     /// The view resampled by `map`, the same bytes on every backend: in colour, alpha 0 where it shows nothing of the scene, and its

@@ -61,6 +61,11 @@ impl TakenPair {
         Ok(Self { views, small, factor, glance })
     }
 
+    /// Whether both views have one size.
+    pub(super) fn is_of_one_size(&self) -> bool {
+        self.views[0].picture.size() == self.views[1].picture.size()
+    }
+
     /// How the rows of the views correspond as they are, from small copies of the views; in pixels of the views. `None` unless that is
     /// certain.
     pub fn rows(&self) -> Option<Rectification> {
@@ -114,9 +119,8 @@ impl TakenPair {
         let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
         let residual = found.residual;
         let rectification = StereoRectification::Uncalibrated(found.into());
-        let (pictures, luma) = warped(backend, &views, &rectification).await?;
-        let [_, right] = views;
-        Ok(RectifiedPair { rectification, pictures, points: in_views, residual, luma, right })
+        let resampled = warped(backend, &views, &rectification).await?;
+        Ok(RectifiedPair::new(views, rectification, resampled, in_views, residual))
     }
 }
 

@@ -114,7 +114,14 @@ impl Task<'_> {
         if !self.config.align {
             return Ok(as_taken(self.as_it_is(force).await?));
         }
-        let looked = self.first_look().await?;
+        let mut looked = self.first_look().await?;
+        let mut upright = None;
+        if let Some(pair) = looked.take_if(|pair| leans(pair)) {
+            upright = self.with_upright_columns(pair).await?;
+            if let Some(outcome) = upright.take_if(|outcome| outcome.trust >= TRUSTED) {
+                return Ok(as_taken(outcome));
+            }
+        }
         let as_is = match looked.as_ref().and_then(TakenPair::rows) {
             Some(rows) if rows.is_distorted() => Ok(None),
             Some(rows) => Err(Error::NotRectified { diagnosis: rows.to_string() }),
@@ -130,7 +137,11 @@ impl Task<'_> {
             _ => {
                 return match as_is? {
                     Some(outcome) if self.can_lean() && has_leaning_columns(&outcome) => {
-                        self.with_upright_columns(outcome).await
+                        if upright.is_none() {
+                            let pair = TakenPair::new_async(self.backend, self.views).await?;
+                            upright = self.with_upright_columns(pair).await?;
+                        }
+                        Ok(as_taken(upright.filter(|upright| upright.trust >= outcome.trust).unwrap_or(outcome)))
                     }
                     outcome => self.taken_or(outcome).await,
                 };
@@ -172,8 +183,8 @@ impl Task<'_> {
         Ok(as_taken(outcome))
     }
 
-    /// The pair, if a first look tells that it is not to be matched as it was taken: rows differ by more than a small warp mends, or the
-    /// lens distorts them. With a calibration, which is of a rectified pair then, nobody looks.
+    /// The pair, if a first look tells that it is not to be matched as it was taken: rows differ by more than a small warp mends, the
+    /// lens distorts them, or columns lean. With a calibration, which is of a rectified pair then, nobody looks.
     async fn first_look(&self) -> Result<Option<TakenPair>> {
         if self.calibration.is_some() {
             return Ok(None);
@@ -181,7 +192,7 @@ impl Task<'_> {
         (self.begin)(Activity::Rectifying);
         let pair = TakenPair::new_async(self.backend, self.views).await?;
         let is_unfit = pair.rows().is_some_and(|rows| rows.is_distorted() || rows.rows_differ());
-        Ok(is_unfit.then_some(pair))
+        Ok(Some(pair).filter(|pair| is_unfit || self.can_lean() && leans(pair)))
     }
 
     /// The outcome of the pair as it was taken, if it was matched; else it is matched now.
@@ -198,19 +209,24 @@ impl Task<'_> {
         self.config.range.is_none() && self.config.least.is_none() && self.config.reference == View::Left
     }
 
-    /// The map found with the columns of the right view upright, if it deserves as much trust as that of the columns as they are;
-    /// disparities are those of the pair as it was taken.
-    async fn with_upright_columns(&self, as_is: Outcome) -> Result<Found> {
+    /// The outcome with the columns of the right view upright, with the disparities of the pair as it was taken; `None` if the pair cannot
+    /// be rectified, or the left view does not stay.
+    async fn with_upright_columns(&self, pair: TakenPair) -> Result<Option<Outcome>> {
         (self.begin)(Activity::Rectifying);
-        let pair = match rectify_async(self.backend, self.views).await {
-            Ok(pair) => pair,
-            Err(Error::NotRectifiable { .. }) => return Ok(as_taken(as_is)),
+        let pair = match pair.rectify_async(self.backend).await {
+            Ok(pair) if pair.rectification.keeps_left() => pair,
+            Ok(_) | Err(Error::NotRectifiable { .. }) => return Ok(None),
             Err(error) => return Err(error),
         };
         let upright = self.along_rows_of(pair).await?;
-        let restored = upright.rectified.and_then(|pair| pair.restored(&as_is, &upright.outcome));
-        Ok(as_taken(restored.filter(|restored| restored.trust >= as_is.trust).unwrap_or(as_is)))
+        Ok(upright.rectified.and_then(|pair| pair.restored(upright.outcome)))
     }
+}
+
+/// Whether a first look at a pair whose rows correspond, or nearly, tells that its columns lean.
+fn leans(pair: &TakenPair) -> bool {
+    let leans = |rows: Rectification| rows.lean != 0.0 && !rows.is_distorted();
+    pair.is_of_one_size() && pair.rows().is_some_and(leans)
 }
 
 /// Whether most surfaces of a map share a slant, as where the columns of the right view lean.

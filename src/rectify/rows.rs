@@ -1,6 +1,6 @@
 //! Models of the rows: the left row on which a pixel of the right view lies.
 
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
 use super::WarpMap;
 use crate::{error::Result, image::Size};
@@ -118,6 +118,20 @@ impl RowModel {
         }
     }
 
+    /// The model for a view of `size` that `homography` maps to the picture of this model, pixels to pixels.
+    pub(crate) fn behind(&self, homography: &DMat3, size: impl Into<Size>) -> Self {
+        let [p0, p1, p2, p3, p4] = self.p;
+        let ([cx, cy], of) = (self.centre, Self::new(size, self.p));
+        // Linear forms of a place from the centre of the view: column and row from the centre of the picture, and what divides both.
+        let form = |row: DVec3| DVec3::new(row.x, row.y, row.dot(DVec3::new(of.centre[0], of.centre[1], 1.0)));
+        let [x, y, one] = [0, 1, 2].map(|row| form(homography.row(row)));
+        let (x, y) = (x - cx * one, y - cy * one);
+        let below = one + p3 * x + p4 * y;
+        let above = p0 * x + p1 * y + p2 * one + (cy - of.centre[1]) * below;
+        let [above, below] = [above, below].map(|form| form / below.z);
+        Self { p: [above.x, above.y, above.z, below.x, below.y], ..of }
+    }
+
     /// The map that resamples a right view of `size` so that its rows become the left ones and columns stay; `None` for rows
     /// as they are. Disparities are then those of the views as given.
     ///
@@ -219,6 +233,20 @@ mod tests {
         let enlarged = model.enlarged(3);
         assert!((enlarged.left_row(place(x), place(y)) - place(model.left_row(x, y))).abs() < 1e-9);
         assert_eq!(RowModel::AS_IS.enlarged(4).left_row(7.0, 9.0), 9.0);
+    }
+
+    #[test]
+    fn rows_behind_a_homography_are_those_of_the_picture_it_leads_to() {
+        let model = RowModel::new(SIZE, [0.05, 1.03, -4.0, 2e-4, -1e-4]);
+        let there =
+            DMat3::from_cols(DVec3::new(0.9, 0.1, 1e-4), DVec3::new(-0.2, 1.1, -2e-4), DVec3::new(7.0, -5.0, 1.0));
+        let behind = model.behind(&there, (500, 400));
+        for place in [DVec2::new(20.0, 30.0), DVec2::new(450.0, 20.0), DVec2::new(249.5, 380.0)] {
+            let picture = there * place.extend(1.0) / (there * place.extend(1.0)).z;
+            let rows = behind.left_row(place.x, place.y) - model.left_row(picture.x, picture.y);
+            assert!(rows.abs() < 1e-9, "{place}: {rows}");
+        }
+        assert_eq!(RowModel::AS_IS.behind(&DMat3::IDENTITY, SIZE).kind(), RowKind::AsIs);
     }
 
     #[test]

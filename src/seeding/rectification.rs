@@ -107,17 +107,27 @@ impl Rectification {
         Self {
             verdict,
             rows: if aligned { fit.model } else { RowModel::AS_IS },
-            // The left row of the centre, in pixels below the centre, negated; 0 and not -0 for rows as they are.
-            offset: 0.0 - fit.model.parameters()[2] as f32,
-            rotation,
-            scale: fit.model.scale() as f32,
             remaining: errors.get(agreeing * 95 / 100).copied().unwrap_or(0.0),
             unexplained: if aligned { fit.unexplained as f32 } else { 0.0 },
-            largest: fit.model.largest(size) as f32,
             lean: if aligned { lean(&fit, points) } else { 0.0 },
             residual: median(errors).map_or(0.0, |spread| super::DEVIATIONS * spread),
             agreeing,
             seeds,
+            ..Self::UNKNOWN.along(fit.model, size)
+        }
+    }
+
+    /// These figures for rows by `rows`, in pictures of `size`, that a warp brings together.
+    pub(crate) fn along(self, rows: RowModel, size: Size) -> Self {
+        Self {
+            verdict: if rows.kind() == RowKind::AsIs { Verdict::Rectified } else { Verdict::Alignable },
+            rows,
+            // The left row of the centre, in pixels below the centre, negated; 0 and not -0 for rows as they are.
+            offset: 0.0 - rows.parameters()[2] as f32,
+            rotation: rows.rotation() as f32,
+            scale: rows.scale() as f32,
+            largest: rows.largest(size) as f32,
+            ..self
         }
     }
 
