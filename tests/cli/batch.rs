@@ -108,7 +108,9 @@ fn a_batch_goes_on_where_it_ended() {
     let written = |name: &str| fs::metadata(out.join(name).join("disparity.pfm")).unwrap().modified().unwrap();
     let before = ["9", "10"].map(written);
     run(&[]).code(1).stderr(contains("--resume"));
+    fs::write(out.join(".hsad-kiLLed"), "half").unwrap();
     run(&["--resume"]).success();
+    assert_eq!(out.join(".hsad-kiLLed").exists(), cfg!(not(unix)), "what the killed run left is removed");
     assert_eq!(["9", "10"].map(written), before, "nothing is redone");
     assert_eq!(statuses(&journal), of(&[("10", "done"), ("11", "done"), ("9", "done")]));
     assert_eq!(

@@ -11,7 +11,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use hsad::{
     Error,
     io::{
-        atomic::{try_lock, write_whole},
+        atomic::{clear_leftovers, try_lock, write_whole},
         read_whole,
     },
 };
@@ -66,6 +66,7 @@ impl Journal {
         if is_known && !path.is_file() {
             return Err(told("it is no file"));
         }
+        clear_leftovers(folder);
         check_recipe(folder, recipe)?;
         let file = OpenOptions::new().create(true).append(true).open(&path);
         let file = file.map_err(|source| Error::Io { path: path.clone(), source })?;

@@ -22,12 +22,15 @@ use crate::error::{Error, Result};
 /// The new file is synced before it takes its place, so that a system that loses power keeps one of both, and what fails late, as on a
 /// network's disk that is full, is an error. It takes over the permissions of the file it replaces, but no set-user-ID, set-group-ID or
 /// sticky bit; a read-only file is not replaced; a link is followed; a path that is no regular file (`/dev/null`, a pipe) is written to
-/// directly.
+/// directly. What killed processes left in the folder is removed.
 ///
 /// # Errors
 /// [`Error::Io`] with `path`, for any failure.
 pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<T> {
     let (staged, written) = Staged::write(path, write)?;
+    if let Some(target) = staged.target() {
+        clear_leftovers(&folder(target));
+    }
     staged.put()?;
     Ok(written)
 }
@@ -136,6 +139,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map");
         assert_eq!(write_whole(&path, |out| out.write_all(b"one").map(|()| 7)).unwrap(), 7);
+        #[cfg(unix)]
+        fs::write(folder.path().join(".hsad-kiLLed"), "half").unwrap();
         write_whole(&path, |out| out.write_all(b"two")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["map"]);
