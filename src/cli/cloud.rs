@@ -23,7 +23,7 @@ pub struct CloudOptions {
     min_confidence: Option<u8>,
     /// Keep filled pixels in the cloud
     #[arg(long)]
-    filled: bool,
+    pub filled: bool,
     /// Also write the surfaces (mesh.ply): triangles between neighbouring points of the cloud whose disparities differ by at most 1 px,
     /// with normals
     #[arg(long)]

@@ -95,6 +95,12 @@ impl MatchOptions {
     pub fn config(&self) -> Result<Config> {
         self.0.config()
     }
+
+    /// The first option that is given and not among `others`, as on the command line.
+    pub fn any_but(&self, others: &[&str]) -> Option<String> {
+        let given = Options::ALL.iter().find(|option| option.is_given(&self.0) && !others.contains(&option.name));
+        given.map(|option| option.name.replace('_', "-"))
+    }
 }
 
 /// What figures show.
@@ -103,7 +109,7 @@ impl MatchOptions {
 pub struct FigureOptions {
     /// Draw only the N strongest interest points and matches in the figures, at least 1 [default: all,
     /// paper 10]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", requires = "figures")]
     strongest: Option<usize>,
 }
 

@@ -200,6 +200,11 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
     atomic::write_whole(path, |out| out.write_all(text.as_bytes()))
 }
 
+/// The folder that a file lies in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
+}
+
 /// Checks, before any work, whether a file can be written.
 ///
 /// # Errors
@@ -208,7 +213,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
     if is_stdout(path) {
         return Ok(());
     }
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     // An existing path may be a pipe or /dev/stdout, next to which no temporary file can be made.
     let tried = if path.is_dir() {
         Err(io::ErrorKind::IsADirectory.into())
@@ -221,6 +226,38 @@ pub fn check_writable(path: &Path) -> Result<()> {
         let reason = format!("the file cannot be written ({error}): name another one");
         Error::Io { path: path.into(), source: io::Error::new(error.kind(), reason) }
     })
+}
+
+/// Checks, before any work, that tables can be written, each to a place of its own, and none to that of a file that is read.
+///
+/// # Errors
+/// [`Error::Io`] with the path of a table.
+pub fn check_tables<'p>(
+    tables: impl IntoIterator<Item = &'p Path>,
+    read: impl IntoIterator<Item = &'p Path>,
+) -> Result<()> {
+    // A file that is not there yet lies in a folder that is.
+    let in_folder = |path: &Path| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
+    let place = |path: &Path| match path {
+        _ if is_stdout(path) => path.into(),
+        _ => path.canonicalize().ok().or_else(|| in_folder(path)).unwrap_or_else(|| path.into()),
+    };
+    let read: Vec<PathBuf> = read.into_iter().filter_map(|path| path.canonicalize().ok()).collect();
+    let mut places: Vec<PathBuf> = Vec::new();
+    for table in tables {
+        let refused = |reason: &str| {
+            Err(Error::Io { path: table.into(), source: io::Error::new(io::ErrorKind::AlreadyExists, reason) })
+        };
+        check_writable(table)?;
+        if read.contains(&place(table)) {
+            return refused("it would replace a file that is read: name another one");
+        }
+        if places.contains(&place(table)) {
+            return refused("two tables cannot have one place: name another one for one of them");
+        }
+        places.push(place(table));
+    }
+    Ok(())
 }
 
 /// Writes indented JSON and a line feed.

@@ -3,7 +3,12 @@
 use std::path::Path;
 
 use clap::Args;
-use hsad::{config::Config, io::load::LoadedPair, pipeline::Geometry};
+use hsad::{
+    Error,
+    config::{Config, Method},
+    io::load::LoadedPair,
+    pipeline::Geometry,
+};
 
 use super::{
     cloud::CloudOptions,
@@ -65,9 +70,20 @@ impl Recipe {
     /// The configuration, and how many interest points and matches a figure shows.
     ///
     /// # Errors
-    /// [`hsad::Error::Parameter`].
+    /// [`Error::Parameter`], also for options without effect.
     pub fn config(&self) -> hsad::Result<(Config, Option<usize>)> {
-        Ok((self.matching.config()?, self.figure.strongest(&self.matching)?))
+        let config = self.matching.config()?;
+        let refused =
+            |name, expected: &str| Err(Error::Parameter { name, value: "given".into(), expected: expected.into() });
+        if self.map_back && self.rectify == Rectify::Never {
+            return refused("--map-back", "a pair that is never rectified (--rectify never) has no map to take back");
+        }
+        if let (true, Method::Hsad(parameters)) = (self.cloud.filled, &config.method)
+            && !parameters.refinement.is_some_and(|refinement| refinement.fill)
+        {
+            return refused("--filled", "no hole is filled with these options: add --fill, or leave it out");
+        }
+        Ok((config, self.figure.strongest(&self.matching)?))
     }
 
     /// Reads the files of a pair, and checks that its results can be written to `output`. `calibration` takes the place of the files that

@@ -130,6 +130,12 @@ impl Tune {
             anyhow!("no folder to keep the choice in: set HOME, XDG_CACHE_HOME or LOCALAPPDATA to an absolute path")
         })?;
         let kept = ShapesFile::of(&gpu, &folder);
+        if !self.forget {
+            // Told before anything is measured.
+            let failed = |error| anyhow!("{}: no choice can be kept there ({error})", hsad::shown(&folder));
+            kept.path().parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
+            check_writable(kept.path())?;
+        }
         let table = !self.quiet && self.json.as_deref() != Some(Path::new("-"));
         let print = |text: &str| if table { terminal::print(text) } else { Ok(()) };
         if self.forget {

@@ -113,18 +113,30 @@ impl Options {
         if let (true, Some(refinement)) = (is_set(self.no_fill), &mut parameters.refinement) {
             refinement.fill = false;
         }
+        if is_set(self.whole_range) {
+            if !parameters.may_search_less() {
+                return Err(Error::Parameter {
+                    name: "whole_range",
+                    value: "given".into(),
+                    expected: "these options search the whole range as it is: leave it out".into(),
+                });
+            }
+            match &mut parameters.aggregation {
+                Aggregation::Sad { search, .. } => *search = Search::Whole,
+                Aggregation::Costs(costs) => costs.search = Search::Whole,
+            }
+        }
         Ok(parameters)
     }
 
     /// The preset's aggregation, overridden by the options that are given.
     fn aggregation(&self, of_preset: Aggregation) -> Result<Aggregation> {
-        let Self { window, paths, cost_window, compare, whole_range, search_both_views, .. } = *self;
+        let Self { window, paths, cost_window, compare, search_both_views, .. } = *self;
         match of_preset {
             Aggregation::Sad { side, search, compared } => {
                 if paths.is_some() || cost_window.is_some() {
                     return Err(self.misfit("`paths` and `cost_window` need balanced or quality"));
                 }
-                let search = if is_set(whole_range) { Search::Whole } else { search };
                 Ok(Aggregation::Sad { side: window.unwrap_or(side), search, compared: compare.unwrap_or(compared) })
             }
             Aggregation::Costs(_) if window.is_some() => Ok(Aggregation::Sad {
@@ -140,9 +152,6 @@ impl Options {
                 if let Some(PathCount(paths)) = paths {
                     let paths = |semi_global| paths.map(|paths| SemiGlobal { paths, ..semi_global });
                     costs.semi_global = costs.semi_global.and_then(paths);
-                }
-                if is_set(whole_range) {
-                    costs.search = Search::Whole;
                 }
                 if is_set(search_both_views) {
                     costs.cross_check = CrossCheck::Searched;

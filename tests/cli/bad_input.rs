@@ -84,7 +84,7 @@ fn values_out_of_range() {
         (&["--step", "0"], "step is 0"),
         (&["--threshold", "NaN"], "threshold is NaN"),
         (&["--ratio", "0"], "ratio is 0"),
-        (&["--strongest", "0"], "strongest is 0"),
+        (&["--figures", "--strongest", "0"], "strongest is 0"),
         (&["--max-features", "0"], "--max-features is 0"),
         (&["--focal", "NaN", "--baseline", "1"], "the focal length is NaN"),
         (&["--focal", "9", "--baseline", "-1"], "the baseline is -1"),

@@ -71,4 +71,8 @@ fn what_cannot_be_measured_is_told() {
         .unwrap();
     let told = contains("has no case of this run").and(contains("it has fast 64x48 32 ("));
     hsad().args(SMALL).arg("--compare").arg(&file).assert().code(1).stdout("").stderr(told);
+    let mut onto_itself = hsad();
+    onto_itself.args(["bench", "--preset", "fast", "--size", "64x48", "--disparities", "32", "--json"]).arg(&file);
+    let told = contains("it would replace a file that is read");
+    onto_itself.arg("--compare").arg(&file).assert().code(1).stdout("").stderr(told);
 }

@@ -31,6 +31,13 @@ fn eval(scenes: &[&Path]) -> Command {
     command
 }
 
+/// `hsad eval dense --given-only`, which matches nothing.
+fn given_only(scenes: &[&Path]) -> Command {
+    let mut command = hsad();
+    command.args(["eval", "dense", "--given-only"]).args(scenes);
+    command
+}
+
 /// Writes two views of noise, shifted by [`SHIFT`].
 fn views(left: &Path, right: &Path, seed: u32) {
     let picture = noise(SIZE.width + SHIFT, SIZE.height, seed);
@@ -154,8 +161,8 @@ fn a_truth_in_another_unit_or_of_another_sign_is_told() {
     // A map of another program in another unit.
     write("disp_left.pfm", 1.0);
     write("theirs.pfm", 16.0);
-    let mut command = eval(&[&path]);
-    command.arg("--given-only").arg("--disparity").arg(format!("theirs={}", path.join("theirs.pfm").display()));
+    let mut command = given_only(&[&path]);
+    command.arg("--disparity").arg(format!("theirs={}", path.join("theirs.pfm").display()));
     command.assert().success().stderr(contains("another unit").and(contains("times 1/16 it agrees at 100 %")));
     let mut command = eval(&[&path]);
     command.args(["--truth-scale", "0"]);
@@ -259,8 +266,8 @@ fn maps_of_other_programs_are_scored_beside_ours() {
 
     // With --given-only, nothing is matched.
     let report = path("all.json");
-    let mut command = eval(&[&scenes[0]]);
-    command.arg(&others[0]).args(["--given-only", "--json"]).arg(&report).assert().success();
+    let mut command = given_only(&[&scenes[0]]);
+    command.arg(&others[0]).arg("--json").arg(&report).assert().success();
     let report = json(&report);
     assert_eq!((report["results"].as_array().unwrap().len(), &report["device"]), (1, &Value::Null));
 }
@@ -318,8 +325,8 @@ fn bad_input_is_one_line_and_a_code() {
     fs::write(path("text.pfm"), "this is text").unwrap();
 
     let bad = |scenes: &[&Path], args: &[&str], code: i32, expected: &str| {
-        let mut command = eval(scenes);
-        command.args(args).arg("--given-only").current_dir(temporary.path());
+        let mut command = given_only(scenes);
+        command.args(args).current_dir(temporary.path());
         fails(command, code, expected);
     };
     bad(&[&path("empty")], &["--disparity", "x=small.pfm"], 1, "empty: a folder without a scene");
@@ -333,6 +340,20 @@ fn bad_input_is_one_line_and_a_code() {
     bad(&[&good], &["--disparity", "x=a", "--csv", "no/such/folder.csv"], 1, "there is no folder 'no/such'");
     bad(&[&good], &["--disparity", "x=a", "-o", "small.pfm"], 1, "the results need a folder");
     bad(&[&good], &["--disparity", "x=a", "--window", "8"], 2, "window is 8");
+    bad(&[&good], &["--disparity", "x=a", "--window", "7"], 2, "nothing is matched: leave --window out");
+    let [truth, table] = ["good/disp_left.pfm", "table"];
+    bad(&[&good], &["--disparity", "x=a", "--csv", truth], 1, "it would replace a file that is read");
+    bad(&[&good], &["--disparity", "x=text.pfm", "--csv", table, "--json", "./text.pfm"], 1, "a file that is read");
+    bad(&[&good], &["--disparity", "x=a", "--csv", table, "--json", "./table"], 1, "two tables cannot have one place");
+    bad(&[&good], &["--disparity", "x=a", "--csv", "-", "--json", "-"], 1, "two tables cannot have one place");
+    bad(&[&good], &["--disparity", "x=good/disparity.pfm", "-o", "."], 1, "good/disparity.pfm: No such file");
+    // In a scene's own folder, results replace nothing that is read.
+    fs::copy(good.join("disp_left.pfm"), good.join("disparity.pfm")).unwrap();
+    let kept = fs::read(good.join("disparity.pfm")).unwrap();
+    let mut command = eval(&[&good]);
+    command.args(["--disparity", "x=good/disparity.pfm", "-o", ".", "-q"]).current_dir(temporary.path());
+    fails(command, 1, "good/disparity.pfm: a result of this name would replace a file that was read");
+    assert_eq!(fs::read(good.join("disparity.pfm")).unwrap(), kept);
     assert_eq!(names(temporary.path()), ["empty", "good", "other", "small.pfm", "text.pfm"]);
 
     for args in [

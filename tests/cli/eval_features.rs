@@ -28,6 +28,13 @@ fn evaluate(folders: &[&Path]) -> Command {
     command
 }
 
+/// `hsad eval features FOLDER --matches FILE`.
+fn judge(folder: &Path, matches: &Path) -> Command {
+    let mut command = hsad();
+    command.args(["eval", "features"]).arg(folder).arg("--matches").arg(matches);
+    command
+}
+
 fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
@@ -100,8 +107,7 @@ fn right_matches_of_another_program_score_1_and_wrong_ones_0() {
     let file = |name: &str| temporary.path().join(name);
     for (off, expected) in [(0.0, 1.0), (1.25, 1.0), (5.0, 0.0)] {
         write_lines(&file("m.csv"), "x1,y1,x2,y2", &matches(off));
-        let mut command = evaluate(&[&scene("planes")]);
-        command.arg("--matches").arg(file("m.csv"));
+        let command = judge(&scene("planes"), &file("m.csv"));
         let found = figures(command, &file("t.json"));
         assert_eq!((&found["precision"], &found["precision_of_100"]), (&expected.into(), &expected.into()));
         assert!(found["matches"].as_f64().unwrap() > 200.0);
@@ -120,8 +126,8 @@ fn right_matches_of_another_program_score_1_and_wrong_ones_0() {
     };
     write_lines(&file("left.csv"), "x,y,scale", &column(0));
     write_lines(&file("right.csv"), "x,y,scale", &column(2));
-    let mut command = evaluate(&[&scene("planes")]);
-    command.arg("--matches").arg(file("m.csv")).arg("--points").args([file("left.csv"), file("right.csv")]);
+    let mut command = judge(&scene("planes"), &file("m.csv"));
+    command.arg("--points").args([file("left.csv"), file("right.csv")]);
     let found = figures(command, &file("t.json"));
     assert_eq!((&found["precision"], &found["precision_of_100"]), (&0.5.into(), &1.0.into()));
     for name in ["recall", "coverage", "repeatability", "matching_score"] {
@@ -194,7 +200,8 @@ fn a_homography_set_has_a_pair_for_each_view() {
 fn changed_views_are_written_for_other_programs() {
     let temporary = folder();
     let out = temporary.path().join("views");
-    let mut command = evaluate(&[&scene("weak")]);
+    let mut command = hsad();
+    command.args(["eval", "features"]).arg(scene("weak"));
     command.args(["--condition", "none", "--condition", "gain=0.5+noise", "--write-views"]).arg(&out);
     command.assert().success().stdout("");
     assert_eq!(names(&out), ["weak gain=0.5+noise=10.png", "weak none.png"]);
@@ -234,11 +241,22 @@ fn bad_options_are_named() {
         (&["--first", "10,0"], "first is 0"),
         (&["--threshold", "2"], "threshold is 2"),
         (&["--ratio", "0"], "ratio is 0"),
-        (&["--matches", "m.csv", "--condition", "none", "--condition", "gain"], "they belong to one pair"),
     ] {
         let mut command = evaluate(&[&scene("weak")]);
         command.args(args);
         fails(command, 2, expected);
+    }
+    let mut command = judge(&scene("weak"), Path::new("m.csv"));
+    command.args(["--condition", "none", "--condition", "gain"]);
+    fails(command, 2, "they belong to one pair");
+    for args in [
+        &["--matches", "m.csv", "--plain"][..],
+        &["--matches", "m.csv", "--octaves", "2"],
+        &["--write-views", "out", "--first", "3"],
+    ] {
+        let mut command = hsad();
+        command.args(["eval", "features"]).arg(scene("weak")).args(args);
+        command.assert().code(2).stderr(contains("cannot be used with"));
     }
     hsad().args(["eval", "features"]).assert().code(2);
     hsad().arg("eval").assert().code(2);
@@ -286,16 +304,14 @@ fn bad_tables_are_named_with_their_line() {
         ("x1,y1,x2,y2,confidence\n1,2,3,4,NaN\n", "line 2: confidence is 'NaN'"),
     ] {
         fs::write(&m, text).unwrap();
-        let mut command = evaluate(&[&scene("weak")]);
-        command.arg("--matches").arg(&m);
-        fails(command, 1, expected);
+        fails(judge(&scene("weak"), &m), 1, expected);
     }
     fs::write(&m, "x1,y1,x2,y2\n1,2,3,4\n").unwrap();
     fs::write(&right, "x,y,scale\n3,4,2\n").unwrap();
     for (text, expected) in [("x,y\n1,2\n", "no column 'scale'"), ("x,y,scale\n1,2,0\n", "line 2: scale is 0")] {
         fs::write(&left, text).unwrap();
-        let mut command = evaluate(&[&scene("weak")]);
-        command.arg("--matches").arg(&m).arg("--points").args([&left, &right]);
+        let mut command = judge(&scene("weak"), &m);
+        command.arg("--points").args([&left, &right]);
         fails(command, 1, expected);
     }
 }

@@ -146,7 +146,7 @@ fn options_override_the_preset() {
     command.args(["--preset", "paper", "--window", "5", "--min-disparity", "-3", "--disparities", "40", "-q"]);
     command.args(["--uniqueness", "7", "--max-lr-difference", "1.5", "--interpolation", "none", "--octaves", "3"]);
     command.args(["--step", "2", "--threshold", "0.002", "--upright", "--max-features", "5000", "--ratio", "0.8"]);
-    command.args(["--strongest", "4", "--force"]);
+    command.args(["--figures", "--strongest", "4", "--force"]);
     command.assert().success().stdout("").stderr("");
     let report = report(out);
     assert_eq!(ends(&report["range"]), asked(-3, 36));
@@ -266,6 +266,27 @@ fn options_of_the_other_method_are_refused() {
     let mut command = match_on_cpu(&left, &right, temporary.path());
     command.args(["--method", "kamencay", "--disparities", "600", "--min-disparity", "-300"]);
     fails(command, 2, "belief propagation takes at most 512");
+}
+
+#[test]
+fn options_without_effect_are_refused() {
+    let (temporary, [left, right]) = (folder(), views("planes"));
+    let whole = "these options search the whole range as it is";
+    for (args, expected) in [
+        (&["--whole-range", "--paths", "0"][..], whole),
+        (&["--whole-range", "--cost-window", "5"], whole),
+        (&["--whole-range", "--search-both-views"], whole),
+        (&["--whole-range", "--window", "7"], whole),
+        (&["--whole-range", "--preset", "paper"], whole),
+        (&["--map-back", "--rectify", "never"], "has no map to take back"),
+        (&["--filled", "--no-fill", "--focal", "300", "--baseline", "1"], "no hole is filled with these options"),
+    ] {
+        let mut command = match_on_cpu(&left, &right, temporary.path());
+        command.args(args);
+        fails(command, 2, expected);
+    }
+    let mut command = match_on_cpu(&left, &right, temporary.path());
+    command.args(["--strongest", "4"]).assert().code(2).stderr(contains("--figures"));
 }
 
 #[test]

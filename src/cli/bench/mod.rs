@@ -23,7 +23,7 @@ use earlier::Earlier;
 use super::{
     cache::tuned,
     demo,
-    output::{check_writable, write_json},
+    output::{check_tables, write_json},
     terminal::{self, Progress},
     verify::{described, no_twins, plans, size},
 };
@@ -82,7 +82,7 @@ impl Bench {
         let cases = self.cases()?;
         let earlier = self.compare.as_deref().map(|file| Earlier::read(file, &cases)).transpose()?;
         let file = self.json.as_deref().filter(|file| *file != Path::new("-"));
-        file.map(check_writable).transpose()?;
+        check_tables(file, self.compare.as_deref())?;
         let mut gpu = tuned(Gpu::open(&self.device)?);
         if let Some(plan) = self.plan {
             gpu = gpu.with_sgm_plan(plan);

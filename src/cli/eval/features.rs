@@ -25,7 +25,7 @@ use crate::cli::{
         truth_scale::TruthOptions,
     },
     options::{FeatureOptions, RunOptions, with_default},
-    output::{Output, check_writable, is_stdout, write_text},
+    output::{Output, check_tables, is_stdout, write_text},
     report,
     terminal::{self, Progress},
     wording::in_options,
@@ -84,6 +84,10 @@ fn threshold_help() -> String {
     )
 }
 
+/// Options without effect where nothing is matched.
+const OF_MATCHING: [&str; 10] =
+    ["device", "self_test", "plain", "ratio", "octaves", "step", "threshold", "oriented", "upright", "max_features"];
+
 /// Score matches of interest points against the ground truth
 #[derive(Args)]
 #[command(after_help = details(), mut_arg("threshold", |option| option.help(threshold_help())))]
@@ -107,13 +111,13 @@ pub struct Features {
     #[arg(long, value_name = "K")]
     view: Option<u32>,
     /// Score the matches of another program instead, of a single pair and condition
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = OF_MATCHING)]
     matches: Option<PathBuf>,
     /// Interest points of the other program in the first and in the second view
     #[arg(long, num_args = 2, value_names = ["FIRST", "SECOND"], requires = "matches")]
     points: Option<Vec<PathBuf>>,
     /// Only write the changed second views to this folder, for other programs
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["matches", "csv", "json"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = OF_MATCHING, conflicts_with_all = ["matches", "csv", "json", "tolerance", "first"])]
     write_views: Option<PathBuf>,
     /// Write the figures to this file (- for standard output, without the tables) as CSV, one line per pair and condition; shares are 0 to 1
     #[arg(long, value_name = "FILE")]
@@ -169,9 +173,10 @@ impl Features {
             return report_failures(&failures);
         }
         let root = self.output.as_deref().map(Output::open).transpose()?;
-        for file in [&self.csv, &self.json].into_iter().flatten() {
-            check_writable(file)?;
-        }
+        let supplied = self.matches.iter().chain(self.points.iter().flatten()).map(PathBuf::as_path);
+        let of_pairs = pairs.iter().filter_map(|pair| pair.files().ok()).flatten();
+        let tables = [&self.csv, &self.json].into_iter().flatten().map(PathBuf::as_path);
+        check_tables(tables, of_pairs.chain(supplied))?;
         let finder = match self.matches.take() {
             None => Finder::Hsad(self.run.open()?.backend, config),
             Some(matches) if pairs.len() > 1 || self.folders.len() > 1 || changes.len() > 1 => {

@@ -36,6 +36,8 @@ struct Location {
     fingerprint: DefaultHasher,
     /// Whether results of an earlier run are ignored.
     fresh: bool,
+    /// Files that the results depend on, which no result may replace.
+    read: Vec<PathBuf>,
 }
 
 impl SavedResults {
@@ -50,7 +52,7 @@ impl SavedResults {
                 // The program file was replaced since the start: saved results cannot be attributed to this build.
                 Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
             }
-            Location { folder: folder.into(), fingerprint, fresh }
+            Location { folder: folder.into(), fingerprint, fresh, read: Vec::new() }
         }))
     }
 
@@ -79,8 +81,18 @@ impl SavedResults {
     pub fn depending_on_file(mut self, path: &Path) -> Result<Self> {
         if let Some(location) = &mut self.0 {
             fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut location.fingerprint);
+            location.read.push(path.into());
         }
         Ok(self)
+    }
+
+    /// Files that no result may replace, besides those that the results depend on.
+    #[must_use]
+    pub fn sparing(mut self, files: impl IntoIterator<Item = PathBuf>) -> Self {
+        if let Some(location) = &mut self.0 {
+            location.read.extend(files);
+        }
+        self
     }
 
     /// The result of an earlier run; `None` if its files or one of its dependencies have changed.
@@ -99,7 +111,7 @@ impl SavedResults {
     /// [`Error::Io`] with the file; the errors of `add`.
     pub fn save(&self, result: &impl Saveable, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
         let Some(location) = &self.0 else { return Ok(()) };
-        let mut output = Output::open(&location.folder)?;
+        let mut output = Output::open(&location.folder)?.sparing(location.read.iter().map(PathBuf::as_path));
         add(&mut output)?;
         // Until `result.json` is replaced, its hashes do not match the new files, and no result is loaded.
         output.finish()?;

@@ -210,6 +210,19 @@ impl DenseParameters {
         matches!(self.aggregation, Aggregation::Sad { search: Search::CoarseToFine, .. })
     }
 
+    /// Whether fewer disparities than the whole range may be searched: coarse to fine, or over a pyramid, which neither averages costs over
+    /// a window, nor goes without paths, nor searches the other view too.
+    pub(crate) fn may_search_less(&self) -> bool {
+        match &self.aggregation {
+            Aggregation::Sad { search, .. } => *search == Search::CoarseToFine,
+            Aggregation::Costs(costs) => {
+                let is_checked_by_claims = self.consistency.is_none() || costs.cross_check == CrossCheck::Claimed;
+                let searches_less = costs.search == Search::CoarseToFine;
+                searches_less && costs.window == 1 && costs.semi_global.is_some() && is_checked_by_claims
+            }
+        }
+    }
+
     /// Whether holes are filled.
     pub(crate) fn fills(&self) -> bool {
         self.refinement.is_some_and(|refinement| refinement.fill)

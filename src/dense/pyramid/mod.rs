@@ -10,7 +10,7 @@ mod cells;
 pub use cells::{CellRange, CellTable, SIDE};
 
 use super::{
-    config::{Aggregation, CrossCheck, DenseConfig, Filters, Search},
+    config::{Aggregation, DenseConfig, Filters},
     kernels::halved,
 };
 use crate::{disparity::DisparityRange, image::Size};
@@ -55,12 +55,8 @@ impl Pyramid {
     /// averages costs over a window, follows no paths or searches the other view too; and if the picture is narrower than
     /// 1600 px or the range has fewer than 128 disparities, where a pyramid saves little.
     pub fn of(config: &DenseConfig, size: Size) -> Option<Self> {
-        let Aggregation::Costs(costs) = &config.parameters.aggregation else { return None };
-        let is_checked_by_claims = config.parameters.consistency.is_none() || costs.cross_check == CrossCheck::Claimed;
-        let is_possible = costs.search == Search::CoarseToFine
-            && costs.window == 1
-            && costs.semi_global.is_some()
-            && is_checked_by_claims;
+        let has_costs = matches!(config.parameters.aggregation, Aggregation::Costs(_));
+        let is_possible = has_costs && config.parameters.may_search_less();
         let range = config.searched(size.width).ok()?;
         let is_large = size.width >= LEAST_WIDTH && range.count >= LEAST_DISPARITIES;
         (is_possible && is_large).then(|| Self::down_to(COARSEST, size, range))
@@ -108,7 +104,10 @@ pub(crate) fn filters() -> Filters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Preset;
+    use crate::{
+        config::Preset,
+        dense::config::{CrossCheck, Search},
+    };
 
     #[test]
     fn levels_by_hand() {

@@ -17,8 +17,8 @@ use serde_json::{Value, json};
 use self::{record::Record, run::Run, supplied_maps::SuppliedMaps};
 use crate::cli::{
     eval::{change::Change, report_failures, saved_results, scenes, truth_scale::TruthOptions},
-    options::{FigureOptions, MatchOptions, RunOptions},
-    output::{Output, check_writable, is_stdout, write_text},
+    options::{MatchOptions, RunOptions},
+    output::{Output, check_tables, is_stdout, write_text},
     report, terminal,
     wording::in_options,
 };
@@ -62,7 +62,7 @@ pub struct Dense {
     #[arg(long = "disparity", value_name = "NAME=FILE", value_parser = SuppliedMaps::parse)]
     supplied: Vec<SuppliedMaps>,
     /// Score only the maps of --disparity, without matching
-    #[arg(long, requires = "supplied")]
+    #[arg(long, requires = "supplied", conflicts_with_all = ["device", "self_test"])]
     given_only: bool,
     /// Change the right view before matching, for example rotation=30 or scale=0.7+noise=5 (see hsad eval paper --help). A pair whose
     /// right view is turned or scaled is rectified from its own matches first; its map is scored where the changed view shows the
@@ -91,8 +91,6 @@ pub struct Dense {
     run: RunOptions,
     #[command(flatten)]
     matching: MatchOptions,
-    #[command(flatten)]
-    figure: FigureOptions,
 }
 
 /// A scene, or a method on a scene, that could not be scored.
@@ -125,7 +123,15 @@ impl Dense {
     pub fn run(mut self) -> anyhow::Result<()> {
         // Nothing else goes to standard output then.
         self.run.quiet |= [&self.csv, &self.json].into_iter().flatten().any(|file| is_stdout(file));
-        let (config, strongest) = (self.matching.config()?, self.figure.strongest(&self.matching)?);
+        let config = self.matching.config()?;
+        if let Some(option) = self.matching.any_but(&["reference"]).filter(|_| self.given_only) {
+            return Err(Error::Parameter {
+                name: "--given-only",
+                value: "given".into(),
+                expected: format!("then nothing is matched: leave --{option} out"),
+            }
+            .into());
+        }
         if self.condition.is_some() && config.reference == View::Right {
             return Err(Error::Parameter {
                 name: "--reference",
@@ -138,9 +144,11 @@ impl Dense {
         let failures = unread.into_iter().map(|error| Failure { what: None, error }).collect();
         supplied_maps::check(&self.supplied, scenes.len())?;
         let root = self.output.as_deref().map(Output::open).transpose()?;
-        for file in [&self.csv, &self.json].into_iter().flatten() {
-            check_writable(file)?;
-        }
+        let supplied: Vec<PathBuf> =
+            self.supplied.iter().flat_map(|maps| scenes.iter().map(|scene| maps.path(&scene.name))).collect();
+        let of_scenes = scenes.iter().filter_map(|scene| scene.files(config.reference).ok()).flatten();
+        let tables = [&self.csv, &self.json].into_iter().flatten().map(PathBuf::as_path);
+        check_tables(tables, of_scenes.chain(supplied.iter().map(PathBuf::as_path)))?;
         let backend = if self.given_only { None } else { Some(self.run.open()?.backend) };
 
         let mut results = Results { failures, ..Default::default() };
@@ -156,7 +164,7 @@ impl Dense {
             let mut report = results.report(&methods);
             report["condition"] = self.condition.as_ref().map(|change| &*change.name).into();
             report["device"] = backend.as_ref().map(report::device).into();
-            report["parameters"] = backend.as_ref().map(|_| report::parameters(&config, strongest)).into();
+            report["parameters"] = backend.as_ref().map(|_| report::parameters(&config, None)).into();
             write_text(file, &format!("{report:#}\n"))?;
         }
         if !self.run.quiet {

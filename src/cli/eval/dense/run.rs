@@ -91,6 +91,11 @@ impl<'a> Run<'a> {
         let paths = files.files(self.config.reference)?;
         let of_scene =
             paths.into_iter().try_fold(self.saved.clone().below(&files.name), SavedResults::depending_on_file)?;
+        let supplied = self.methods.iter().filter_map(|method| match method {
+            Method::Supplied(maps) => Some(maps.path(&files.name)),
+            Method::Ours(_) => None,
+        });
+        let of_scene = of_scene.sparing(supplied);
         let of_scene = match self.change {
             Some((change, seed)) => of_scene.depending_on(&format!("{} {seed}", change.name)),
             None => of_scene,
