@@ -12,6 +12,7 @@ use crate::{
     matching::MatchConfig,
     names::names,
     seeding::SeedingConfig,
+    tiles::Tiling,
 };
 
 /// Method of the disparity map.
@@ -39,6 +40,9 @@ pub struct Config {
     pub method: Method,
     /// Reference view: the view whose pixels get disparities; the left one by default.
     pub reference: View,
+    /// The tiles in which the map is computed, so that memory is that of a tile; `None`, the default: the whole picture at once.
+    /// [`Method::Hsad`] only.
+    pub tiles: Option<Tiling>,
     /// Whether the right view gets the brightness of the left one, by the relation that the matches show; true by default.
     pub equalise: bool,
     /// Whether the right view is resampled where the matches show that its rows are slightly off; true by default.
@@ -64,6 +68,7 @@ impl Config {
         in_row.validate()?;
         let range = self.range.unwrap_or(DisparityRange { min: self.least.unwrap_or(0), count: 1 });
         DisparityRange::new(range.min, range.count)?;
+        self.tiles.as_ref().map_or(Ok(()), Tiling::validate)?;
         match &self.method {
             Method::Hsad(parameters) => parameters.validate(),
             Method::Kamencay(parameters) => parameters.validate(),
@@ -132,6 +137,7 @@ impl Preset {
             least: None,
             method: Method::Hsad(self.dense_parameters()),
             reference: View::Left,
+            tiles: None,
             equalise: true,
             align: true,
             force: false,

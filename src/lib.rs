@@ -153,6 +153,7 @@ pub mod rectify;
 pub mod report;
 pub mod seeding;
 mod size;
+pub mod tiles;
 #[cfg(all(feature = "verify", not(target_arch = "wasm32")))]
 pub mod verify;
 pub mod wide_baseline;

@@ -10,13 +10,14 @@ use std::{
 
 use hsad::{
     Backend,
-    config::{Config, Preset},
-    dense::View,
+    config::{Config, Method, Preset},
+    dense::{Aggregation, Search, View},
     disparity::{DisparityRange, NONE},
     gpu::DeviceChoice,
     image::Size,
     io::{Picture, load, pfm},
     pipeline::{self, Precedent, RangeSource, Task, Way},
+    tiles::Tiling,
     wgpu,
 };
 
@@ -38,6 +39,46 @@ fn enlarged(picture: &Picture, factor: u32) -> Picture {
             mixed(row(top), row(bottom), y % factor) as u8
         })
     })
+}
+
+/// Where each view is the whole picture, tiles must give its map to the bit; else nearly so, over levels of a pyramid, too.
+#[test]
+fn tiles_give_the_map_of_the_whole_picture() {
+    let folder = scene("curved");
+    let [left, mut right] = ["left.png", "right.png"].map(|name| load::load(&folder.join(name)).unwrap());
+    // Brightness and a mask are those of the whole pair.
+    for [red, green, blue, _] in right.data_mut() {
+        for value in [red, green, blue] {
+            *value = (u32::from(*value) * 7 / 8) as u8;
+        }
+    }
+    (100..130).for_each(|y| (60..340).for_each(|x| right.set(x, y, [0; 4])));
+    let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
+    let run = |config: &Config| pipeline::run(&backend, (&left, &right), config, |_| ()).unwrap();
+    for (preset, search, reference) in [
+        (Preset::Fast, None, View::Left),
+        (Preset::Balanced, None, View::Right),
+        (Preset::Balanced, Some(Search::Levels(3)), View::Left),
+    ] {
+        let mut config = Config { reference, ..preset.config() };
+        if let (Method::Hsad(parameters), Some(search)) = (&mut config.method, search) {
+            let Aggregation::Costs(costs) = &mut parameters.aggregation else { unreachable!() };
+            costs.search = search;
+        }
+        let whole = run(&config);
+        assert_ne!(whole.brightness.gain, 256);
+        let [widest, narrow] = [400, 64].map(|margin| {
+            let tiled = run(&Config { tiles: Some(Tiling { side: 256, margin }), ..config.clone() });
+            assert_eq!(tiled.range, whole.range);
+            tiled.dense
+        });
+        assert_eq!(widest, whole.dense, "{preset} {search:?}");
+        let (found, expected) = (narrow.disparity.data(), whole.dense.disparity.data());
+        let differ = found.iter().zip(expected).filter(|&(&a, &b)| a.abs_diff(b) > 128).count();
+        // Windows end, and paths do not.
+        let most = if preset == Preset::Fast { 0 } else { found.len() / 100 };
+        assert!(differ <= most, "{preset} {search:?}: {differ}");
+    }
 }
 
 /// The async functions also work natively, with the device polled by the caller.

@@ -19,6 +19,7 @@ __all__ = [
     "Rectified",
     "__version__",
     "colorize",
+    "cut_tiles",
     "depth",
     "devices",
     "error_colors",
@@ -27,6 +28,8 @@ __all__ = [
     "match",
     "match_encoded",
     "match_features",
+    "match_tile",
+    "merge_tiles",
     "options",
     "points",
     "read_calibration",
@@ -164,6 +167,18 @@ def match_encoded(
     depth: tuple[float, float, float] | None = ...,
     device: str = ...,
     **options: Unpack[MatchOptions],
+) -> Encoded: ...
+def cut_tiles(
+    left: bytes, right: bytes, *, device: str = ..., **options: Unpack[MatchOptions]
+) -> list[dict[str, Any]]: ...
+def match_tile(tile: dict[str, Any], *, device: str = ...) -> tuple[bytes, bytes]: ...
+def merge_tiles(
+    left: bytes,
+    right: bytes,
+    tiles: list[dict[str, Any]],
+    *,
+    names: tuple[str, str] = ...,
+    device: str = ...,
 ) -> Encoded: ...
 def rectify(
     left: ArrayLike, right: ArrayLike, calibration: Calibration | None = ..., *, device: str = ...

@@ -32,6 +32,7 @@ class DenseOptions(PointOptions, total=False):
     agreement: int | None
     fill: bool | None
     no_fill: bool | None
+    tiles: int | None
     no_equalise: bool | None
     no_align: bool | None
     interpolation: Literal["none", "parabola", "equiangular"] | None

@@ -10,10 +10,10 @@ use hsad::{
         Calibration,
         calibration::{self, Hints},
         disparity_png,
-        load::{LoadedPair, Unseen, decode_both, decode_pair},
+        load::{LoadedPair, Stretch, Unseen, decode_both, decode_pair},
         png,
     },
-    pipeline::{Geometry, Matched, Task, Way},
+    pipeline::{Geometry, Matched, Outcome, RectifiedPair, Task, Way, doubts},
     report::{self, Value},
 };
 use pyo3::{
@@ -173,7 +173,8 @@ pub fn match_encoded(
     found.raise()
 }
 
-fn decoded([left, right]: [Option<&[u8]>; 2], names: [&Path; 2]) -> hsad::Result<LoadedPair> {
+/// The views in the bytes of two files, or of one with both.
+pub fn decoded([left, right]: [Option<&[u8]>; 2], names: [&Path; 2]) -> hsad::Result<LoadedPair> {
     let (left, unseen) = (left.unwrap_or_default(), Unseen::default());
     match right {
         Some(right) => decode_pair((left, names[0]), (right, names[1]), &unseen),
@@ -232,25 +233,65 @@ fn run(
     }
     .run()?;
     let Matched { outcome, rectified, calibration, warnings: doubts, not_trusted, .. } = matched;
-    // Options stand between backticks; here they are keywords, spelled as they are.
-    warnings.extend(doubts.iter().map(|doubt| doubt.replace('`', "")));
-    let report = report::run(&report::Run {
-        names: names.each_ref().map(String::as_str),
-        size: outcome.dense.disparity.size(),
-        stretch,
-        backend,
-        calibration: calibration.as_ref(),
-        cloud: None,
-        depth_png: None,
-        rectified: rectified.as_ref(),
-        mapped_back: false,
-        no_depth: None,
-        not_trusted: not_trusted.as_deref(),
-        warnings: &warnings,
-        config,
-        outcome: &outcome,
-        total: start.elapsed(),
-    });
-    let (range, trust) = (outcome.range, outcome.trust);
-    Ok(Encoded { map: outcome.dense.disparity, confidence: outcome.dense.confidence, range, trust, report })
+    let found = Found { names, stretch, warnings, rectified, calibration, doubts, not_trusted, start };
+    Ok(found.encoded(backend, config, outcome))
+}
+
+/// What is known of a pair besides its map.
+struct Found<'a> {
+    names: &'a [String; 2],
+    stretch: Option<Stretch>,
+    /// Doubts about the files.
+    warnings: Vec<String>,
+    rectified: Option<RectifiedPair>,
+    calibration: Option<Calibration>,
+    /// Doubts about the map; options stand between backticks.
+    doubts: Vec<String>,
+    not_trusted: Option<String>,
+    start: Instant,
+}
+
+impl Found<'_> {
+    fn encoded(self, backend: &Backend, config: &Config, outcome: Outcome) -> Encoded {
+        let Self { names, stretch, mut warnings, rectified, calibration, doubts, not_trusted, start } = self;
+        // Here options are keywords, spelled as they are.
+        warnings.extend(doubts.iter().map(|doubt| doubt.replace('`', "")));
+        let report = report::run(&report::Run {
+            names: names.each_ref().map(String::as_str),
+            size: outcome.dense.disparity.size(),
+            stretch,
+            backend,
+            calibration: calibration.as_ref(),
+            cloud: None,
+            depth_png: None,
+            rectified: rectified.as_ref(),
+            mapped_back: false,
+            no_depth: None,
+            not_trusted: not_trusted.as_deref(),
+            warnings: &warnings,
+            config,
+            outcome: &outcome,
+            total: start.elapsed(),
+        });
+        let (range, trust) = (outcome.range, outcome.trust);
+        Encoded { map: outcome.dense.disparity, confidence: outcome.dense.confidence, range, trust, report }
+    }
+}
+
+/// The result of a pair whose tiles were put together.
+pub fn of_tiles(
+    backend: &Backend,
+    pair: &LoadedPair,
+    names: &[String; 2],
+    config: &Config,
+    (outcome, start): (Outcome, Instant),
+) -> Encoded {
+    let mut doubts = doubts::warnings((&pair.left, &pair.right), config, &outcome);
+    let mut not_trusted = doubts::not_trusted(&outcome, None);
+    if config.force {
+        doubts.extend(not_trusted.take());
+    }
+    let (stretch, warnings) = (pair.stretch, pair.warnings.clone());
+    let found = Found { names, stretch, warnings, rectified: None, calibration: None, doubts, not_trusted, start };
+    found.encoded(backend, config, outcome)
 }

@@ -14,6 +14,7 @@ mod options;
 mod rectify;
 mod report;
 mod scores;
+mod tiles;
 
 /// Stereo depth from two photographs, on any GPU.
 #[pyo3::pymodule]
@@ -38,5 +39,6 @@ mod _hsad {
         options::options,
         rectify::{Rectified, rectify},
         scores::{colorize, error_colors, evaluate},
+        tiles::{cut_tiles, match_tile, merge_tiles},
     };
 }

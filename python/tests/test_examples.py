@@ -89,6 +89,19 @@ def test_rerun(tmp_path, calibration):
     assert all(name in bytes_ for name in (b"DepthImage", b"Pinhole", b"world/left/depth", b"confidence", b"LineStrips2D"))
 
 
+@pytest.mark.parametrize("library", ["dask", "daft"])
+def test_tables_of_pairs(library, tmp_path):
+    needs(f"{library}.dataframe")
+    parquet, pyarrow = needs("pyarrow.parquet"), needs("pyarrow")
+    views = {"left": str(LEFT), "right": str(RIGHT)}
+    rows = [views | {"number": 0}, views | {"number": 1, "right": str(tmp_path / "none.png")}]
+    parquet.write_table(pyarrow.Table.from_pylist(rows), tmp_path / "pairs.parquet")
+    run(f"{library}_pairs.py", tmp_path / "pairs.parquet", tmp_path / "out")
+    found = {row["number"]: row for row in parquet.read_table(tmp_path / "out").to_pylist()}
+    assert "none.png" in found[1]["error"] and found[1]["disparity"] is None and found[0]["error"] is None
+    assert found[0]["disparity"] == hsad.match_encoded(LEFT.read_bytes(), RIGHT.read_bytes()).disparity_png
+
+
 def test_open3d(tmp_path, calibration):
     needs("open3d")
     run("open3d_cloud.py", LEFT, RIGHT, calibration, tmp_path / "cloud.ply")

@@ -38,7 +38,7 @@ def test_examples_in_the_documentation_are_true(thing):
 def test_the_documentation_has_examples():
     lacking = [thing.__name__ for thing in PUBLIC if inspect.isbuiltin(thing) and ">>>" not in thing.__doc__]
     # Those of files and of rectification need files and scenes: see test_parts.py.
-    assert all(name.startswith(("read_", "write_")) or name in ("rectify", "error_colors", "match_encoded") for name in lacking), lacking
+    assert all(name.startswith(("read_", "write_")) or name in ("rectify", "error_colors", "match_encoded", "cut_tiles", "match_tile", "merge_tiles") for name in lacking), lacking
 
 
 def test_types_are_those_of_the_module():

@@ -8,10 +8,11 @@ use crate::{
     error::{Error, Result},
     features::FeatureConfig,
     kamencay::KamencayParameters,
+    tiles::Tiling,
 };
 
 /// Options that Kamencay's method ignores.
-const ONLY_HSAD: [&str; 14] = [
+const ONLY_HSAD: [&str; 15] = [
     "preset",
     "window",
     "compare",
@@ -26,6 +27,7 @@ const ONLY_HSAD: [&str; 14] = [
     "fill",
     "no_fill",
     "interpolation",
+    "tiles",
 ];
 
 impl Options {
@@ -51,6 +53,7 @@ impl Options {
             config.range = Some(DisparityRange::new(self.min_disparity.unwrap_or(0), count)?);
         }
         config.reference = self.reference.unwrap_or(config.reference);
+        config.tiles = self.tiles.map(Tiling::of);
         config.equalise &= !is_set(self.no_equalise);
         config.align &= !is_set(self.no_align);
         config.force = is_set(self.force);

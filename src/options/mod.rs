@@ -165,6 +165,9 @@ options! {
         fill: bool;
         /// Leave holes where a check fails or too few neighbours agree [default of fast and paper]
         no_fill: bool, without fill;
+        /// Match a large picture in tiles of this side in pixels, at least 256, each with a margin of 256 px and the largest disparity, so that
+        /// memory is that of a tile [default: the whole picture]
+        tiles: u32, unit "PX";
         /// Do not equalise the brightness of the views, even where matched points show a difference
         no_equalise: bool;
         /// Do not align rows: match the right view as it is, even where matched points show that its rows are slightly off [default of paper]

@@ -58,13 +58,17 @@ impl Known {
         config: &Config,
         progress: impl FnMut(f32),
     ) -> Result<Outcome> {
-        let Self { features, points_found, seeding, range, range_source, widens, brightness, repetition, factor } =
-            self;
-        let size = views.size();
         let views = views.drowned().await?;
-        let search = Search { views: &views, pictures: given.pictures, config, brightness };
-        let may_widen = if widens { range_source } else { RangeSource::Asked };
-        let Found { range, dense, at_ends } = search.widening(range, may_widen, progress).await?;
+        let search = Search { views: &views, pictures: given.pictures, config, brightness: self.brightness };
+        let may_widen = if self.widens { self.range_source } else { RangeSource::Asked };
+        let found = search.widening(self.range, may_widen, progress).await?;
+        Ok(self.outcome(views, given, config, found))
+    }
+
+    /// The outcome with the map that was found; it has no times.
+    pub fn outcome(self, views: Views<'_>, given: &Given<'_>, config: &Config, found: Found) -> Outcome {
+        let Self { features, points_found, seeding, range_source, brightness, repetition, factor, .. } = self;
+        let (size, Found { range, dense, at_ends }) = (views.size(), found);
         let dense = without_ends(dense, range, range_source.ends_at_zero());
         let (left, right) = views.pair.views();
         let own = if config.reference == View::Left { left } else { right };
@@ -81,7 +85,7 @@ impl Known {
         };
         let trust = if no_depth.is_some() { 0.0 } else { trust(&dense, config, &seeding) * of_steps(repetition) };
         let dense = in_proportion(dense, trust);
-        Ok(Outcome {
+        Outcome {
             features,
             points_found,
             reduction: factor,
@@ -97,6 +101,6 @@ impl Known {
             repetition,
             dense,
             times: Vec::new(),
-        })
+        }
     }
 }

@@ -18,6 +18,8 @@ mod search;
 mod taken;
 mod taken_pair;
 mod task;
+#[cfg(not(target_arch = "wasm32"))]
+mod tiled;
 mod trust;
 mod upright;
 mod views;
@@ -41,6 +43,8 @@ pub use reduction::reduction;
 pub use taken_pair::rectify;
 pub use taken_pair::{TakenPair, rectify_async};
 pub use task::{Activity, Matched, Task};
+#[cfg(not(target_arch = "wasm32"))]
+pub use tiled::{cut_tiles, merge_tiles};
 pub use trust::TRUSTED;
 pub use way::Way;
 
@@ -224,6 +228,20 @@ async fn run_on(
     progress: impl FnMut(f32),
 ) -> Result<Option<Outcome>> {
     let mut clock = Clock::new(begin);
+    let Some((views, known)) = seeded(backend, &given, config, is_unfit, &mut clock).await? else { return Ok(None) };
+    clock.enter(Step::Dense);
+    let outcome = known.matched(views, &given, config, progress).await?;
+    Ok(Some(Outcome { times: clock.finish(), ..outcome }))
+}
+
+/// The views with aligned rows, and what is known of them before they are matched densely; `None` if `is_unfit` says so of their rows.
+async fn seeded<'a>(
+    backend: &'a Backend,
+    given: &Given<'a>,
+    config: &Config,
+    is_unfit: impl FnOnce(&Rectification) -> bool,
+    clock: &mut Clock<impl FnMut(Step)>,
+) -> Result<Option<(Views<'a>, Known)>> {
     config.validate()?;
     let [left, right] = given.pictures;
     check_window(left.size(), config)?;
@@ -265,11 +283,9 @@ async fn run_on(
     let brightness = brightness(config, &seeding);
     let (range, range_source) = range_to_search(config, &seeding, size.width)?;
 
-    clock.enter(Step::Dense);
     let known =
         Known { features, points_found, seeding, range, range_source, widens: true, brightness, repetition, factor };
-    let outcome = known.matched(views, &given, config, progress).await?;
-    Ok(Some(Outcome { times: clock.finish(), ..outcome }))
+    Ok(Some((views, known)))
 }
 
 /// Matches the features of the views in any row, or features with orientations where upright ones do not tell how rows

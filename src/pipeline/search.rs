@@ -11,6 +11,7 @@ use crate::{
     error::Result,
     io::Picture,
     kamencay::KamencayConfig,
+    tiles::{Merged, Tiling},
 };
 
 /// Largest number of searches, each over a wider range than the one before.
@@ -61,7 +62,12 @@ impl Search<'_, '_> {
             Method::Hsad(parameters) => {
                 let task = config.dense(parameters, range, brightness);
                 let range = task.searched(width)?;
-                (range, views.dense(&DenseConfig { range, ..task }, progress).await?)
+                let task = DenseConfig { range, ..task };
+                let dense = match config.tiles {
+                    Some(tiling) => self.in_tiles(tiling, &task, progress).await?,
+                    None => views.dense(&task, progress).await?,
+                };
+                (range, dense)
             }
             Method::Kamencay(parameters) => {
                 let task = config.kamencay(parameters, range, brightness);
@@ -73,5 +79,20 @@ impl Search<'_, '_> {
         };
         let dense = views.confirmed(dense, config.reference);
         Ok(Found { range, at_ends: at_ends(&dense.disparity, range), dense })
+    }
+
+    /// The map of all tiles, each matched by itself. Calls `progress` with the share of the work that is done, 0 to 1.
+    async fn in_tiles(&self, tiling: Tiling, task: &DenseConfig, mut progress: impl FnMut(f32)) -> Result<Dense> {
+        let Self { views, pictures, .. } = *self;
+        let whole = views.whole(pictures, task);
+        let tiles = tiling.tiles(views.size(), task);
+        let mut merged = Merged::new(views.size());
+        for (number, tile) in tiles.iter().enumerate() {
+            let of_all = |share| (number as f32 + share) / tiles.len() as f32;
+            let backend = views.pair.backend();
+            let found = whole.cut(*tile).dense_with_progress(backend, |share| progress(of_all(share))).await?;
+            merged.put(tile, &found)?;
+        }
+        Ok(merged.into_dense())
     }
 }

@@ -16,6 +16,7 @@ use crate::{
     mosaic::demosaicked,
     pair::{Pair, Seen},
     rectify::{RowModel, WarpMap},
+    tiles::Whole,
 };
 
 /// A pair, with what was found about its left and its right view.
@@ -147,8 +148,30 @@ impl<'b> Views<'b> {
     pub async fn dense(&self, config: &DenseConfig, progress: impl FnMut(f32)) -> Result<Dense> {
         let masks = self.own_and_other(config.reference);
         let is_masked = masks.iter().any(Option::is_some) && config.parameters.refinement.is_some();
-        let loss = if self.rectified.is_some() { Loss::Nothing } else { Loss::Disparity };
-        self.pair.dense_seen(config, is_masked.then_some(Seen { masks, loss }), progress).await
+        self.pair.dense_seen(config, is_masked.then_some(Seen { masks, loss: self.loss() }), progress).await
+    }
+
+    /// The views to cut tiles from; `pictures` are those that were given.
+    pub fn whole<'a>(&'a self, pictures: [&'a Picture; 2], config: &'a DenseConfig) -> Whole<'a> {
+        let (left, right) = self.pair.views();
+        // A view that was demosaicked or resampled has no colours.
+        let is_as_given = match config.reference {
+            View::Left => !self.mosaics[0],
+            View::Right => !self.mosaics[1] && self.map.is_none(),
+        };
+        let colours = pictures[usize::from(config.reference == View::Right)];
+        Whole {
+            luma: [left, right],
+            colours: Some(colours).filter(|_| is_as_given && config.parameters.fills()),
+            masks: self.own_and_other(config.reference),
+            loss: self.loss(),
+            config,
+        }
+    }
+
+    /// What a pixel loses before the refinement whose partner is hidden.
+    fn loss(&self) -> Loss {
+        if self.rectified.is_some() { Loss::Nothing } else { Loss::Disparity }
     }
 
     /// A map of the `reference` view without what it does not show, and without confidence where the other view does not

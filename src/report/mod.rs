@@ -28,6 +28,7 @@ use crate::{
     kamencay::KamencayParameters,
     pipeline::{NoDepth, Outcome, RangeSource},
     seeding::{BrightnessRelation, Rectification, Verdict},
+    tiles::Tiling,
 };
 
 /// What the pipeline found, with the parameters and the duration of each step in seconds.
@@ -79,13 +80,14 @@ pub fn number(value: f32) -> Value {
 
 /// All parameters of the configuration.
 pub fn parameters(config: &Config) -> Value {
-    let Config { features, seeding, range, least, method, reference, equalise, align, force } = config;
+    let Config { features, seeding, range, least, method, reference, tiles, equalise, align, force } = config;
     let matching = &seeding.matching;
     let mut parameters = json!({
         "method": match method { Method::Hsad(_) => "hsad", Method::Kamencay(_) => "kamencay" },
         "reference": reference.name(),
         "range": range.map(ends),
         "min_disparity": least,
+        "tiles": tiles.map(|Tiling { side, margin }| json!({ "side": side, "margin": margin })),
         "equalise": equalise,
         "align": align,
         "force": force,
@@ -124,6 +126,7 @@ fn dense(parameters: &DenseParameters) -> Vec<(&'static str, Value)> {
     let search = match search {
         Search::CoarseToFine => "coarse to fine",
         Search::Whole => "whole",
+        Search::Levels(_) => "over a pyramid",
     };
     let max_lr_difference = consistency.map(|difference| f64::from(difference) / f64::from(SCALE));
     let refinement = refinement.map(|Refinement { support, majority, medians_before, fill, medians_after }| {

@@ -7,5 +7,6 @@ alone: ``pip install 'hsad[ray]'``.
 
 from ._disparity import COLUMNS, Disparity
 from ._run import Summary, run
+from ._tiles import CutTiles, MergeTiles, TileDisparity
 
-__all__ = ["COLUMNS", "Disparity", "Summary", "run"]
+__all__ = ["COLUMNS", "CutTiles", "Disparity", "MergeTiles", "Summary", "TileDisparity", "run"]

@@ -5,6 +5,7 @@ import logging
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
@@ -100,39 +101,37 @@ class Disparity:
             raise hsad.ParameterError(f"maps is {maps!r}, but it must be 'png' or 'tensor'")
         if jobs < 1:
             raise hsad.ParameterError(f"jobs is {jobs}, but it must be at least 1")
-        _gpus.limit_threads()
-        self.device: Final = device if device is not None else _gpus.device_of_worker()
+        self._given: Final = {"device": device, "maps": maps, "jobs": jobs, **options}
+        self.device: Final = opened(device, options)
         self._options: Final = options
         self._is_png: Final = maps == "png"
         self._threads: Final = ThreadPoolExecutor(jobs, "hsad")
-        try:
-            # Checks the options and opens the device before there is a pair.
-            hsad.match_encoded(b"", b"", device=self.device, **options)
-        except hsad.FormatError:
-            pass
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process opens a device of its own."""
+        return partial(Disparity, **self._given), ()
 
     def __call__(self, batch: Any) -> dict[str, NDArray[Any]]:
         """Matches the pairs of a batch; see the class for the columns of both."""
-        columns = {name: _values(batch[name]) for name in _names(batch)}
+        columns = columns_of(batch)
         taken = COLUMNS.keys() & columns.keys()
         if taken:
             raise hsad.ParameterError(f"the pairs have a column {min(taken)}, which is one of the answer: rename it")
         if "left" not in columns:
             raise hsad.ParameterError(f"the pairs have no column left (only {', '.join(columns) or 'none'}), and maybe right")
         answer = self.match_rows(columns)
-        return {name: _column(values) for name, values in _passed_on(columns)} | answer
+        return {name: as_array(values) for name, values in _passed_on(columns)} | answer
 
     def match_rows(self, columns: Mapping[str, list[Any]]) -> dict[str, NDArray[Any]]:
         """The columns that are added to those of a batch."""
         rows = (dict(zip(columns, row)) for row in zip(*columns.values()))
         found = list(self._threads.map(self._row, rows))
-        return {name: _column([row[name] for row in found], _NONE.get(name)) for name in COLUMNS}
+        return {name: as_array([row[name] for row in found], name) for name in COLUMNS}
 
     def _row(self, row: Mapping[str, Any]) -> dict[str, Any]:
         """What is found of a pair; an error is part of it."""
-        nothing: dict[str, Any] = dict.fromkeys(COLUMNS) | _NONE
         try:
-            return nothing | self._matched(row)
+            return nothing() | self._matched(row)
         except hsad.DeviceLostError as error:
             if _gpus.is_worker():
                 _log.error("the worker ends, since its device is lost: %s", error)
@@ -141,36 +140,63 @@ class Disparity:
         except hsad.ForkError:
             raise
         except Exception as error:
-            return nothing | {"error": str(error) or type(error).__name__}
+            return nothing() | {"error": str(error) or type(error).__name__}
 
     def _matched(self, row: Mapping[str, Any]) -> dict[str, Any]:
         views = [row["left"], row.get("right")]
         if _is_none(views[0]):
             raise hsad.ParameterError("the pair has no left view")
         names = [side if not isinstance(view, str) else view for view, side in zip(views, ("left", "right"))]
-        left, right = (_read(view) for view in views)
+        left, right = (read(view) for view in views)
         assert left is not None
         found = hsad.match_encoded(
             left,
             right,
             names=(names[0], names[1]),
-            calibration=_read(row.get(_CALIBRATION)),
+            calibration=read(row.get(_CALIBRATION)),
             depth=_geometry(row),
             device=self.device,
             **self._options,
         )
-        report = found.report
-        return {
-            "disparity": found.disparity_png if self._is_png else found.disparity,
-            "confidence": found.confidence_png if self._is_png else found.confidence,
-            "width": report["width"],
-            "height": report["height"],
-            "range_min": found.range[0],
-            "range_max": found.range[1],
-            "trust": found.trust,
-            "not_trusted": report["not_trusted"],
-            "report": json.dumps(report),
-        }
+        return of_encoded(found, self._is_png)
+
+
+def opened(device: str | None, options: Mapping[str, Any]) -> str:
+    """The name of a worker's device, which is open; `options` are checked, too."""
+    _gpus.limit_threads()
+    name = device if device is not None else _gpus.device_of_worker()
+    try:
+        hsad.match_encoded(b"", b"", device=name, **options)
+    except hsad.FormatError:
+        # There is no picture yet.
+        pass
+    return name
+
+
+def of_encoded(found: hsad.Encoded, is_png: bool) -> dict[str, Any]:
+    """The columns of a pair that was matched."""
+    report = found.report
+    return {
+        "disparity": found.disparity_png if is_png else found.disparity,
+        "confidence": found.confidence_png if is_png else found.confidence,
+        "width": report["width"],
+        "height": report["height"],
+        "range_min": found.range[0],
+        "range_max": found.range[1],
+        "trust": found.trust,
+        "not_trusted": report["not_trusted"],
+        "report": json.dumps(report),
+    }
+
+
+def nothing() -> dict[str, Any]:
+    """The columns of a pair that failed, but for its error."""
+    return dict.fromkeys(COLUMNS) | _NONE
+
+
+def columns_of(batch: Any) -> dict[str, list[Any]]:
+    """The columns of a batch: arrays of NumPy, lists, a DataFrame, a table of pyarrow."""
+    return {name: _values(batch[name]) for name in _names(batch)}
 
 
 def _passed_on(columns: Mapping[str, list[Any]]) -> Iterator[tuple[str, list[Any]]]:
@@ -189,9 +215,10 @@ def _values(column: Any) -> list[Any]:
     return column.to_pylist() if hasattr(column, "to_pylist") else list(column)
 
 
-def _column(values: Iterable[Any], none: Any = None) -> NDArray[Any]:
-    """Values as an array: of numbers where all of them are, else of objects."""
+def as_array(values: Iterable[Any], name: str = "") -> NDArray[Any]:
+    """Values as an array: of numbers where all of them are, else of objects; of its own type for a column of the answer."""
     values = list(values)
+    none = _NONE.get(name)
     if none is not None:
         return np.array(values, np.float32 if isinstance(none, float) else np.int32)
     if values and all(isinstance(value, (bool, int, float, np.number, np.bool_)) for value in values):
@@ -209,7 +236,7 @@ def _is_none(value: Any) -> bool:
     return value is None or type(value).__name__ == "NAType"
 
 
-def _read(value: Any) -> bytes | None:
+def read(value: Any) -> bytes | None:
     """The bytes of a file that is given as bytes, as a path or as a URI."""
     if isinstance(value, (bytes, bytearray, memoryview)):
         return bytes(value)

@@ -46,6 +46,9 @@ pub enum Search {
     ///
     /// Costs: see [`crate::dense::Pyramid`].
     CoarseToFine,
+    /// Costs only: as [`Self::CoarseToFine`], over so many levels of a pyramid, at least 1, whatever the size: a part of a large picture is
+    /// searched as the picture is.
+    Levels(u32),
 }
 
 /// Cost aggregation: from the costs of single pixels to those that decide.
@@ -217,7 +220,7 @@ impl DenseParameters {
             Aggregation::Sad { search, .. } => *search == Search::CoarseToFine,
             Aggregation::Costs(costs) => {
                 let is_checked_by_claims = self.consistency.is_none() || costs.cross_check == CrossCheck::Claimed;
-                let searches_less = costs.search == Search::CoarseToFine;
+                let searches_less = costs.search != Search::Whole;
                 searches_less && costs.window == 1 && costs.semi_global.is_some() && is_checked_by_claims
             }
         }

@@ -60,7 +60,7 @@ pub(in crate::dense) fn plan(
     let matches = MapBuffer { buffer: &matches, layout: map };
     let whole_range = Ranges::whole(gpu, config.searched(width)?);
     let (coarse, other_winners) = match search {
-        Search::Whole => (None, OtherWinners::new(gpu, &mut plan, config, map)?),
+        Search::Whole | Search::Levels(_) => (None, OtherWinners::new(gpu, &mut plan, config, map)?),
         Search::CoarseToFine => (Some(Coarse::new(gpu, &mut plan, size, config, [left, right], band_rows)?), None),
     };
 

@@ -10,7 +10,7 @@ mod cells;
 pub use cells::{CellRange, CellTable, SIDE};
 
 use super::{
-    config::{Aggregation, DenseConfig, Filters},
+    config::{Aggregation, DenseConfig, Filters, Search},
     kernels::halved,
 };
 use crate::{disparity::DisparityRange, image::Size};
@@ -55,23 +55,29 @@ impl Pyramid {
     /// averages costs over a window, follows no paths or searches the other view too; and if the picture is narrower than
     /// 1600 px or the range has fewer than 128 disparities, where a pyramid saves little.
     pub fn of(config: &DenseConfig, size: Size) -> Option<Self> {
-        let has_costs = matches!(config.parameters.aggregation, Aggregation::Costs(_));
-        let is_possible = has_costs && config.parameters.may_search_less();
-        let range = config.searched(size.width).ok()?;
+        let Aggregation::Costs(costs) = &config.parameters.aggregation else { return None };
+        let is_possible = config.parameters.may_search_less();
+        let range = config.searched(size.width).ok().filter(|_| is_possible)?;
         let is_large = size.width >= LEAST_WIDTH && range.count >= LEAST_DISPARITIES;
-        (is_possible && is_large).then(|| Self::down_to(COARSEST, size, range))
+        match costs.search {
+            Search::CoarseToFine if is_large => Some(Self::down_to(COARSEST, size, range)),
+            Search::Levels(count) if count > 1 => Some(Self::of_levels(count, size, range)),
+            _ => None,
+        }
     }
 
     /// A pyramid whose coarsest level is at most `coarsest` px wide.
     pub fn down_to(coarsest: u32, size: Size, range: DisparityRange) -> Self {
-        let half = |level: &Level| Level {
-            size: Size::new(level.size.width.div_ceil(2), level.size.height.div_ceil(2)),
-            range: halved(level.range),
-        };
         let all = std::iter::successors(Some(Level { size, range }), |level| {
-            (level.size.width > coarsest.max(1)).then(|| half(level))
+            (level.size.width > coarsest.max(1)).then(|| level.half())
         });
         Self { levels: all.collect() }
+    }
+
+    /// A pyramid of `count` levels.
+    fn of_levels(count: u32, size: Size, range: DisparityRange) -> Self {
+        let all = std::iter::successors(Some(Level { size, range }), |level| Some(level.half()));
+        Self { levels: all.take(count as usize).collect() }
     }
 
     /// The levels, the finest first.
@@ -81,6 +87,11 @@ impl Pyramid {
 }
 
 impl Level {
+    fn half(&self) -> Self {
+        let Size { width, height } = self.size;
+        Self { size: Size::new(width.div_ceil(2), height.div_ceil(2)), range: halved(self.range) }
+    }
+
     /// The configuration of the finest level, in the range of the whole picture.
     pub(crate) fn finest(&self, config: &DenseConfig) -> DenseConfig {
         DenseConfig { range: self.range, ..config.clone() }
@@ -104,10 +115,7 @@ pub(crate) fn filters() -> Filters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        config::Preset,
-        dense::config::{CrossCheck, Search},
-    };
+    use crate::{config::Preset, dense::config::CrossCheck};
 
     #[test]
     fn levels_by_hand() {
@@ -141,6 +149,17 @@ mod tests {
         };
         assert_eq!(changed(|_| ()), Some(3));
         assert_eq!(changed(|costs| costs.search = Search::Whole), None);
+        assert_eq!(
+            levels(
+                &config(40).with(|parameters| {
+                    let Aggregation::Costs(costs) = &mut parameters.aggregation else { unreachable!() };
+                    costs.search = Search::Levels(4);
+                }),
+                100
+            ),
+            Some(4)
+        );
+        assert_eq!(changed(|costs| costs.search = Search::Levels(1)), None);
         assert_eq!(changed(|costs| costs.window = 3), None);
         assert_eq!(changed(|costs| costs.semi_global = None), None);
         assert_eq!(changed(|costs| costs.cross_check = CrossCheck::Searched), None);
