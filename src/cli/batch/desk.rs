@@ -14,14 +14,15 @@ use super::{journal::Journal, load::Shares, record::Record, tally::Tally};
 pub struct Desk(Mutex<State>);
 
 struct State {
-    journal: Journal,
+    /// Not after a record that could not be written, whose line may be there in part.
+    journal: Option<Journal>,
     tally: Tally,
     result: Result<()>,
 }
 
 impl Desk {
     pub fn new(journal: Journal, tally: Tally) -> Self {
-        Self(Mutex::new(State { journal, tally, result: Ok(()) }))
+        Self(Mutex::new(State { journal: Some(journal), tally, result: Ok(()) }))
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -33,14 +34,18 @@ impl Desk {
         self.state().tally.count_earlier(record);
     }
 
-    /// Records a pair that is done, until there is an error, which ends the run: that of a record that cannot be written is one, too.
+    /// Records a pair that is done. An error ends the run, and so does a record that cannot be written; pairs that are under way then are
+    /// recorded still.
     pub fn record(&self, record: Result<Record>) -> ControlFlow<()> {
         let State { journal, tally, result } = &mut *self.state();
+        let written = record.and_then(|record| {
+            let Some(mut open) = journal.take() else { return Ok(()) };
+            open.add(&record)?;
+            *journal = Some(open);
+            Ok(tally.count(&record)?)
+        });
         if result.is_ok() {
-            *result = record.and_then(|record| {
-                journal.add(&record)?;
-                Ok(tally.count(&record)?)
-            });
+            *result = written;
         }
         if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
