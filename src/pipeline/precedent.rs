@@ -24,7 +24,8 @@ const MOST_CHANGE: f64 = 0.02;
 /// Largest loss of trust against the precedent.
 const MOST_LOSS: f32 = 0.1;
 
-/// What a frame of a sequence tells the frames after it, of cameras that stand still against each other.
+/// What a frame of a sequence tells the frames after it, of cameras that stand still against each other, in a search by the same
+/// parameters.
 #[derive(Clone, Debug)]
 pub struct Precedent {
     size: Size,

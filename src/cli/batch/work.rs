@@ -1,6 +1,7 @@
 //! The work on a pair: as `hsad match` does it, on a device that is open.
 
 use std::{
+    fs,
     ops::ControlFlow,
     time::{Duration, Instant},
 };
@@ -102,7 +103,12 @@ impl Work<'_> {
 
     fn matched(&self, pair: &Pair, frame: Option<&Frame>, precedent: Option<&Precedent>) -> Result<Matched> {
         let start = Instant::now();
-        let mut output = Output::open_set(&self.results.folder.join(&pair.name))?;
+        let folder = self.results.folder.join(&pair.name);
+        // Pairs that are worked on beside this one may have the folder above, too: none of them may remove it as its own.
+        if let Some(above) = folder.parent() {
+            fs::create_dir_all(above).map_err(|source| Error::Io { path: above.into(), source })?;
+        }
+        let mut output = Output::open_set(&folder)?;
         let bytes = frame.map(Frame::to_pnm);
         let views =
             Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, bytes: bytes.as_deref() };
