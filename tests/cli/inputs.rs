@@ -79,6 +79,10 @@ fn maps_and_figures_without_an_end_are_refused() {
     let mut command = hsad();
     command.args(["eval", "dense"]).arg(planes.parent().unwrap()).args(["--disparity", "x=/dev/zero", "--given-only"]);
     command.assert().code(1).stderr(predicates::str::contains("/dev/zero: neither a PNG nor a PFM"));
+    // Nor are they where results are kept, which depend on them.
+    let temporary = folder();
+    command.arg("-o").arg(temporary.path().join("out"));
+    command.assert().code(1).stderr(predicates::str::contains("/dev/zero: neither a PNG nor a PFM"));
 }
 
 #[test]

@@ -92,6 +92,19 @@ fn one_thread_does_the_work_where_no_other_is_allowed() {
     }
 }
 
+/// Too few threads for the shared work, which the program's own thread does then, and enough for a second pair, which must not wait for it.
+#[test]
+fn a_batch_ends_where_a_few_threads_are_allowed() {
+    let installed = Installed::new();
+    let list = installed.path("pairs.csv");
+    fs::write(&list, "left,right,name\nleft.png,right.png,a\nleft.png,right.png,b\n").unwrap();
+    let mut command = Command::new(&installed.program);
+    command.arg("batch").arg(list).arg("-o").arg(installed.path("out")).env_remove("RUST_LOG");
+    command.args(["--device", "cpu", "--preset", "fast", "--disparities", "64", "--jobs", "2", "-q"]);
+    succeeded(&limited(command, libc::RLIMIT_NPROC, 3).output().unwrap());
+    assert_eq!(names(&installed.path("out")), ["a", "b", "batch.json", "report.jsonl"]);
+}
+
 #[test]
 fn no_thread_for_the_progress_is_no_failure() {
     let installed = Installed::new();

@@ -177,8 +177,12 @@ impl Batch {
         Ok(())
     }
 
-    /// Groups of pairs that are worked on at once.
+    /// Groups of pairs that are worked on at once: one where the system allows no threads and this one does all the work, for which others
+    /// would wait in vain.
     fn jobs(&self) -> usize {
+        if rayon::current_thread_index().is_some() {
+            return 1;
+        }
         let processors = || thread::available_parallelism().map_or(1, NonZero::get);
         self.jobs.map_or_else(|| processors().clamp(2, MOST_JOBS), usize::from)
     }

@@ -1,8 +1,9 @@
 //! Results saved in the output folder, so that an interrupted evaluation can be resumed.
 
 use std::{
-    fs,
+    fs::{self, File},
     hash::{DefaultHasher, Hash, Hasher},
+    io::{self, Read},
     path::{Path, PathBuf},
     time::SystemTime,
 };
@@ -47,10 +48,10 @@ impl SavedResults {
         Self(folder.map(|folder| {
             let mut fingerprint = DefaultHasher::new();
             env!("CARGO_PKG_VERSION").hash(&mut fingerprint);
-            match std::env::current_exe().and_then(fs::read) {
-                Ok(bytes) => bytes.hash(&mut fingerprint),
+            let program = std::env::current_exe();
+            if program.and_then(|program| hash_content(&program, &mut fingerprint)).is_err() {
                 // The program file was replaced since the start: saved results cannot be attributed to this build.
-                Err(_) => (std::process::id(), SystemTime::now()).hash(&mut fingerprint),
+                hash_this_run(&mut fingerprint);
             }
             Location { folder: folder.into(), fingerprint, fresh, read: Vec::new() }
         }))
@@ -80,7 +81,8 @@ impl SavedResults {
     /// [`Error::Io`] if the file cannot be read.
     pub fn depending_on_file(mut self, path: &Path) -> Result<Self> {
         if let Some(location) = &mut self.0 {
-            fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?.hash(&mut location.fingerprint);
+            let hashed = hash_content(path, &mut location.fingerprint);
+            hashed.map_err(|source| Error::Io { path: path.into(), source })?;
             location.read.push(path.into());
         }
         Ok(self)
@@ -129,9 +131,29 @@ impl Location {
     fn hash(&self, name: &str) -> Result<String> {
         let path = self.folder.join(name);
         let mut hasher = DefaultHasher::new();
-        fs::read(&path).map_err(|source| Error::Io { path, source })?.hash(&mut hasher);
+        hash_content(&path, &mut hasher).map_err(|source| Error::Io { path, source })?;
         Ok(text(&hasher))
     }
+}
+
+/// Adds the content of a file, piece by piece. A pipe or device is left to what reads it: it may have no end, or be read but once.
+fn hash_content(path: &Path, hasher: &mut DefaultHasher) -> io::Result<()> {
+    if !fs::metadata(path)?.is_file() {
+        hash_this_run(hasher);
+        return Ok(());
+    }
+    let (mut file, mut piece) = (File::open(path)?, vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut piece)? {
+            0 => return Ok(()),
+            length => hasher.write(&piece[..length]),
+        }
+    }
+}
+
+/// Adds what no other run has, so that nothing is reused.
+fn hash_this_run(hasher: &mut DefaultHasher) {
+    (std::process::id(), SystemTime::now()).hash(hasher);
 }
 
 fn text(hasher: &DefaultHasher) -> String {
