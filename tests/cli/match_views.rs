@@ -155,7 +155,7 @@ fn options_override_the_preset() {
         "interpolation": "none", "uniqueness_percent": 7, "max_lr_difference_px": 1.5, "agreement": 0, "refinement": null, "equalise": false, "align": false, "force": true,
         "features": { "octaves": 3, "step": 2, "threshold": 0.002, "upright": true, "max_features": 5000 },
         "matching": { "ratio": 0.8, "mutual": true, "same_contrast": true, "max_dy_px": 1.5 },
-        "strongest": 4
+        "tiles": null, "strongest": 4
     });
     assert_eq!(report["parameters"], expected);
     let map = pfm::read_disparities(&out.join("disparity.pfm")).unwrap();
