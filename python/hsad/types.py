@@ -33,6 +33,7 @@ class DenseOptions(PointOptions, total=False):
     fill: bool | None
     no_fill: bool | None
     tiles: int | None
+    tile_margin: int | None
     no_equalise: bool | None
     no_align: bool | None
     interpolation: Literal["none", "parabola", "equiangular"] | None

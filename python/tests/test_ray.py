@@ -15,6 +15,7 @@ from conftest import DATA
 import hsad
 import hsad.ray
 from hsad.ray import _gpus
+from hsad.ray._disparity import is_none
 
 
 def pairs(folder, count):
@@ -229,3 +230,19 @@ def test_the_class_goes_into_a_data_set_of_ray(tmp_path, cluster):
     found = {row["name"]: row for row in found.take_all()}
     assert sorted(found) == ["pair-0", "pair-1", "pair-2"] and "none.png" in found["pair-1"]["error"]
     assert found["pair-2"]["disparity"] == by_the_command(rows[2], tmp_path / "out", "--preset", "fast")[0]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_tiles_are_cut_matched_and_put_together_by_a_cluster(tmp_path, cluster):
+    from ray import data
+
+    rows = [{"name": "curved", "left": str(DATA / "curved" / "left.png"), "right": str(DATA / "curved" / "right.png")}]
+    one = data.ActorPoolStrategy(size=1)
+    tiles = data.from_items(rows).flat_map(hsad.ray.CutTiles, fn_constructor_kwargs={"tiles": 256, "preset": "fast"}, compute=one)
+    maps = tiles.materialize().map_batches(hsad.ray.TileDisparity, batch_size=1, compute=one).materialize()
+    place = maps.to_pandas().iloc[0]
+    (found,) = maps.groupby("name").map_groups(hsad.ray.MergeTiles).take_all()
+    bounds = ["--min-disparity", str(place["min_disparity"]), "--disparities", str(place["disparities"])]
+    assert is_none(found["error"])
+    expected = by_the_command(rows[0], tmp_path / "out", "--preset", "fast", "--tiles", "256", *bounds)
+    assert [found["disparity"], found["confidence"]] == expected

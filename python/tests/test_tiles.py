@@ -54,7 +54,7 @@ def test_tiles_that_do_not_fit_are_named(tmp_path):
 
 def test_the_classes_for_clusters_do_the_same():
     good = {"name": "good", "left": str(LEFT), "right": str(RIGHT), "number": 7}
-    cut, match, merge = hsad.ray.CutTiles(256, preset="fast"), hsad.ray.TileDisparity(), hsad.ray.MergeTiles()
+    cut, match, merge = hsad.ray.CutTiles(tiles=256, preset="fast"), hsad.ray.TileDisparity(), hsad.ray.MergeTiles()
     tiles = [tile for row in (good, good | {"name": "bad", "right": "none.png"}) for tile in cut(row)]
     assert [(tile["name"], tile["tile"]) for tile in tiles] == [("good", 0), ("good", 1), ("bad", -1)]
     maps = match({name: np.array([tile[name] for tile in tiles], object) for name in tiles[0]})

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Options that Kamencay's method ignores.
-const ONLY_HSAD: [&str; 15] = [
+const ONLY_HSAD: [&str; 16] = [
     "preset",
     "window",
     "compare",
@@ -28,6 +28,7 @@ const ONLY_HSAD: [&str; 15] = [
     "no_fill",
     "interpolation",
     "tiles",
+    "tile_margin",
 ];
 
 impl Options {
@@ -53,7 +54,12 @@ impl Options {
             config.range = Some(DisparityRange::new(self.min_disparity.unwrap_or(0), count)?);
         }
         config.reference = self.reference.unwrap_or(config.reference);
-        config.tiles = self.tiles.map(Tiling::of);
+        if self.tile_margin.is_some() && self.tiles.is_none() {
+            let (name, expected) = ("tile_margin", "it is that of tiles: give their side with `tiles`, too".into());
+            return Err(Error::Parameter { name, value: "given".into(), expected });
+        }
+        let margin = self.tile_margin.unwrap_or(Tiling::MARGIN);
+        config.tiles = self.tiles.map(|side| Tiling { side, margin });
         config.equalise &= !is_set(self.no_equalise);
         config.align &= !is_set(self.no_align);
         config.force = is_set(self.force);
@@ -229,6 +235,8 @@ mod tests {
             (&[("paths", "4"), ("preset", "fast")], "preset is fast, but `paths` and `cost_window` need"),
             (&[("method", "kamencay"), ("fill", "true")], "method is kamencay, but `fill` needs `method` hsad"),
             (&[("max_lr_difference", "300")], "max_lr_difference is 300, but"),
+            (&[("tile_margin", "64")], "tile_margin is given, but it is that of tiles"),
+            (&[("tiles", "200")], "tiles is 200, but a tile is at least 256 px"),
         ] {
             let error = options(given).config().unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

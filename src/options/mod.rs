@@ -17,6 +17,7 @@ use crate::{
     error::{Error, Result},
     features::FeatureConfig,
     matching::MatchConfig,
+    tiles::Tiling,
 };
 
 /// What an option is about.
@@ -165,9 +166,12 @@ options! {
         fill: bool;
         /// Leave holes where a check fails or too few neighbours agree [default of fast and paper]
         no_fill: bool, without fill;
-        /// Match a large picture in tiles of this side in pixels, at least 256, each with a margin of 256 px and the largest disparity, so that
-        /// memory is that of a tile [default: the whole picture]
+        /// Match a large picture in tiles of this side in pixels, at least 256, so that memory is that of a tile [default: the whole
+        /// picture]
         tiles: u32, unit "PX";
+        /// Margin of tiles in pixels, 0 to 65536, besides the largest disparity: the more, the less the map differs from that of the
+        /// whole picture
+        tile_margin: u32, unit "PX", default Tiling::MARGIN;
         /// Do not equalise the brightness of the views, even where matched points show a difference
         no_equalise: bool;
         /// Do not align rows: match the right view as it is, even where matched points show that its rows are slightly off [default of paper]

@@ -68,7 +68,7 @@ class Disparity:
     ``error``                         why there is no map: then the maps are None, numbers 0 and trust NaN; None
     ================================  ==================================================================================================
 
-    A pair that fails is a row with an ``error``; the others go on.
+    A pair that fails is a row with an ``error``; the others go on. Where no pair of a block has an ``error``, Ray may show NaN for None.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Disparity:
             raise hsad.ParameterError(f"maps is {maps!r}, but it must be 'png' or 'tensor'")
         if jobs < 1:
             raise hsad.ParameterError(f"jobs is {jobs}, but it must be at least 1")
-        self._given: Final = {"device": device, "maps": maps, "jobs": jobs, **options}
+        self._given: Final[dict[str, Any]] = {"device": device, "maps": maps, "jobs": jobs, **options}
         self.device: Final = opened(device, options)
         self._options: Final = options
         self._is_png: Final = maps == "png"
@@ -144,7 +144,7 @@ class Disparity:
 
     def _matched(self, row: Mapping[str, Any]) -> dict[str, Any]:
         views = [row["left"], row.get("right")]
-        if _is_none(views[0]):
+        if is_none(views[0]):
             raise hsad.ParameterError("the pair has no left view")
         names = [side if not isinstance(view, str) else view for view, side in zip(views, ("left", "right"))]
         left, right = (read(view) for view in views)
@@ -229,10 +229,10 @@ def as_array(values: Iterable[Any], name: str = "") -> NDArray[Any]:
     return column
 
 
-def _is_none(value: Any) -> bool:
+def is_none(value: Any) -> bool:
     """Whether a cell is empty, as libraries of tables have it: None, NaN, an empty text."""
-    if isinstance(value, (str, float)):
-        return value == "" or value != value
+    if isinstance(value, (str, float, np.floating)):
+        return bool(value == "" or value != value)
     return value is None or type(value).__name__ == "NAType"
 
 
@@ -240,7 +240,7 @@ def read(value: Any) -> bytes | None:
     """The bytes of a file that is given as bytes, as a path or as a URI."""
     if isinstance(value, (bytes, bytearray, memoryview)):
         return bytes(value)
-    if _is_none(value):
+    if is_none(value):
         return None
     if isinstance(value, (str, os.PathLike)):
         return _files.read(os.fspath(value))
@@ -249,8 +249,8 @@ def read(value: Any) -> bytes | None:
 
 def _geometry(row: Mapping[str, Any]) -> tuple[float, float, float] | None:
     focal, baseline, doffs = (row.get(name) for name in _GEOMETRY)
-    if _is_none(focal) and _is_none(baseline):
+    if is_none(focal) and is_none(baseline):
         return None
-    if _is_none(focal) or _is_none(baseline):
+    if is_none(focal) or is_none(baseline):
         raise hsad.ParameterError("the pair has one of focal and baseline, but both belong together")
-    return float(focal or 0), float(baseline or 0), 0.0 if _is_none(doffs) else float(doffs or 0)
+    return float(focal or 0), float(baseline or 0), 0.0 if is_none(doffs) else float(doffs or 0)

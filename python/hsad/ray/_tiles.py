@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import hsad
 
 from . import _gpus
-from ._disparity import COLUMNS, as_array, columns_of, nothing, of_encoded, opened, read
+from ._disparity import COLUMNS, as_array, columns_of, is_none, nothing, of_encoded, opened, read
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -32,14 +32,12 @@ class CutTiles:
 
     Parameters
     ----------
-    tiles : int
-        Side of a tile, in pixels.
     device, **options
-        As for :class:`Disparity`.
+        As for :class:`Disparity`; ``tiles``, the side of a tile in pixels, is 2048 by default.
     """
 
-    def __init__(self, tiles: int = 2048, device: str | None = None, **options: "Unpack[MatchOptions]") -> None:
-        options["tiles"] = tiles
+    def __init__(self, device: str | None = None, **options: "Unpack[MatchOptions]") -> None:
+        options.setdefault("tiles", 2048)
         self.device: Final = opened(device, options)
         self._options: Final = options
 
@@ -82,7 +80,7 @@ class TileDisparity:
         return kept | {name: as_array([row[name] for row in found]) for name in ("disparity", "confidence", "error")}
 
     def _row(self, row: Mapping[str, Any]) -> dict[str, Any]:
-        if row["error"] is not None:
+        if not is_none(row["error"]):
             return {"disparity": None, "confidence": None, "error": row["error"]}
         try:
             disparity, confidence = hsad.match_tile(_plain(row), device=self.device)
@@ -123,7 +121,7 @@ class MergeTiles:
         return {name: as_array([value]) for name, value in kept.items()} | {name: as_array([found[name]], name) for name in COLUMNS}
 
     def _merged(self, rows: list[dict[str, Any]]) -> dict[str, Any]:
-        errors = [row["error"] for row in rows if row["error"] is not None]
+        errors = [row["error"] for row in rows if not is_none(row["error"])]
         if errors:
             return {"error": errors[0]}
         try:
@@ -139,5 +137,6 @@ class MergeTiles:
 
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row without NumPy's own kinds of numbers."""
-    return {name: value.item() if isinstance(value, np.generic) else value for name, value in row.items()}
+    """A row without NumPy's own kinds of numbers, and with None for NaN, which stands for it where a column has nothing else."""
+    plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in row.items()}
+    return {name: None if isinstance(value, float) and is_none(value) else value for name, value in plain.items()}
