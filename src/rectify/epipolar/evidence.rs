@@ -13,7 +13,7 @@ use super::{
 use crate::{image::Size, rectify::Correspondence};
 
 /// Smallest number of inliers, and smallest share of all points, of views of one scene.
-const RELATED: (usize, f64) = (20, 0.6);
+pub(super) const RELATED: (usize, f64) = (20, 0.6);
 /// Distance from the best homography from which a point shows depth, in pixels of the left view, and the smallest share of such points.
 const DEPTH: (f64, f64) = (4.0, 0.04);
 /// The same distance of points whose rows correspond already: a turn on the spot of a scene leaves a pixel.
@@ -31,14 +31,19 @@ const LEVEL: f64 = 0.9;
 /// by `factor`, show no depth. Where a camera turns by little, rows correspond after a small warp, and a search along them finds
 /// disparities all the same.
 pub fn without_depth(points: &[Correspondence], sizes: [Size; 2], factor: u32) -> Option<Relation> {
+    let frame = Frame::new(sizes, factor);
+    let points: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
+    flat(&points, &frame)
+}
+
+/// [`without_depth`] of points in units of `frame`.
+pub(super) fn flat(points: &[Correspondence], frame: &Frame) -> Option<Relation> {
     if points.len() < RELATED.0 {
         return None;
     }
-    let frame = Frame::new(sizes, factor);
-    let points: Vec<Correspondence> = points.iter().map(|point| frame.point(point)).collect();
-    let plane = homography::consensus(&points, DEPTH.0 / frame.unit)?;
+    let plane = homography::consensus(points, DEPTH.0 / frame.unit)?;
     let off = points.iter().filter(|point| homography::distance(&plane, point) > FLAT / frame.unit).count();
-    ((off as f64) < DEPTH.1 * points.len() as f64).then(|| flat::relation(&points, &frame))
+    ((off as f64) < DEPTH.1 * points.len() as f64).then(|| flat::relation(points, frame))
 }
 
 /// The points of views of `sizes`, in pixels, that agree on how the cameras stand; none if too few do.

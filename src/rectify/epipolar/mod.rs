@@ -145,6 +145,11 @@ impl Uncalibrated {
         };
 
         let chosen = Chosen::new(&found, &inliers, &frame);
+        // Where a camera turned by little, most rows nearly correspond, and matrices that turn both views explain the others.
+        let is_warped = !matches!(chosen.model, Model::Right(RowKind::AsIs | RowKind::Shift));
+        if let Some(relation) = is_warped.then(|| evidence::flat(&inliers, &frame)).flatten() {
+            return Err(Refusal::Relation(Evidence { relation, ..evidence }));
+        }
         let residual = row_errors(&chosen.maps, &lens.straight(&unused, &frame), &frame);
         Self::bounded(evidence, &chosen, lens, &inliers, residual, frame)
     }

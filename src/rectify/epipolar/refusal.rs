@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use super::{evidence::Evidence, relation::Relation};
+use super::{
+    evidence::{Evidence, RELATED},
+    relation::Relation,
+};
 
 /// Why a pair cannot be rectified.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +40,11 @@ impl fmt::Display for Refusal {
         };
         let Evidence { inliers, points, off_plane, epipoles, .. } = *found;
         match found.relation {
+            Relation::Unrelated if points < RELATED.0 => write!(
+                f,
+                "the views are unrelated, or show too little in common, {points} matched points do not tell how the cameras stand: \
+                 name two pictures of one scene"
+            ),
             Relation::Unrelated => write!(
                 f,
                 "the views are unrelated, {inliers} of {points} matched points agree on how the cameras stand: name two pictures \

@@ -288,6 +288,9 @@ fn what_cannot_be_rectified_is_told_apart() {
         other => panic!("{other:?}"),
     };
     assert_eq!(relation(&[]), Relation::Unrelated);
+    // A fifth is left out of the fit.
+    let few = Uncalibrated::new(&unrelated[..10], [SIZE; 2], 1).unwrap_err().to_string();
+    assert!(few.contains("8 matched points do not tell"), "{few}");
     // Exact copies of one picture, which any number of matrices explain.
     let moved = |by: DVec2| -> Vec<Correspondence> {
         unrelated.iter().map(|point| Correspondence { right: point.left + by, ..*point }).collect()
@@ -301,7 +304,8 @@ fn a_turn_to_the_side_is_one_on_the_spot_though_rows_nearly_agree() {
     let shown = |rig: Rig| without_depth(&rig.points(300, 0.35), [SIZE; 2], 1);
     for pan in [3.0, 6.0, 12.0] {
         let turned = Rig::turned([0.0, pan, 0.0]);
-        assert_eq!(shown(Rig { place: DVec3::ZERO, ..turned }), Some(Relation::Turned), "{pan}");
+        let spot = Rig { place: DVec3::ZERO, ..turned };
+        assert_eq!((shown(spot), spot.relation()), (Some(Relation::Turned), Relation::Turned), "{pan}");
         assert_eq!(shown(turned), None, "{pan}: a scene with depth");
         assert_eq!(shown(Rig { depths: [4.0, 4.0], ..turned }), Some(Relation::Plane), "{pan}");
     }
