@@ -50,7 +50,13 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
     let format = match ::image::guess_format(bytes) {
         _ if BIG_TIFF.iter().any(|magic| bytes.starts_with(magic)) => ImageFormat::Tiff,
         Ok(format) if READ.contains(&format) => format,
-        _ => {
+        Ok(other) => {
+            return Err(malformed(
+                path,
+                format!("a picture of the format {other:?}, which is not read: convert the picture to PNG"),
+            ));
+        }
+        Err(_) => {
             return Err(malformed(
                 path,
                 "not a picture of a supported format: PNG, JPEG, PNM, BMP, TIFF and WebP are read, and PFM",
