@@ -77,6 +77,10 @@ impl Gpu {
     /// are built by then: at most `bytes` of the device besides what is in use, for those used last. It holds for [`crate::pipeline`] and
     /// [`crate::Pair`] on this `Gpu` and its clones; by default nothing is kept.
     #[must_use]
+    #[cfg_attr(
+        target_arch = "wasm32",
+        expect(clippy::arc_with_non_send_sync, reason = "devices of browsers stay on their thread")
+    )]
     pub fn keeping(self, bytes: u64) -> Self {
         Self { shelf: Arc::new(Shelf::new(bytes)), ..self }
     }
