@@ -285,4 +285,9 @@ fn a_frame_follows_its_precedent_as_long_as_it_holds() {
         assert!(!found.follows, "{what}");
         assert_eq!(found.outcome.dense, own.outcome.dense, "{what}");
     }
+
+    let leaning = Picture::from_fn(right.size(), |x, y| right.get((x + y / 8).min(width - 1), y));
+    let leaning = matched((&left, &leaning), None);
+    assert!(leaning.outcome.seeding.rectification.lean != 0.0 && leaning.rectified.is_none());
+    assert!(leaning.precedent(views).is_none(), "its map is that of upright columns");
 }

@@ -37,12 +37,15 @@ pub struct Precedent {
 }
 
 impl Matched {
-    /// What this frame, of these `views`, tells the frames after it: nothing if it follows another one, was rectified first, or is doubtful.
+    /// What this frame, of these `views`, tells the frames after it: nothing if it follows another one, was rectified first, has
+    /// columns that lean, or is doubtful.
     pub fn precedent(&self, views: (&Picture, &Picture)) -> Option<Precedent> {
         let Outcome { seeding, range, range_source, trust, no_depth, mosaics, .. } = &self.outcome;
         let tells = !self.follows && self.rectified.is_none() && *trust >= TRUSTED && no_depth.is_none();
         let is_found = !matches!(range_source, RangeSource::Fallback(_)) && *mosaics == [false; 2];
-        (tells && is_found).then(|| Precedent {
+        // Its map may be that of upright columns, which rows alone do not give.
+        let is_upright = seeding.rectification.lean == 0.0;
+        (tells && is_found && is_upright).then(|| Precedent {
             size: views.0.size(),
             seeding: Seeding { matches: Vec::new(), ..seeding.clone() },
             range: *range,

@@ -29,11 +29,13 @@ impl Merged {
     /// [`crate::Error::Parameter`] for a map of another size, and for a tile of another picture.
     pub fn put(&mut self, tile: &Tile, found: &Dense) -> Result<()> {
         let (core, size) = (tile.core, self.dense.disparity.size());
-        let (right, below) = (core.x + core.size.width, core.y + core.size.height);
+        let end = |first: u32, length: u32| u64::from(first) + u64::from(length);
+        let (right, below) = (end(core.x, core.size.width), end(core.y, core.size.height));
         let expected = format!("the tile is {}", core.size);
         check(found.disparity.size() == core.size, "the map of a tile", found.disparity.size(), expected)?;
         let expected = format!("the picture is {size}");
-        check(right <= size.width && below <= size.height, "a tile's end", format!("({right}, {below})"), expected)?;
+        let is_inside = right <= size.width.into() && below <= size.height.into();
+        check(is_inside, "a tile's end", format!("({right}, {below})"), expected)?;
         copy(&found.disparity, tile, &mut self.dense.disparity);
         copy(&found.confidence, tile, &mut self.dense.confidence);
         Ok(())

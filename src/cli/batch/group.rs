@@ -42,23 +42,34 @@ impl Grouping {
     }
 
     /// The groups of the shard in which there is something to do, without reading further than a group. `finished` looks for what an earlier
-    /// run has recorded.
+    /// run has recorded. An error comes after the pairs that were read before it.
     pub fn of(
         self,
         mut pairs: impl Iterator<Item = Result<(Pair, Option<Frame>)>>,
         mut finished: impl FnMut(&Pair) -> Result<Option<Record>>,
     ) -> impl Iterator<Item = Result<Group>> {
-        let mut groups = 0..;
+        let (mut groups, mut ended) = (0.., None);
         let mut group = move || -> Result<Option<Group>> {
+            if let Some(error) = ended.take() {
+                return Err(error);
+            }
             let is_here = self.has(groups.next().unwrap_or_default());
             let mut group = Vec::new();
-            for pair in pairs.by_ref().take(self.length) {
-                let (pair, frame) = pair?;
-                let finished = if is_here { finished(&pair)? } else { None };
-                group.push(Member { pair, frame: frame.filter(|_| is_here), finished });
+            for read in pairs.by_ref().take(self.length) {
+                let member = read.and_then(|(pair, frame)| {
+                    let finished = if is_here { finished(&pair)? } else { None };
+                    Ok(Member { pair, frame: frame.filter(|_| is_here), finished })
+                });
+                match member {
+                    Ok(member) => group.push(member),
+                    Err(error) => {
+                        ended = Some(error);
+                        break;
+                    }
+                }
             }
             if group.is_empty() {
-                return Ok(None);
+                return ended.take().map_or(Ok(None), Err);
             }
             let group = Group(if is_here { group } else { Vec::new() });
             Ok(Some(group))
@@ -87,5 +98,17 @@ mod tests {
         assert_eq!(names(3, Some("0/2")), ["012", "6"]);
         assert_eq!(names(3, Some("1/2")), ["345"]);
         assert_eq!(names(1, Some("1/3")), ["1", "4"]);
+    }
+
+    #[test]
+    fn what_was_read_before_an_error_is_worked_on() {
+        let pair = |number: i32| match number {
+            4 => Err(anyhow::anyhow!("cut off")),
+            _ => Ok((Pair { name: number.to_string(), left: "l".into(), right: None, calibration: None }, None)),
+        };
+        let grouping = Grouping { length: 3, shard: None };
+        let mut groups = grouping.of((0..5).map(pair), |_| Ok(None));
+        let lengths: Vec<_> = groups.by_ref().map(|group| group.ok().map(|Group(members)| members.len())).collect();
+        assert_eq!(lengths, [Some(3), Some(1), None]);
     }
 }

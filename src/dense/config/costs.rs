@@ -6,6 +6,9 @@ use crate::error::{Result, check, check_range};
 /// The largest side of a cost-averaging window, in pixels.
 const MAX_WINDOW: u32 = 31;
 
+/// Most levels of a search: of pictures of [`crate::luma::MAX_SIDE`] the coarsest has 16 pixels.
+const MAX_LEVELS: u32 = 16;
+
 /// Matching costs of pixels, averaged over a window and aggregated along paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CostAggregation {
@@ -73,6 +76,9 @@ impl CostAggregation {
             self.window,
             format!("it must be odd and 1 to {MAX_WINDOW}"),
         )?;
+        if let Search::Levels(count) = self.search {
+            check_range("the levels of the search", count, 1..=MAX_LEVELS)?;
+        }
         let Cost { census, difference, gradient, weak_spread } = self.cost;
         for (name, value) in [
             ("the weight of the census", census),

@@ -46,7 +46,7 @@ pub enum Search {
     ///
     /// Costs: see [`crate::dense::Pyramid`].
     CoarseToFine,
-    /// Costs only: as [`Self::CoarseToFine`], over so many levels of a pyramid, at least 1, whatever the size: a part of a large picture is
+    /// Costs only: as [`Self::CoarseToFine`], over so many levels of a pyramid, 1 to 16, whatever the size: a part of a large picture is
     /// searched as the picture is.
     Levels(u32),
 }
@@ -242,7 +242,9 @@ impl DenseParameters {
     /// See [`DenseConfig::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         match &self.aggregation {
-            Aggregation::Sad { side, .. } => {
+            Aggregation::Sad { side, search, .. } => {
+                let expected = "block matching searches the whole range, or coarse to fine";
+                check(!matches!(search, Search::Levels(_)), "the search", "over levels", expected)?;
                 check(side % 2 == 1 && (3..=31).contains(side), "window", side, "it must be odd and 3 to 31")?;
             }
             Aggregation::Costs(costs) => costs.validate()?,

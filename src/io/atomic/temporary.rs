@@ -17,7 +17,7 @@ const PREFIX: &str = ".hsad-";
 /// Number of letters and digits behind [`PREFIX`].
 const RANDOM: usize = 6;
 
-/// Paths of all temporary files ever made, including those that are removed or moved by now.
+/// Paths of the temporary files, and of some that are removed or moved by now.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Removes the temporary files that are not moved to their place yet, and keeps all threads from making another. For an
@@ -62,9 +62,12 @@ pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     loop {
         // Only the kind of the error is kept: its text names the temporary file, which means nothing to the user.
         let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
-        // Before it was locked, another process may have taken the file for one that was left.
-        if lock::take(file.as_file()) && is_gone(file.as_file()) {
+        if is_taken(file.as_file()) {
             continue;
+        }
+        if temporaries.len() == temporaries.capacity() {
+            // Before the list grows: most of the files are removed or moved by now.
+            temporaries.retain(|path| path.exists());
         }
         temporaries.push(file.path().into());
         return Ok(file);
@@ -107,14 +110,18 @@ fn is_temporary(name: &str) -> bool {
     random.is_some_and(|random| random.len() == RANDOM && random.chars().all(|letter| letter.is_ascii_alphanumeric()))
 }
 
+/// Locks a new file; whether another process was earlier, has taken the file for one that was left, and removes it.
 #[cfg(unix)]
-fn is_gone(file: &File) -> bool {
+fn is_taken(file: &File) -> bool {
     use std::os::unix::fs::MetadataExt;
-    file.metadata().is_ok_and(|metadata| metadata.nlink() == 0)
+    match lock::try_take(file) {
+        Ok(()) => file.metadata().is_ok_and(|metadata| metadata.nlink() == 0),
+        Err(error) => error.kind() == io::ErrorKind::WouldBlock,
+    }
 }
 
 #[cfg(not(unix))]
-fn is_gone(_: &File) -> bool {
+fn is_taken(_: &File) -> bool {
     false
 }
 
