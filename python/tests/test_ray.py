@@ -14,7 +14,7 @@ from conftest import DATA
 
 import hsad
 import hsad.ray
-from hsad.ray import _gpus
+from hsad.ray import _files, _gpus
 from hsad.ray._disparity import is_none
 
 
@@ -114,6 +114,11 @@ def test_mistakes_are_told_before_a_pair_is_read(tmp_path):
         match({"left": ["a.png"], "right": ["b.png"], "trust": [1.0]})
 
 
+def test_a_relative_folder_is_the_same_one_to_workers_elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert _files.absolute("out") == str(tmp_path / "out") and _files.absolute("s3://bucket/out") == "s3://bucket/out"
+
+
 SMI = "0, GPU-5a, 00000000:3B:00.0\n1, GPU-77, 00000000:AF:00.0"
 
 
@@ -206,8 +211,8 @@ def test_a_cluster_loses_nothing_and_doubles_nothing_when_a_worker_is_killed(tmp
     # Again: only the pair that has failed is matched, now that its file is there.
     parts = {path.name: path.stat().st_mtime_ns for path in out.iterdir()}
     shutil.copy(there["right"], rows[-1]["right"])
-    command = [sys.executable, "-m", "hsad.ray", str(listed), "-o", str(out), "--address", cluster.address]
-    ran = subprocess.run(command, capture_output=True, text=True)
+    command = [sys.executable, "-m", "hsad.ray", listed.name, "-o", out.name, "--address", cluster.address]
+    ran = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.splitlines()[-1].startswith("16 pairs: 1 done"), ran.stdout
     names = parquet.read_table(out)["name"].to_pylist()
@@ -215,7 +220,7 @@ def test_a_cluster_loses_nothing_and_doubles_nothing_when_a_worker_is_killed(tmp
     untouched = sum(path.name in parts and path.stat().st_mtime_ns == parts[path.name] for path in out.iterdir())
     # But for the part without the failed pair.
     assert untouched == len(parts) - 1
-    ran = subprocess.run([*command, "--preset", "fast"], capture_output=True, text=True)
+    ran = subprocess.run([*command, "--preset", "fast"], capture_output=True, text=True, cwd=tmp_path)
     assert ran.returncode == 1 and "other options" in ran.stderr
 
 

@@ -1,5 +1,6 @@
 """Bytes of files by path or URI."""
 
+import os
 from typing import Any
 
 LOCAL = "file://"
@@ -16,13 +17,16 @@ def read(place: str) -> bytes:
     return data
 
 
+def absolute(place: str) -> str:
+    """A path from the root on, which means the same to processes in other folders; URIs as they are."""
+    return place if "://" in place else os.path.abspath(place)
+
+
 def file_system(place: str) -> tuple[Any, str]:
     """The file system of a path or URI, and the path there."""
-    from os.path import abspath
-
     from pyarrow import fs
 
     if "://" not in place:
-        return fs.LocalFileSystem(), abspath(place)
+        return fs.LocalFileSystem(), absolute(place)
     system, path = fs.FileSystem.from_uri(place)
     return system, path

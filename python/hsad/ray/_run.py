@@ -86,6 +86,8 @@ def run(
 
     # Options are checked here, and not by a worker that starts again and again.
     Disparity("cpu", **options)
+    # Workers have working folders of their own.
+    folder = _files.absolute(folder)
     summary, parts = Summary(), Parts(folder)
     table = named(_table(pairs))
     parts.begin(options)
