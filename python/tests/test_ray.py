@@ -14,7 +14,7 @@ from conftest import DATA
 
 import hsad
 import hsad.ray
-from hsad.ray import _files, _gpus
+from hsad.ray import _files, _gpus, _run
 from hsad.ray._disparity import is_none
 
 
@@ -117,6 +117,14 @@ def test_mistakes_are_told_before_a_pair_is_read(tmp_path):
 def test_a_relative_folder_is_the_same_one_to_workers_elsewhere(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert _files.absolute("out") == str(tmp_path / "out") and _files.absolute("s3://bucket/out") == "s3://bucket/out"
+
+
+def test_a_list_with_columns_of_the_answer_is_refused():
+    pyarrow = pytest.importorskip("pyarrow", reason="NOT RUN: pyarrow is not installed")
+    listed = {"left": ["a.png"], "right": ["b.png"], "note": ["c"]}
+    assert _run.named(pyarrow.table(listed)).column_names == ["left", "right", "note", "name"]
+    with pytest.raises(hsad.ParameterError, match=r"columns of the answer \(width, error\): rename them"):
+        _run.named(pyarrow.table(listed | {"width": [0], "error": ["lost"]}))
 
 
 SMI = "0, GPU-5a, 00000000:3B:00.0\n1, GPU-77, 00000000:AF:00.0"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import hsad
 
 from . import _files
-from ._disparity import Disparity
+from ._disparity import COLUMNS, Disparity
 from ._parts import Parts
 
 if TYPE_CHECKING:
@@ -153,12 +153,15 @@ def named(table: Any) -> Any:
     Raises
     ------
     ParameterError
-        A list without views, with views in bytes, or with pairs of one name.
+        A list without views, with views in bytes, with columns of the answer, or with pairs of one name.
     """
     import pyarrow
 
     if "left" not in table.column_names:
         raise hsad.ParameterError(f"the list has no column left (only {', '.join(table.column_names) or 'none'}), and maybe right")
+    taken = [column for column in table.column_names if column in COLUMNS]
+    if taken:
+        raise hsad.ParameterError(f"the list has columns of the answer ({', '.join(taken)}): rename them or leave them out")
     for view in ("left", "right"):
         if view in table.column_names and pyarrow.types.is_binary(table.schema.field(view).type):
             raise hsad.ParameterError(
