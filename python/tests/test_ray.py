@@ -127,6 +127,24 @@ def test_a_list_with_columns_of_the_answer_is_refused():
         _run.named(pyarrow.table(listed | {"width": [0], "error": ["lost"]}))
 
 
+def test_mistakes_are_told_before_the_folder_is_made(tmp_path):
+    pytest.importorskip("pyarrow", reason="NOT RUN: pyarrow is not installed")
+    pytest.importorskip("ray.data", exc_type=ImportError, reason="NOT RUN: Ray Data is not installed (ray[data])")
+    listed, out = tmp_path / "pairs.csv", tmp_path / "out"
+    listed.write_text("left,right\na.png,b.png\n")
+    numbers = [("jobs", 0), ("rows", 0), ("workers", 0), ("cpus", 0), ("cpus", np.nan), ("gpus", -1), ("gpus", 1.5), ("gpus", np.nan)]
+    for name, number in numbers:
+        with pytest.raises(hsad.ParameterError, match=f"{name} is {number}, but it must be"):
+            hsad.ray.run(str(listed), str(out), **{name: number})
+    with pytest.raises(hsad.FormatError, match=r"pairs\.csv: the list is a Parquet file"):
+        hsad.ray.run(str(listed), str(out), gpus=0)
+    with pytest.raises(hsad.ParameterError, match="ftp://host/pairs is not the URI"):
+        hsad.ray.run("ftp://host/pairs", str(out), gpus=2)
+    with pytest.raises(FileNotFoundError):
+        hsad.ray.run(str(tmp_path / "none"), str(out), gpus=0.5)
+    assert not out.exists()
+
+
 SMI = "0, GPU-5a, 00000000:3B:00.0\n1, GPU-77, 00000000:AF:00.0"
 
 

@@ -3,6 +3,8 @@
 import os
 from typing import Any
 
+import hsad
+
 LOCAL = "file://"
 
 
@@ -24,9 +26,12 @@ def absolute(place: str) -> str:
 
 def file_system(place: str) -> tuple[Any, str]:
     """The file system of a path or URI, and the path there."""
-    from pyarrow import fs
+    from pyarrow import ArrowInvalid, fs
 
     if "://" not in place:
         return fs.LocalFileSystem(), absolute(place)
-    system, path = fs.FileSystem.from_uri(place)
+    try:
+        system, path = fs.FileSystem.from_uri(place)
+    except ArrowInvalid as error:
+        raise hsad.ParameterError(f"{place} is not the URI of a file system that pyarrow knows: {error}") from error
     return system, path

@@ -77,7 +77,9 @@ def run(
     Raises
     ------
     ParameterError
-        A list without ``left``, pairs of one name, a folder of other options, and what :class:`Disparity` raises.
+        A list without ``left``, pairs of one name, a folder of other options, numbers that do not fit, and what :class:`Disparity` raises.
+    FormatError
+        A list that is not Parquet.
     OSError
         Files that cannot be read or written.
     """
@@ -85,7 +87,8 @@ def run(
     from ray import data
 
     # Options are checked here, and not by a worker that starts again and again.
-    Disparity("cpu", **options)
+    _check(workers, cpus, gpus, rows)
+    Disparity("cpu", jobs=jobs, **options)
     # Workers have working folders of their own.
     folder = _files.absolute(folder)
     summary, parts = Summary(), Parts(folder)
@@ -147,6 +150,23 @@ class Worker:
         return {"done": [len(rows) - failed], "not_trusted": [doubtful], "failed": [failed]}
 
 
+def _check(workers: int | None, cpus: float, gpus: float | None, rows: int) -> None:
+    """Numbers that Ray would refuse late, or never.
+
+    Raises
+    ------
+    ParameterError
+        One does not fit.
+    """
+    for name, number in (("workers", workers), ("rows", rows)):
+        if number is not None and not number >= 1:
+            raise hsad.ParameterError(f"{name} is {number}, but it must be at least 1")
+    if not cpus > 0:
+        raise hsad.ParameterError(f"cpus is {cpus}, but it must be above 0")
+    if gpus is not None and not (0 <= gpus <= 1 or (gpus > 1 and gpus % 1 == 0)):
+        raise hsad.ParameterError(f"gpus is {gpus}, but it must be 0, a part of one, or a whole number")
+
+
 def named(table: Any) -> Any:
     """The table of pairs with a name for each.
 
@@ -180,11 +200,21 @@ def named(table: Any) -> Any:
 
 
 def _table(pairs: str) -> Any:
-    """The rows of a list."""
+    """The rows of a list.
+
+    Raises
+    ------
+    FormatError
+        It is not Parquet, or its files have columns of other kinds.
+    """
+    import pyarrow
     from pyarrow import dataset
 
     system, path = _files.file_system(pairs)
-    return dataset.dataset(path, format="parquet", filesystem=system).to_table()
+    try:
+        return dataset.dataset(path, format="parquet", filesystem=system).to_table()
+    except (pyarrow.ArrowInvalid, pyarrow.ArrowTypeError) as error:
+        raise hsad.FormatError(f"{pairs}: the list is a Parquet file, or a folder of them alike, but: {error}") from error
 
 
 def _left(table: Any, parts: Parts) -> Any:
