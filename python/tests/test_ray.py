@@ -14,7 +14,7 @@ from conftest import DATA
 
 import hsad
 import hsad.ray
-from hsad.ray import _files, _gpus, _run
+from hsad.ray import _disparity, _files, _gpus, _parts, _run
 from hsad.ray._disparity import is_none
 
 
@@ -143,6 +143,24 @@ def test_mistakes_are_told_before_the_folder_is_made(tmp_path):
     with pytest.raises(FileNotFoundError):
         hsad.ray.run(str(tmp_path / "none"), str(out), gpus=0.5)
     assert not out.exists()
+
+
+def test_maps_of_an_earlier_run_are_of_the_same_files_and_geometry(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow", reason="NOT RUN: pyarrow is not installed")
+    parts = _parts.Parts(str(tmp_path / "out"))
+    parts.begin({})
+    row = {"name": "a", "left": "l.png", "right": None, "calib": "c.txt", "focal": 388.0, "baseline": 0.1}
+    parts.write("part-0.parquet", pyarrow.Table.from_pylist([row]), {name: [value] for name, value in _disparity.nothing().items()})
+
+    def left(*rows):
+        return _run._left(pyarrow.Table.from_pylist(list(rows)), parts)["name"].to_pylist()
+
+    assert left(row | {"doffs": np.nan}, row | {"name": "b", "calib": "d.txt"}) == ["b"]
+    for changed in ({"left": "m.png"}, {"right": "r.png"}, {"calib": None}, {"focal": 400.0}, {"baseline": 1.0}, {"doffs": 2.0}):
+        with pytest.raises(hsad.ParameterError, match=f"the maps of a in .*out are of another {min(changed)}: name another folder"):
+            left(row | changed)
+    with pytest.raises(hsad.ParameterError, match="another calib and focal"):
+        left({name: row[name] for name in ("name", "left", "baseline")})
 
 
 SMI = "0, GPU-5a, 00000000:3B:00.0\n1, GPU-77, 00000000:AF:00.0"

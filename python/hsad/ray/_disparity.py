@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 _CALIBRATION: Final = "calib"
 _GEOMETRY: Final = ("focal", "baseline", "doffs")
 
+# All of a row that its map depends on.
+INPUT: Final = ("left", "right", _CALIBRATION, *_GEOMETRY)
+
 # The columns that are added, and their types in Arrow.
 COLUMNS: Final = {
     "disparity": "binary",

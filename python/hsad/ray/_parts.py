@@ -9,11 +9,16 @@ from uuid import uuid4
 import hsad
 
 from . import _files
-from ._disparity import COLUMNS
+from ._disparity import COLUMNS, INPUT, is_none
 
 # Readers of data sets pass over names that begin so.
 _RECIPE: Final = "_hsad.json"
 _TEMPORARY: Final = "_new-"
+
+
+def input_of(row: Mapping[str, Any]) -> dict[str, Any]:
+    """What the map of a row depends on; None for what it lacks."""
+    return {column: None if is_none(row.get(column)) else row[column] for column in INPUT}
 
 
 class Parts:
@@ -50,16 +55,16 @@ class Parts:
                 f"{self.folder}: its pairs are matched with other options or by another version ({json.dumps(earlier)}): name another folder"
             )
 
-    def written(self) -> dict[str, tuple[str, str]]:
-        """Names of pairs whose maps are there, with the files of their views; pairs that failed are taken out, and are tried again."""
-        found: dict[str, tuple[str, str]] = {}
+    def written(self) -> dict[str, dict[str, Any]]:
+        """Names of pairs whose maps are there, with what these depend on; pairs that failed are taken out, and are tried again."""
+        found: dict[str, dict[str, Any]] = {}
         for path, table in self._tables():
             rows = table.to_pylist()
             failed = [row["error"] is not None for row in rows]
             if any(failed):
                 self._without(path, failed)
             kept = (row for row, is_failed in zip(rows, failed) if not is_failed)
-            found |= {row["name"]: (row["left"], row.get("right")) for row in kept}
+            found |= {row["name"]: input_of(row) for row in kept}
         return found
 
     def _tables(self) -> Iterable[tuple[str, Any]]:
@@ -71,7 +76,7 @@ class Parts:
                 system.delete_file(info.path)
             elif info.base_name.startswith("part-"):
                 there = set(parquet.read_schema(info.path, filesystem=system).names)
-                columns = [name for name in ("name", "left", "right", "error") if name in there]
+                columns = [name for name in ("name", *INPUT, "error") if name in there]
                 yield info.path, parquet.read_table(info.path, columns=columns, filesystem=system)
 
     def _without(self, path: str, rows: list[bool]) -> None:

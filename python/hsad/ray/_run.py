@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import hsad
 
 from . import _files
-from ._disparity import COLUMNS, Disparity
-from ._parts import Parts
+from ._disparity import COLUMNS, INPUT, Disparity
+from ._parts import Parts, input_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -223,15 +223,16 @@ def _left(table: Any, parts: Parts) -> Any:
     Raises
     ------
     ParameterError
-        A name that stands for other files than in an earlier run.
+        A name that stands for other files, or for another geometry, than in an earlier run.
     """
     import pyarrow
 
     written = parts.written()
-    rights = table["right"].to_pylist() if "right" in table.column_names else [None] * table.num_rows
     keep = []
-    for name, left, right in zip(table["name"].to_pylist(), table["left"].to_pylist(), rights):
-        if name in written and written[name] != (left, right):
-            raise hsad.ParameterError(f"the maps of {name} in {parts.folder} are of other files than {left}: name another folder")
+    for row in table.select([column for column in table.column_names if column in ("name", *INPUT)]).to_pylist():
+        name, now = row["name"], input_of(row)
+        differ = [column for column in INPUT if now[column] != written.get(name, now)[column]]
+        if differ:
+            raise hsad.ParameterError(f"the maps of {name} in {parts.folder} are of another {' and '.join(differ)}: name another folder")
         keep.append(name not in written)
     return table.filter(pyarrow.array(keep, pyarrow.bool_()))
