@@ -19,7 +19,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = {name: value for name, value in options.items() if value is not None}
     try:
         import ray
-        import ray.data  # noqa: F401
+        import ray.data
+        import ray.exceptions
     except ImportError as error:
         print(f"hsad.ray: {error}: pip install 'hsad[ray]'", file=sys.stderr)
         return 1
@@ -27,7 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
         ray.init(address=address, log_to_driver=True)
         start = time.monotonic()
         summary = run(**given, told=lambda _: None, **options)
-    except (hsad.Error, OSError) as error:
+    except (hsad.Error, OSError, ray.exceptions.RayError) as error:
         print(f"hsad.ray: {error}", file=sys.stderr)
         return 1
     print(_told(summary, time.monotonic() - start))

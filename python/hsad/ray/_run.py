@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from ..types import MatchOptions
 
 
+# How often a worker starts again, and how often it is given the same pairs: a pair that always loses the device would go round for ever.
+_RESTARTS: Final = 8
+
+
 @dataclass
 class Summary:
     """What became of the pairs of a run."""
@@ -51,7 +55,8 @@ def run(
     A pair is a row with ``left`` and ``right``, as :class:`Disparity` reads them, in paths or URIs, and perhaps a ``name`` of its own;
     without one it gets a name from its files. Each file of the answer has a few pairs, appears whole or not at all, and is named by them:
     a worker that ends before or after it has written one leaves nothing lost or doubled. A run into the same folder goes on: it matches
-    the pairs that are missing or have failed. One run at a time writes into a folder.
+    the pairs that are missing or have failed. One run at a time writes into a folder. A worker that ends, since its device is lost or its
+    machine is, starts again up to 8 times, and so often it is given the same pairs; then the run ends.
 
     Parameters
     ----------
@@ -82,6 +87,8 @@ def run(
         A list that is not Parquet.
     OSError
         Files that cannot be read or written.
+    ray.exceptions.RayError
+        A worker has ended too often, or cannot start.
     """
     import ray
     from ray import data
@@ -115,6 +122,8 @@ def run(
         compute=data.ActorPoolStrategy(size=max(1, min(workers or int(room), len(blocks)))),
         num_cpus=cpus,
         num_gpus=gpus,
+        max_restarts=_RESTARTS,
+        max_task_retries=_RESTARTS,
     )
     for row in found.iter_rows():
         summary.done += row["done"]
