@@ -163,6 +163,41 @@ def test_maps_of_an_earlier_run_are_of_the_same_files_and_geometry(tmp_path):
         left({name: row[name] for name in ("name", "left", "baseline")})
 
 
+class Store:
+    """A file system of another kind in a local folder, whose moves go onto no file."""
+
+    def __init__(self, kind, fs):
+        self.type_name, self.written, self._local = kind, [], fs.LocalFileSystem()
+        self.get_file_info, self.delete_file = self._local.get_file_info, self._local.delete_file
+
+    def open_output_stream(self, path):
+        self.written.append(Path(path).name)
+        return self._local.open_output_stream(path)
+
+    def move(self, old, new):
+        if Path(new).exists():
+            raise OSError(f"{new} exists")
+        self._local.move(old, new)
+
+
+@pytest.mark.parametrize("kind", ["hdfs", "s3"])
+def test_parts_appear_whole_on_file_systems_of_all_kinds(tmp_path, monkeypatch, kind):
+    fs = pytest.importorskip("pyarrow.fs", reason="NOT RUN: pyarrow is not installed")
+    store, parts = Store(kind, fs), _parts.Parts("there")
+    monkeypatch.setattr(_files, "file_system", lambda _: (store, str(tmp_path)))
+    for data in (b"first", b"second"):
+        parts._write("part-0.parquet", data)
+        assert (tmp_path / "part-0.parquet").read_bytes() == data
+    assert [path.name for path in tmp_path.iterdir()] == ["part-0.parquet"]
+    in_place = [name == "part-0.parquet" for name in store.written]
+    assert in_place == [kind == "s3"] * 2
+    if kind == "hdfs":
+        # An error on the way leaves no part behind.
+        with pytest.raises(TypeError):
+            parts._write("part-1.parquet", None)
+        assert not (tmp_path / "part-1.parquet").exists()
+
+
 SMI = "0, GPU-5a, 00000000:3B:00.0\n1, GPU-77, 00000000:AF:00.0"
 
 

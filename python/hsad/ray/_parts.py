@@ -15,6 +15,9 @@ from ._disparity import COLUMNS, INPUT, is_none
 _RECIPE: Final = "_hsad.json"
 _TEMPORARY: Final = "_new-"
 
+# Kinds of file systems, as pyarrow names them, whose files appear when they are closed.
+_WHOLE: Final = ("s3", "gcs", "abfs")
+
 
 def input_of(row: Mapping[str, Any]) -> dict[str, Any]:
     """What the map of a row depends on; None for what it lacks."""
@@ -123,14 +126,19 @@ class Parts:
 
     def _write(self, name: str, data: Any) -> None:
         """Writes a file that appears whole or not at all: object stores do so by themselves."""
-        from pyarrow import fs
-
         system, path = self.path(name)
-        if not isinstance(system, fs.LocalFileSystem):
+        if system.type_name in _WHOLE:
             with system.open_output_stream(path) as stream:
                 stream.write(data)
             return
         _, temporary = self.path(f"{_TEMPORARY}{uuid4().hex}")
         with system.open_output_stream(temporary) as stream:
             stream.write(data)
-        system.move(temporary, path)
+        try:
+            system.move(temporary, path)
+        except OSError:
+            # HDFS moves onto no file. Without the old one, its pairs are matched again.
+            if not self.has(name):
+                raise
+            system.delete_file(path)
+            system.move(temporary, path)
