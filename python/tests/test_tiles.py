@@ -64,3 +64,25 @@ def test_the_classes_for_clusters_do_the_same():
     assert whole["error"][0] is None and whole["left"][0] == str(LEFT) and "tile" not in whole
     bounds = {"min_disparity": int(maps["min_disparity"][0]), "disparities": int(maps["disparities"][0])}
     assert whole["disparity"][0] == hsad.match_encoded(*views(), tiles=256, preset="fast", **bounds).disparity_png
+
+
+def test_columns_of_tiles_are_refused_and_groups_are_of_one_pair():
+    pair = {"name": "one", "left": str(LEFT), "right": str(RIGHT)}
+    cut, match, merge = hsad.ray.CutTiles(tiles=256, preset="fast"), hsad.ray.TileDisparity(), hsad.ray.MergeTiles()
+    with pytest.raises(hsad.ParameterError, match=r"columns of tiles or of the answer \(options, x, report\): rename them"):
+        cut(pair | {"options": "", "x": 1, "note": 2, "report": None})
+    tiles = cut(pair)
+    maps = match({name: np.array([tile[name] for tile in tiles], object) for name in tiles[0]})
+
+    def error(rows, **changed):
+        columns = {name: column[rows] for name, column in maps.items()}
+        columns |= {name: np.array(values, object) for name, values in changed.items()}
+        (told,) = merge(columns)["error"]
+        return told
+
+    assert error([1, 0]) is None
+    assert error([0, 1, 0]).startswith("two tiles of the pair are at (0, 0): group")
+    levels = int(maps["levels"][0])
+    for name, values in (("min_disparity", [0, 1]), ("disparities", [8, 9]), ("options", ["{}", ""]), ("levels", [levels, levels + 1])):
+        assert error([0, 1], **{name: values}).startswith(f"tiles of one pair differ in {name}: group")
+    assert "differ in right_file:" in error([0, 1], right_file=[str(RIGHT), "other.png"])

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 _PLACE: Final = ("tile", "x", "y", "width", "height", "view_x", "view_y", "view_width", "view_height")
 _FOUND: Final = ("min_disparity", "disparities", "gain", "offset", "levels", "options")
 _VIEWS: Final = ("left", "right", "colors", "own_mask", "other_mask", "keeps_hidden")
+_FILES: Final = ("left_file", "right_file")
+
+# Columns that tiles or the answer have, and a pair thus has not.
+_TAKEN: Final = {*_PLACE, *_FOUND, *_VIEWS, *_FILES, *COLUMNS} - {"left", "right"}
 
 
 class CutTiles:
@@ -34,6 +38,13 @@ class CutTiles:
     ----------
     device, **options
         As for :class:`Disparity`; ``tiles``, the side of a tile in pixels, is 2048 by default.
+
+    Raises
+    ------
+    ParameterError
+        An option that does not exist or does not fit, or a column that tiles or the answer have, too.
+    DeviceError
+        The device cannot be opened or is lost.
     """
 
     def __init__(self, device: str | None = None, **options: "Unpack[MatchOptions]") -> None:
@@ -43,6 +54,9 @@ class CutTiles:
 
     def __call__(self, row: Mapping[str, Any]) -> list[dict[str, Any]]:
         """The tiles of a pair."""
+        taken = [name for name in row if name in _TAKEN]
+        if taken:
+            raise hsad.ParameterError(f"the pairs have columns of tiles or of the answer ({', '.join(taken)}): rename them")
         kept = {name: value for name, value in row.items() if name not in ("left", "right")}
         kept |= {"left_file": row["left"], "right_file": row["right"], "error": None}
         try:
@@ -99,7 +113,7 @@ class MergeTiles:
     """Puts the tiles of a pair together, for ``ds.groupby("name").map_groups``: rows of :class:`TileDisparity` become a row of
     :class:`Disparity`.
 
-    The files of the pair are read again. An error of a tile is that of the pair.
+    The files of the pair are read again. An error of a tile is that of the pair, and so is a group of tiles that are not of one pair.
 
     Parameters
     ----------
@@ -117,7 +131,7 @@ class MergeTiles:
         found = nothing() | self._merged(rows)
         tile = {*_PLACE, *_FOUND, "disparity", "confidence", "error"}
         kept = {name: value for name, value in rows[0].items() if name not in tile}
-        kept = {name.removesuffix("_file") if name in ("left_file", "right_file") else name: value for name, value in kept.items()}
+        kept = {name.removesuffix("_file") if name in _FILES else name: value for name, value in kept.items()}
         return {name: as_array([value]) for name, value in kept.items()} | {name: as_array([found[name]], name) for name in COLUMNS}
 
     def _merged(self, rows: list[dict[str, Any]]) -> dict[str, Any]:
@@ -125,6 +139,7 @@ class MergeTiles:
         if errors:
             return {"error": errors[0]}
         try:
+            _check(rows)
             names = [file if isinstance(file, str) else side for side in ("left", "right") for file in [rows[0][f"{side}_file"]]]
             left, right = (read(rows[0][f"{side}_file"]) for side in ("left", "right"))
             if left is None or right is None:
@@ -134,6 +149,23 @@ class MergeTiles:
             raise
         except Exception as error:
             return {"error": str(error) or type(error).__name__}
+
+
+def _check(rows: list[dict[str, Any]]) -> None:
+    """Tiles of one pair are cut by one call: of the same files and options, each place once.
+
+    Raises
+    ------
+    ParameterError
+        They are not.
+    """
+    differ = [name for name in (*_FILES, *_FOUND) if any(row.get(name) != rows[0].get(name) for row in rows)]
+    if differ:
+        raise hsad.ParameterError(f"tiles of one pair differ in {', '.join(differ)}: group them by a name that each pair has alone")
+    places = [(row.get("x"), row.get("y")) for row in rows]
+    if len(set(places)) < len(places):
+        x, y = next(place for place in places if places.count(place) > 1)
+        raise hsad.ParameterError(f"two tiles of the pair are at ({x}, {y}): group them by a name that each pair has alone")
 
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
