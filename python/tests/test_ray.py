@@ -226,6 +226,13 @@ def test_the_gpu_that_ray_assigns_is_found_by_its_place(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     shown.insert(0, "NVIDIA H100 (vulkan, pci:0000:af:00.0)")
     assert device("1") == "pci:0000:af:00.0"
+    # Ray may count integrated adapters or not, and only one of one kind is certain.
+    shown.append("Intel(R) UHD Graphics 770 (vulkan, pci:0000:00:02.0)")
+    with pytest.raises(hsad.DeviceError, match=r"GPU 0, and nothing tells where it is \(known: none; shown: NVIDIA.*\): name a device"):
+        device("0")
+    del shown[:2]
+    assert device("0") == "pci:0000:00:02.0"
+    shown[:] = ["NVIDIA H100 (vulkan, pci:0000:af:00.0)", "Tesla T4 (vulkan, pci:0000:3b:00.0)", shown[-1]]
     for place, uuid in (("0000:af:00.0", "GPU-77"), ("0000:3b:00.0", "GPU-5a")):
         (tmp_path / "gpus" / place).mkdir(parents=True)
         information = f"Model: \t\t NVIDIA H100\nGPU UUID: \t {uuid}\nBus Location: \t {place}\n"

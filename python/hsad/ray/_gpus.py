@@ -13,6 +13,7 @@ from pathlib import Path
 import hsad
 
 _PROC = Path("/proc/driver/nvidia/gpus")
+_NVIDIA = re.compile(r"(nvidia|geforce|quadro|tesla|titan|grid)\b", re.IGNORECASE)
 
 
 def device_of_worker() -> str:
@@ -21,22 +22,24 @@ def device_of_worker() -> str:
     Raises
     ------
     DeviceError
-        The GPU has no adapter: its driver has no Vulkan, or the container does not show it.
+        The GPU has no adapter: its driver has no Vulkan, or the container does not show it. Or nothing tells which adapter it is.
     """
     assigned = _assigned()
     if not assigned:
         return "best"
     gpu = assigned[0]
-    adapters = _places(hsad.devices())
-    places = _by_nvidia_smi() or _by_proc() or {str(index): place for index, place in enumerate(sorted(adapters))}
+    devices = hsad.devices()
+    adapters = _places(devices)
+    places = _by_nvidia_smi() or _by_proc() or _by_order(devices)
     place = places.get(gpu)
     if place is None:
         raise hsad.DeviceError(
-            f"Ray has assigned GPU {gpu}, and nothing tells where it is (known: {', '.join(places) or 'none'}): name a device (device=...)"
+            f"Ray has assigned GPU {gpu}, and nothing tells where it is (known: {', '.join(places) or 'none'}; shown: {', '.join(devices)}): "
+            "name a device (device=...)"
         )
     if place not in adapters:
         raise hsad.DeviceError(
-            f"Ray has assigned GPU {gpu} at {place}, and Vulkan shows no adapter there (shown: {', '.join(hsad.devices())}): install the "
+            f"Ray has assigned GPU {gpu} at {place}, and Vulkan shows no adapter there (shown: {', '.join(devices)}): install the "
             "driver's Vulkan part, in containers with NVIDIA_DRIVER_CAPABILITIES=all"
         )
     return f"pci:{place}"
@@ -95,6 +98,13 @@ def _by_proc() -> dict[str, str]:
         if uuid:
             places[uuid[1]] = places[str(index)]
     return places
+
+
+def _by_order(devices: list[str]) -> dict[str, str]:
+    """Places of adapters by index, in the order of the bus; nothing where others than NVIDIA's, which Ray may not count, are among them."""
+    places = sorted(_places(devices))
+    others = [device for device in devices if _places([device]) and not _NVIDIA.match(device)]
+    return {} if others and len(places) > 1 else {str(index): place for index, place in enumerate(places)}
 
 
 def _normal(place: str) -> str:
