@@ -1,5 +1,6 @@
 //! Kernels, twins and stages, for the regression suite and the tests of this crate. Nothing here is stable.
 
+pub use crate::fnv::fnv1a;
 pub use crate::gpu::{
     kernel::Dispatch,
     shader_struct::{Member, ShaderType, Shape},

@@ -85,9 +85,15 @@ impl WrittenCloud {
         text
     }
 
-    /// A warning if the largest depth takes away most of the points.
+    /// A warning if the largest depth takes away most of the points, or the least confidence all of them.
     pub fn warning(&self) -> Option<String> {
-        let beyond = self.0.left_out.beyond;
+        let LeftOut { unsure, beyond } = self.0.left_out;
+        if self.0.points == 0 && unsure > beyond {
+            let least = self.0.filter.min_confidence;
+            return Some(format!(
+                "no point has a confidence of {least} or more, so that cloud.ply is empty: --min-confidence"
+            ));
+        }
         (beyond > self.0.points).then(|| {
             format!(
                 "{beyond} of {} points lie beyond {} and are not in cloud.ply: --max-depth keeps them",

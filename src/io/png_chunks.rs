@@ -57,6 +57,7 @@ pub(super) fn essential(png: &[u8]) -> (Cow<'_, [u8]>, Option<String>) {
     let whole: usize = SIGNATURE.len() + chunks(png).map(|chunk| chunk.all.len()).sum::<usize>();
     // A chunk that is cut off, which may be of pixels, is left for the decoder to judge.
     let cut_off = if end.is_none() { png.get(whole..).unwrap_or_default() } else { &[] };
+    let cut_off = if END.starts_with(cut_off) { &[] } else { cut_off };
     if ends_well && SIGNATURE.len() + needed == png.len() {
         return (png.into(), None);
     }
@@ -103,7 +104,10 @@ mod tests {
         let (mended, doubt) = essential(without);
         assert_eq!((&*mended, doubt.is_some()), (&bytes[..], true));
         let damaged = [without, b"\0\0\0\0IEND1234"].concat();
-        assert_eq!(essential(&damaged), (mended, doubt));
+        assert_eq!(essential(&damaged), (mended.clone(), doubt.clone()));
+        for missing in 1..END.len() {
+            assert_eq!(essential(&bytes[..bytes.len() - missing]), (mended.clone(), doubt.clone()), "{missing}");
+        }
         // A chunk of pixels that is cut off stays so.
         let cut_off = &bytes[..bytes.len() - END.len() - 1];
         assert_eq!(&*essential(cut_off).0, cut_off);

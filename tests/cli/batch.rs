@@ -293,6 +293,9 @@ fn frames_of_a_video_are_pairs() {
     hsad().args(options).arg(&piped).arg("-").write_stdin(bytes.clone()).assert().success();
     assert_eq!(statuses(&piped.join("report.jsonl")), of(&[("000001", "done"), ("000002", "done")]));
     assert!(is_second(&piped));
+    let other = video(&[frames[1].clone(), frames[0].clone()]);
+    let resumed = hsad().args(options).arg(&piped).args(["-", "--resume"]).write_stdin(other).assert();
+    resumed.failure().stderr(contains("other pictures"));
 
     // What was there of a video that is cut off is matched, and goes on when the rest is there.
     let (file, out) = (root.join("video.y4m"), root.join("out"));

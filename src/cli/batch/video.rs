@@ -7,7 +7,7 @@ use std::{
 };
 
 use anyhow::{Result, anyhow, bail};
-use hsad::io::MAX_PIXELS;
+use hsad::{internals::fnv1a, io::MAX_PIXELS};
 
 use super::{super::output::is_stdout, pair::Pair};
 
@@ -83,7 +83,8 @@ impl Video {
         })?;
         self.number += 1;
         let name = format!("{:06}", self.number);
-        let left = PathBuf::from(format!("{}#{name}", self.path.display()));
+        // A pipe has no name by which a frame of another video could be told.
+        let left = PathBuf::from(format!("{}#{name}-{:016x}", self.path.display(), fnv1a(planes.iter().copied())));
         let pair = Pair { name, left, right: None, calibration: None };
         Ok(Some((pair, Frame { head: self.head, planes })))
     }
