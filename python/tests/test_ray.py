@@ -311,30 +311,6 @@ def test_a_cluster_loses_nothing_and_doubles_nothing_when_a_worker_is_killed(tmp
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_pairs_that_always_end_their_worker_end_the_run(tmp_path, cluster, monkeypatch):
-    from ray.exceptions import RayError
-
-    parquet, pyarrow = pytest.importorskip("pyarrow.parquet"), pytest.importorskip("pyarrow")
-    tried = tmp_path / "tried"
-
-    class Lost:
-        def __init__(self, **_):
-            pass
-
-        def __call__(self, pairs):
-            with open(tried, "a") as file:
-                file.write("x")
-            os._exit(1)
-
-    monkeypatch.setattr(_run, "Worker", Lost)
-    monkeypatch.setattr(_run, "_RESTARTS", 2)
-    parquet.write_table(pyarrow.table({"left": ["a.png"], "right": ["b.png"]}), tmp_path / "pairs.parquet")
-    with pytest.raises(RayError):
-        hsad.ray.run(str(tmp_path / "pairs.parquet"), str(tmp_path / "out"))
-    assert len(tried.read_text()) == 3
-
-
-@pytest.mark.filterwarnings("ignore")
 def test_the_class_goes_into_a_data_set_of_ray(tmp_path, cluster):
     from ray import data
 
@@ -361,3 +337,28 @@ def test_tiles_are_cut_matched_and_put_together_by_a_cluster(tmp_path, cluster):
     assert is_none(found["error"])
     expected = by_the_command(rows[0], tmp_path / "out", "--preset", "fast", "--tiles", "256", *bounds)
     assert [found["disparity"], found["confidence"]] == expected
+
+
+# The last one, since the cluster is not used after its workers have ended so.
+@pytest.mark.filterwarnings("ignore")
+def test_pairs_that_always_end_their_worker_end_the_run(tmp_path, cluster, monkeypatch):
+    from ray.exceptions import RayError
+
+    parquet, pyarrow = pytest.importorskip("pyarrow.parquet"), pytest.importorskip("pyarrow")
+    tried = tmp_path / "tried"
+
+    class Lost:
+        def __init__(self, **_):
+            pass
+
+        def __call__(self, pairs):
+            with open(tried, "a") as file:
+                file.write("x")
+            os._exit(1)
+
+    monkeypatch.setattr(_run, "Worker", Lost)
+    monkeypatch.setattr(_run, "_RESTARTS", 2)
+    parquet.write_table(pyarrow.table({"left": ["a.png"], "right": ["b.png"]}), tmp_path / "pairs.parquet")
+    with pytest.raises(RayError):
+        hsad.ray.run(str(tmp_path / "pairs.parquet"), str(tmp_path / "out"))
+    assert len(tried.read_text()) == 3
