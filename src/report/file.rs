@@ -1,6 +1,6 @@
 //! The files of a matched pair.
 
-/// A file of a matched pair, as the command writes it and the page offers it.
+/// A file of a matched pair, as the command writes it and the page offers it. The command alone writes `mesh.ply`, where it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultFile {
     /// Disparities in pixels, floats.
