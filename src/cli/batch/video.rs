@@ -213,7 +213,8 @@ mod tests {
             .collect();
         let names: Vec<_> =
             frames.iter().map(|(pair, _)| (pair.name.as_str(), pair.left.display().to_string())).collect();
-        assert_eq!(names, [("000001", "v.y4m#000001".to_owned()), ("000002", "v.y4m#000002".to_owned())]);
+        let expected = ["v.y4m#000001-0869bd07b51b0c6c", "v.y4m#000002-08324a07b4eb0693"].map(str::to_owned);
+        assert_eq!(names, ["000001", "000002"].into_iter().zip(expected).collect::<Vec<_>>());
         assert_eq!(frames[0].1.to_pnm(), b"P5 2 1 255\n\x00\xff");
         assert_eq!(frames[1].1.to_pnm(), b"P5 2 1 255\n\x00\x80", "what is darker than black is black");
         let red = b"YUV4MPEG2 W3 H1 C420jpeg XCOLORRANGE=FULL\nFRAME\n\x4c\x4c\xff\x55\x80\xff\x80";
