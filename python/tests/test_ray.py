@@ -127,6 +127,23 @@ def test_a_list_with_columns_of_the_answer_is_refused():
         _run.named(pyarrow.table(listed | {"width": [0], "error": ["lost"]}))
 
 
+def test_files_of_a_list_lie_in_its_folder(tmp_path, monkeypatch):
+    pyarrow = pytest.importorskip("pyarrow", reason="NOT RUN: pyarrow is not installed")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lists").mkdir()
+    (tmp_path / "lists/pairs.parquet").touch()
+    folder = str(tmp_path / "lists")
+    assert [_files.folder_of(pairs) for pairs in ("lists/pairs.parquet", "lists", f"{folder}/", f"file://{folder}")] == [folder] * 3 + [
+        f"file://{folder}"
+    ]
+    views = {"left": ["a/l.png", "/b/l.png", "s3://c/l.png"], "right": ["a/r.png", None, None], "calib": [b"f B", b"", None], "focal": [1, 2, 3]}
+    placed = _run.in_folder(pyarrow.table(views), folder).to_pydict()
+    assert placed == views | {"left": [f"{folder}/a/l.png", *views["left"][1:]], "right": [f"{folder}/a/r.png", None, None]}
+    assert _files.in_folder("s3://bucket/lists", "l.png") == "s3://bucket/lists/l.png"
+    with pytest.raises(hsad.ParameterError, match="l.png is relative to s3://bucket/lists.region=x, which has parameters"):
+        _files.in_folder("s3://bucket/lists?region=x", "l.png")
+
+
 def test_mistakes_are_told_before_the_folder_is_made(tmp_path):
     pytest.importorskip("pyarrow", reason="NOT RUN: pyarrow is not installed")
     pytest.importorskip("ray.data", exc_type=ImportError, reason="NOT RUN: Ray Data is not installed (ray[data])")

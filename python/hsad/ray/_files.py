@@ -24,6 +24,30 @@ def absolute(place: str) -> str:
     return place if "://" in place else os.path.abspath(place)
 
 
+def folder_of(pairs: str) -> str:
+    """The folder of a list of pairs, which may be one of several files, from the root on."""
+    from pyarrow.fs import FileType
+
+    system, path = file_system(pairs)
+    place = absolute(pairs.rstrip("/"))
+    return place if system.get_file_info(path).type == FileType.Directory else os.path.dirname(place)
+
+
+def in_folder(folder: str, place: str) -> str:
+    """A path of a list, which is relative to the folder of the list, from the root on; URIs as they are.
+
+    Raises
+    ------
+    ParameterError
+        The folder is a URI with parameters, behind which no path can stand.
+    """
+    if "://" in place or os.path.isabs(place):
+        return place
+    if "://" in folder and "?" in folder:
+        raise hsad.ParameterError(f"{place} is relative to {folder}, which has parameters: the list needs URIs of views")
+    return f"{folder}/{place}"
+
+
 def file_system(place: str) -> tuple[Any, str]:
     """The file system of a path or URI, and the path there."""
     from pyarrow import ArrowInvalid, fs

@@ -52,11 +52,12 @@ def run(
 ) -> Summary:
     """Matches the pairs of a Parquet file, or of a folder of them, on Ray's cluster, and writes a folder of Parquet files.
 
-    A pair is a row with ``left`` and ``right``, as :class:`Disparity` reads them, in paths or URIs, and perhaps a ``name`` of its own;
-    without one it gets a name from its files. Each file of the answer has a few pairs, appears whole or not at all, and is named by them:
-    a worker that ends before or after it has written one leaves nothing lost or doubled. A run into the same folder goes on: it matches
-    the pairs that are missing or have failed. One run at a time writes into a folder. A worker that ends, since its device is lost or its
-    machine is, starts again up to 8 times, and so often it is given the same pairs; then the run ends.
+    A pair is a row with ``left`` and ``right``, as :class:`Disparity` reads them, in URIs or in paths, which are relative to the folder of
+    the list, and perhaps a ``name`` of its own; without one it gets a name from its files. Each file of the answer has a few pairs, appears
+    whole or not at all, and is named by them: a worker that ends before or after it has written one leaves nothing lost or doubled. A run
+    into the same folder goes on: it matches the pairs that are missing or have failed. One run at a time writes into a folder. A worker
+    that ends, since its device is lost or its machine is, starts again up to 8 times, and so often it is given the same pairs; then the
+    run ends.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def run(
     # Workers have working folders of their own.
     folder = _files.absolute(folder)
     summary, parts = Summary(), Parts(folder)
-    table = named(_table(pairs))
+    table = in_folder(named(_table(pairs)), _files.folder_of(pairs))
     parts.begin(options)
     summary.pairs = table.num_rows
     left = _left(table, parts)
@@ -206,6 +207,17 @@ def named(table: Any) -> Any:
         twice = next(name for name in names if name in seen or seen.add(name))  # type: ignore[func-returns-value]
         raise hsad.ParameterError(f"two pairs have the name {twice}: names are one per pair, and without them files are")
     return table.set_column(table.column_names.index("name"), "name", pyarrow.array(names, pyarrow.string()))
+
+
+def in_folder(table: Any, folder: str) -> Any:
+    """The table of pairs with the files of a list in ``folder``: workers have working folders of their own."""
+    import pyarrow
+
+    for column in ("left", "right", "calib"):
+        if column in table.column_names and not pyarrow.types.is_binary(table.schema.field(column).type):
+            files = [file and _files.in_folder(folder, str(file)) for file in table[column].to_pylist()]
+            table = table.set_column(table.column_names.index(column), column, pyarrow.array(files, pyarrow.string()))
+    return table
 
 
 def _table(pairs: str) -> Any:
