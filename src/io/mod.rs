@@ -5,7 +5,7 @@
 //! [`MAX_PIXELS`] where a codec expands them.
 //!
 //! Reading and writing pictures needs the feature `pictures`; writing whole files needs `files`; calibrations of other formats
-//! than Middlebury's need `calibrations`. PFM, PLY, tables, homographies and colour maps are always available.
+//! than Middlebury's need `calibrations`, recordings of robots `recordings`. PFM, PLY, tables, homographies and colour maps are always available.
 
 #[cfg(feature = "files")]
 #[doc(hidden)]
@@ -53,6 +53,8 @@ mod png_text;
 mod point_filter;
 #[cfg(feature = "pictures")]
 mod raw;
+#[cfg(feature = "recordings")]
+pub mod recording;
 #[cfg(feature = "pictures")]
 mod samples;
 #[cfg(feature = "pictures")]

@@ -41,6 +41,8 @@ pub use files::{Format, Hints, Loaded, parse, read};
 pub use opencv::to_opencv_yaml;
 #[cfg(feature = "calibrations")]
 pub use own::to_json;
+#[cfg(feature = "recordings")]
+pub(crate) use ros::of_infos;
 
 #[cfg(all(test, feature = "calibrations"))]
 mod tests;

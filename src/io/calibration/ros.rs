@@ -1,12 +1,19 @@
 //! ROS `camera_info` of a left and a right camera: REP 104, and the YAML of `camera_calibration_parsers`.
 
+#[cfg(feature = "recordings")]
+use std::path::Path;
+
 use glam::DVec3;
 
+#[cfg(feature = "recordings")]
+use super::{Loaded, tree::Node};
 use super::{
     matrices::{Projection, camera, matrix, radial_tangential},
     tree::Field,
     units,
 };
+#[cfg(feature = "recordings")]
+use crate::io::recording::CameraInfo;
 use crate::{
     calibration::{Calibration, CameraModel, KannalaBrandt, Lens, StereoCalibration},
     error::Result,
@@ -43,6 +50,31 @@ pub(super) fn read(files: &[Field<'_>; 2], unit: Option<f64>) -> Result<(StereoC
         .map_err(|error| right.refused(error))?;
     let rectified = Projection::pair(projections, unit.unwrap_or(1.0), Some(left_size));
     Ok((stereo, rectified))
+}
+
+/// The pair of two messages `sensor_msgs/CameraInfo`, left first; `paths` name them in errors.
+#[cfg(feature = "recordings")]
+pub(crate) fn of_infos(infos: &[CameraInfo; 2], paths: [&Path; 2]) -> Result<Loaded> {
+    let [left, right] = infos.each_ref().map(as_values);
+    let (stereo, rectified) = read(&[Field::root(&left, paths[0]), Field::root(&right, paths[1])], None)?;
+    Ok(Loaded { rectified: rectified.or_else(|| stereo.rectified()), stereo, notes: Vec::new() })
+}
+
+/// A message as the values of a file.
+#[cfg(feature = "recordings")]
+fn as_values(info: &CameraInfo) -> Node {
+    let list = |numbers: &[f64]| Node::List(numbers.iter().map(|number| Node::Text(number.to_string())).collect());
+    let text = |text: &dyn ToString| Node::Text(text.to_string());
+    let values = [
+        ("width", text(&info.size.width)),
+        ("height", text(&info.size.height)),
+        ("distortion_model", text(&info.distortion_model)),
+        ("D", list(&info.distortion)),
+        ("K", list(&info.camera)),
+        ("R", list(&info.rectification)),
+        ("P", list(&info.projection)),
+    ];
+    Node::Map(values.map(|(name, value)| (name.to_owned(), value)).into())
 }
 
 /// The pair that rectifying rotations rectify, with the right camera's `shift` in rectified coordinates, in metres.

@@ -1,0 +1,247 @@
+//! Recordings of robots: pairs of pictures of two topics of an MCAP file, as `ros2 bag record -s mcap` writes them.
+//!
+//! Read are `sensor_msgs/Image` and `CompressedImage` of ROS 2 (CDR) and of ROS 1 (as `mcap convert` takes them from a bag), in chunks that are
+//! not compressed or compressed by lz4 or zstd. Files are streamed: in memory are one chunk, and the frames that wait for their partners.
+//!
+//! Lengths in the files are not trusted: memory is allocated for bytes that are really there.
+
+mod chunk;
+mod fields;
+mod messages;
+mod pairing;
+mod pairs;
+mod records;
+mod stream;
+mod summary;
+mod topics;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use super::{calibration::Loaded, malformed};
+use crate::error::{Error, Result, shown};
+use messages::Kind;
+use stream::Stream;
+
+pub(crate) use messages::CameraInfo;
+pub use pairs::{LeftOut, Pairs, Shot};
+pub use topics::Topic;
+
+/// A value, or what is wrong with the recording.
+type Told<T> = std::result::Result<T, String>;
+
+/// Topics that a message lists at most.
+const LISTED: usize = 20;
+
+/// A recording: an MCAP file, or the folder of several that rosbag2 writes one after the other.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    path: PathBuf,
+    files: Vec<PathBuf>,
+    topics: Vec<Topic>,
+}
+
+/// The calibration of both cameras, as the recording has it.
+#[derive(Clone, Debug)]
+pub struct RecordedCalibration {
+    /// The calibration.
+    pub loaded: Loaded,
+    /// Whether the topics have pictures that are rectified, by their names.
+    pub is_rectified: bool,
+    /// The topic of the right camera's calibration, behind the path of the recording.
+    pub path: PathBuf,
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}
+
+/// Files in a folder with an extension, those with numbers in their order.
+fn files_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> = entries.filter(|file| has_extension(file, extension)).collect();
+    files.sort_by_cached_key(|file| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let number = name.rsplit('_').next().and_then(|number| number.parse::<u64>().ok());
+        (number, name)
+    });
+    files
+}
+
+impl Recording {
+    /// Whether a path is that of a recording, or of a bag that is to be converted to one: by its extension, or what lies in the folder.
+    pub fn is_one(path: &Path) -> bool {
+        let extensions = ["mcap", "bag", "db3"];
+        let is_file = extensions.iter().any(|known| has_extension(path, known));
+        // Compressed as a whole by rosbag2.
+        let inner = Path::new(path.file_stem().unwrap_or_default());
+        let is_compressed =
+            has_extension(path, "zstd") && ["mcap", "db3"].iter().any(|known| has_extension(inner, known));
+        is_file || is_compressed || path.join("metadata.yaml").is_file()
+    }
+
+    /// Opens a recording, and looks for its topics: in its summary, or, without one, in all of it.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Format`] for bags of other formats, with the command that converts them, and for a file that is no MCAP.
+    pub fn open(path: &Path) -> Result<Self> {
+        let files = if path.is_dir() { files_in(path, "mcap") } else { vec![path.to_path_buf()] };
+        let bags = if path.is_dir() { files_in(path, "db3") } else { Vec::new() };
+        let compressed = files_in(path, "zstd");
+        for file in bags.iter().chain(&compressed).chain(&files) {
+            if let Some(way_out) = way_out(file) {
+                return Err(malformed(file, way_out));
+            }
+        }
+        if files.is_empty() {
+            return Err(malformed(path, "there is no recording (.mcap) in the folder"));
+        }
+        let mut topics: Vec<Topic> = Vec::new();
+        for file in &files {
+            for topic in summary::topics(file)? {
+                match topics.iter_mut().find(|known| known.name == topic.name) {
+                    Some(known) => known.messages = known.messages.zip(topic.messages).map(|(more, few)| more + few),
+                    None => topics.push(topic),
+                }
+            }
+        }
+        topics.sort_by(|one, other| one.name.cmp(&other.name));
+        Ok(Self { path: path.into(), files, topics })
+    }
+
+    /// All topics, by their names.
+    pub fn topics(&self) -> &[Topic] {
+        &self.topics
+    }
+
+    /// The topics of the left and of the right view: those that are named, or those whose names differ in the names of two sides, such as
+    /// `left` and `right`, `cam0` and `cam1`, `infra1` and `infra2`.
+    ///
+    /// # Errors
+    /// [`Error::Format`] with the topics that there are, if a named one is not there or has no pictures that are read, or names do not tell.
+    pub fn both_views(&self, named: Option<[&str; 2]>) -> Result<[&Topic; 2]> {
+        let refused = |why: &str| malformed(&self.path, format!("{why}; {}", self.listed()));
+        let Some(names) = named else {
+            return topics::of_both_views(&self.topics).ok_or_else(|| {
+                refused("names of topics do not tell which are those of the left and of the right view")
+            });
+        };
+        let find = |name: &str| {
+            let topic = self.topics.iter().find(|topic| topic.name == name);
+            let topic = topic.ok_or_else(|| refused(&format!("there is no topic {name}")))?;
+            let why = || {
+                let found = &topic.message_type;
+                refused(&format!("the topic {name} has {found}: sensor_msgs Image and CompressedImage are read"))
+            };
+            Some(topic).filter(|topic| topic.has_pictures()).ok_or_else(why)
+        };
+        let [left, right] = names.map(find);
+        let both = [left?, right?];
+        if names[0] == names[1] {
+            return Err(refused("the left and the right topic are the same"));
+        }
+        Ok(both)
+    }
+
+    /// The topics of pictures, for a message.
+    fn listed(&self) -> String {
+        let pictures: Vec<&Topic> = self.topics.iter().filter(|topic| topic.has_pictures()).collect();
+        if pictures.is_empty() {
+            let types: Vec<&str> = self.topics.iter().take(LISTED).map(|topic| topic.message_type.as_str()).collect();
+            return format!("no topic has sensor_msgs Image or CompressedImage, but {}", types.join(", "));
+        }
+        let listed: Vec<String> = pictures
+            .iter()
+            .take(LISTED)
+            .map(|topic| match topic.messages {
+                Some(messages) => format!("{} ({messages} messages)", topic.name),
+                None => topic.name.clone(),
+            })
+            .collect();
+        let more = if pictures.len() > LISTED { ", ..." } else { "" };
+        format!("topics of pictures are {}{more}", shown(Path::new(&listed.join(", "))))
+    }
+
+    /// The pairs of frames of two topics, in the order of their times.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the first file cannot be opened.
+    pub fn pairs(&self, topics: [&Topic; 2]) -> Result<Pairs> {
+        let names = topics.map(|topic| topic.name.as_str());
+        Ok(Pairs::new(self.path.clone(), self.stream()?, names))
+    }
+
+    fn stream(&self) -> Result<Stream> {
+        Stream::new(self.files.clone())
+    }
+
+    /// The calibration of the cameras of two topics: the first `sensor_msgs/CameraInfo` of each, of the topics `camera_info` beside them.
+    /// `None` if there are none, or they say that the cameras are not calibrated.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for a calibration that is not one of a pair.
+    pub fn calibration(&self, views: [&Topic; 2]) -> Result<Option<RecordedCalibration>> {
+        let names = views.map(topics::camera_info_of);
+        let is_there = |name: &String| {
+            let is_it = |topic: &Topic| topic.name == *name && topic.kind() == Some(Kind::CameraInfo);
+            self.topics.iter().any(|topic| is_it(topic) && topic.messages != Some(0))
+        };
+        if names[0] == names[1] || !names.iter().all(is_there) {
+            return Ok(None);
+        }
+        let Some(infos) = self.first_infos(&names)? else { return Ok(None) };
+        if !infos.iter().all(CameraInfo::is_calibrated) {
+            return Ok(None);
+        }
+        let is_rectified = views.iter().all(|topic| topics::is_rectified(&topic.name));
+        let paths = names.map(|name| place_in(&self.path, &name));
+        let loaded = super::calibration::of_infos(&infos, paths.each_ref().map(PathBuf::as_path))?;
+        let [_, path] = paths;
+        Ok(Some(RecordedCalibration { loaded, is_rectified, path }))
+    }
+
+    /// The first message of each of both topics; `None` if one of them has none that can be read.
+    fn first_infos(&self, names: &[String; 2]) -> Result<Option<[CameraInfo; 2]>> {
+        let mut stream = self.stream()?;
+        let mut found = [None, None];
+        // A recording that breaks off says so when its pictures are read.
+        while let Ok(Some(message)) = stream.next(|topic| names.iter().any(|name| name == topic)) {
+            let Some(side) = names.iter().position(|name| *name == message.topic) else { continue };
+            found[side] = found[side].take().or_else(|| CameraInfo::of(&message.data, message.encoding).ok());
+            if let [Some(left), Some(right)] = &found {
+                return Ok(Some([left.clone(), right.clone()]));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// A part of a recording, as it is named in reports and messages.
+fn place_in(recording: &Path, part: &str) -> PathBuf {
+    format!("{}#{part}", recording.display()).into()
+}
+
+/// How a file of another format becomes one that is read.
+fn way_out(file: &Path) -> Option<&'static str> {
+    if has_extension(file, "bag") {
+        Some(
+            "bags of ROS 1 are not read: mcap convert IN.bag OUT.mcap, or rosbags-convert --src IN.bag --dst OUT --dst-storage mcap",
+        )
+    } else if has_extension(file, "db3") {
+        Some("SQLite bags are not read: mcap convert IN.db3 OUT.mcap, or ros2 bag convert with storage_id: mcap")
+    } else if has_extension(file, "zstd") {
+        Some("rosbag2 has compressed the file as a whole: zstd -d FILE.mcap.zstd -o FILE.mcap")
+    } else {
+        None
+    }
+}
+
+/// The error of an operation on a file.
+fn io_error(path: &Path) -> impl Fn(std::io::Error) -> Error {
+    |source| Error::Io { path: path.into(), source }
+}
+
+#[cfg(test)]
+mod tests;

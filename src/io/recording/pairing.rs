@@ -1,0 +1,172 @@
+//! Which frames of two topics belong together: those of the same time, or the nearest ones.
+
+use std::collections::VecDeque;
+
+/// Most bytes of frames that wait for their partners.
+const MOST: usize = 1 << 28;
+
+/// A frame that waits for its partner.
+struct Waiting<T> {
+    /// Time, in nanoseconds.
+    stamp: u64,
+    frame: T,
+    bytes: usize,
+}
+
+/// Frames of the left and of the right topic, in the order of their times.
+///
+/// Frames of the same time are a pair. Of others the earliest ones are a pair if their times differ by at most half of the least time between
+/// one of them and its neighbours in its topic, so that each is the one nearest to the other.
+pub(super) struct Pairing<T> {
+    waiting: [VecDeque<Waiting<T>>; 2],
+    /// Times of the last frames that no longer wait.
+    last: [Option<u64>; 2],
+    /// Bytes of all that wait.
+    bytes: usize,
+    has_ended: bool,
+    /// Frames without a partner.
+    pub alone: [u64; 2],
+}
+
+impl<T> Pairing<T> {
+    pub fn new() -> Self {
+        Self { waiting: [VecDeque::new(), VecDeque::new()], last: [None; 2], bytes: 0, has_ended: false, alone: [0; 2] }
+    }
+
+    /// Takes the next frame of a topic, 0 left or 1 right. One that is not later than those before it finds no partner.
+    pub fn add(&mut self, side: usize, stamp: u64, frame: T, bytes: usize) {
+        let before = self.waiting[side].back().map(|last| last.stamp).or(self.last[side]);
+        if before.is_some_and(|before| stamp <= before) {
+            self.alone[side] += 1;
+            return;
+        }
+        self.bytes += bytes;
+        self.waiting[side].push_back(Waiting { stamp, frame, bytes });
+        // Frames whose topic is far ahead of the other one wait in vain.
+        while self.bytes > MOST {
+            let ahead = usize::from(self.waiting[1].len() > self.waiting[0].len());
+            if self.waiting[ahead].len() <= 2 {
+                break;
+            }
+            self.drop_first(ahead);
+        }
+    }
+
+    /// No frame follows.
+    pub fn end(&mut self) {
+        self.has_ended = true;
+    }
+
+    /// The next pair with the time of its left frame, if it is known by the frames so far.
+    pub fn next(&mut self) -> Option<(u64, [T; 2])> {
+        loop {
+            let [Some(left), Some(right)] = self.waiting.each_ref().map(VecDeque::front) else {
+                if self.has_ended {
+                    [0, 1].into_iter().for_each(|side| while self.drop_first(side) {});
+                }
+                return None;
+            };
+            let apart = left.stamp.abs_diff(right.stamp);
+            let are_known = self.has_ended || self.waiting.iter().all(|frames| frames.len() > 1);
+            if apart > 0 && !are_known {
+                return None;
+            }
+            if apart == 0 || self.gap().is_some_and(|gap| 2 * u128::from(apart) <= u128::from(gap)) {
+                let stamp = left.stamp;
+                let [left, right] = [0, 1].map(|side| self.take(side));
+                return left.zip(right).map(|(left, right)| (stamp, [left, right]));
+            }
+            let earlier = usize::from(right.stamp < left.stamp);
+            self.drop_first(earlier);
+        }
+    }
+
+    /// The least time between the first frame of a topic and its neighbours there.
+    fn gap(&self) -> Option<u64> {
+        let gaps = self.waiting.iter().zip(self.last).flat_map(|(frames, last)| {
+            let stamp = |place: usize| frames.get(place).map(|frame| frame.stamp);
+            [last.zip(stamp(0)), stamp(0).zip(stamp(1))]
+        });
+        gaps.flatten().map(|(earlier, later)| later - earlier).min()
+    }
+
+    fn take(&mut self, side: usize) -> Option<T> {
+        let Waiting { stamp, frame, bytes } = self.waiting[side].pop_front()?;
+        self.bytes -= bytes;
+        self.last[side] = Some(stamp);
+        Some(frame)
+    }
+
+    /// Gives up the first frame; whether there was one.
+    fn drop_first(&mut self, side: usize) -> bool {
+        let dropped = self.take(side).is_some();
+        self.alone[side] += u64::from(dropped);
+        dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pairs of frames that come in this order, and how many are alone.
+    fn paired(frames: &[(usize, u64)]) -> (Vec<[u64; 2]>, [u64; 2]) {
+        let mut pairing = Pairing::new();
+        let mut pairs = Vec::new();
+        for &(side, stamp) in frames {
+            pairing.add(side, stamp, stamp, 1);
+            pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(_, pair)| pair));
+        }
+        pairing.end();
+        pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(_, pair)| pair));
+        (pairs, pairing.alone)
+    }
+
+    /// Frames of the left and of the right topic, in turn.
+    fn in_turn(left: &[u64], right: &[u64]) -> Vec<(usize, u64)> {
+        let at = |side, stamps: &[u64], place: usize| stamps.get(place).map(|&stamp| (side, stamp));
+        (0..left.len().max(right.len())).flat_map(|n| [at(0, left, n), at(1, right, n)]).flatten().collect()
+    }
+
+    #[test]
+    fn frames_of_one_time_are_a_pair_in_any_order_of_the_topics() {
+        let expected = (vec![[10, 10], [20, 20], [30, 30]], [0, 0]);
+        assert_eq!(paired(&in_turn(&[10, 20, 30], &[10, 20, 30])), expected);
+        assert_eq!(paired(&[(1, 10), (1, 20), (1, 30), (0, 10), (0, 20), (0, 30)]), expected);
+        let (mut pairing, mut first) = (Pairing::new(), Vec::new());
+        for side in [0, 1] {
+            pairing.add(side, 10, side, 1);
+            first.extend(pairing.next());
+        }
+        assert_eq!(first, [(10, [0, 1])], "nothing needs to follow");
+    }
+
+    #[test]
+    fn a_frame_without_a_partner_takes_none_of_another() {
+        assert_eq!(paired(&in_turn(&[10, 20, 30, 40], &[10, 30, 40])), (vec![[10, 10], [30, 30], [40, 40]], [1, 0]));
+        assert_eq!(paired(&in_turn(&[10, 20, 30], &[30])), (vec![[30, 30]], [2, 0]));
+        assert_eq!(paired(&in_turn(&[10], &[11])), (vec![], [1, 1]), "nothing tells what near is");
+        assert_eq!(paired(&in_turn(&[10, 20], &[])), (vec![], [2, 0]));
+        assert_eq!(paired(&in_turn(&[10, 20, 15, 20, 30], &[10, 20, 30])).1, [2, 0], "times go back");
+    }
+
+    #[test]
+    fn the_nearest_frames_are_a_pair_within_half_a_period() {
+        assert_eq!(paired(&in_turn(&[10, 20, 30], &[15, 25, 35])), (vec![[10, 15], [20, 25], [30, 35]], [0, 0]));
+        assert_eq!(paired(&in_turn(&[10, 20, 30], &[4, 14, 24])), (vec![[10, 14], [20, 24]], [1, 1]));
+        assert_eq!(paired(&in_turn(&[100, 200, 300], &[151, 251, 351])), (vec![[200, 151], [300, 251]], [1, 1]));
+        // One camera is slower: each of its frames has the nearest one of the other.
+        assert_eq!(paired(&in_turn(&[0, 10, 20, 30, 40], &[1, 21, 41])), (vec![[0, 1], [20, 21], [40, 41]], [2, 0]));
+    }
+
+    #[test]
+    fn frames_of_a_topic_that_is_far_ahead_are_given_up() {
+        let mut pairing = Pairing::new();
+        (0..8).for_each(|stamp| pairing.add(0, stamp, (), MOST / 4));
+        pairing.add(1, 7, (), MOST / 4);
+        assert!(pairing.bytes <= MOST && pairing.alone[0] >= 3, "{:?}", pairing.alone);
+        assert_eq!(pairing.next(), None);
+        pairing.end();
+        assert_eq!(pairing.next(), Some((7, [(), ()])));
+    }
+}

@@ -1,0 +1,164 @@
+//! Pairs of frames of two topics.
+
+use std::{
+    borrow::Cow,
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use super::{
+    fields::Encoding,
+    messages::{Kind, compressed_picture, raw_picture, stamp_of},
+    pairing::Pairing,
+    place_in,
+    stream::{Message, Stream},
+};
+use crate::{
+    error::{Error, Result},
+    io::malformed,
+};
+
+/// A frame as it was recorded.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// The recording, its topic and the time, as reports and messages name the frame.
+    pub path: PathBuf,
+    kind: Kind,
+    encoding: Encoding,
+    message: Vec<u8>,
+}
+
+impl Shot {
+    /// The picture, as the bytes of a file that [`crate::io::load::decode`] reads: PGM or PPM, or what `CompressedImage` has.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for a damaged message, and for an encoding that is not read.
+    pub fn to_file(&self) -> Result<Cow<'_, [u8]>> {
+        let picture = match self.kind {
+            Kind::CompressedImage => compressed_picture(&self.message, self.encoding),
+            _ => raw_picture(&self.message, self.encoding),
+        };
+        picture.map_err(|reason| malformed(&self.path, reason))
+    }
+
+    /// Bytes of memory.
+    pub fn bytes(&self) -> usize {
+        self.message.len()
+    }
+}
+
+/// Frames that are in no pair.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Of the left and of the right topic, those without a partner of the same time, or near it.
+    pub alone: [u64; 2],
+    /// Of the left and of the right topic, those whose time cannot be read.
+    pub damaged: [u64; 2],
+    /// What is wrong with the first of these.
+    pub reason: Option<String>,
+}
+
+/// The pairs of a recording, in the order of their times: frames of the same time, or else, of those whose times differ by at most half of the
+/// time to the next frame of the same topic, the nearest ones.
+///
+/// A frame without a time (0) has that at which it was recorded. A recording that breaks off gives its pairs, and then the error.
+pub struct Pairs {
+    path: PathBuf,
+    /// `None` after the end.
+    stream: Option<Stream>,
+    topics: [String; 2],
+    pairing: Pairing<Shot>,
+    /// The error that comes after all pairs.
+    error: Option<Error>,
+    has_pairs: bool,
+    left_out: Arc<Mutex<LeftOut>>,
+}
+
+impl Pairs {
+    pub(super) fn new(path: PathBuf, stream: Stream, topics: [&str; 2]) -> Self {
+        Self {
+            path,
+            stream: Some(stream),
+            topics: topics.map(str::to_owned),
+            pairing: Pairing::new(),
+            error: None,
+            has_pairs: false,
+            left_out: Arc::default(),
+        }
+    }
+
+    /// What is left out so far, or, after the end, of all.
+    pub fn left_out(&self) -> Arc<Mutex<LeftOut>> {
+        Arc::clone(&self.left_out)
+    }
+
+    fn note(&self, note: impl FnOnce(&mut LeftOut)) {
+        note(&mut self.left_out.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Takes a message of one of the topics.
+    fn add(&mut self, message: Message) {
+        let side = self.topics.iter().position(|topic| *topic == message.topic);
+        let Some(side) = side.filter(|_| message.kind != Kind::CameraInfo) else { return };
+        let stamp = match stamp_of(&message.data, message.encoding) {
+            Ok(0) => message.recorded,
+            Ok(stamp) => stamp,
+            Err(reason) => {
+                return self.note(|left_out| {
+                    left_out.damaged[side] += 1;
+                    left_out.reason.get_or_insert(reason);
+                });
+            }
+        };
+        let bytes = message.data.len();
+        let path = place_in(&self.path, &format!("{}@{stamp}", message.topic));
+        let shot = Shot { path, kind: message.kind, encoding: message.encoding, message: message.data };
+        self.pairing.add(side, stamp, shot, bytes);
+    }
+
+    /// Reads the next message, or comes to the end.
+    fn read_on(&mut self) {
+        let Some(stream) = &mut self.stream else { return };
+        let topics = &self.topics;
+        match stream.next(|topic| topics.iter().any(|name| name == topic)) {
+            Ok(Some(message)) => return self.add(message),
+            Ok(None) => {}
+            Err(reason) => self.error = Some(malformed(&self.path, reason)),
+        }
+        self.stream = None;
+        self.pairing.end();
+    }
+
+    /// The error of a recording without any pair.
+    fn nothing(&self) -> Error {
+        let [left, right] = self.pairing.alone;
+        let reason = format!(
+            "no frame of {} has a partner of {} at the same time, or near it: there are {left} and {right} that can be read",
+            self.topics[0], self.topics[1]
+        );
+        malformed(&self.path, reason)
+    }
+}
+
+impl Iterator for Pairs {
+    /// The time of the left frame, in nanoseconds, and both frames.
+    type Item = Result<(u64, [Shot; 2])>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let pair = self.pairing.next();
+            let alone = self.pairing.alone;
+            self.note(|left_out| left_out.alone = alone);
+            if let Some(pair) = pair {
+                self.has_pairs = true;
+                return Some(Ok(pair));
+            }
+            if self.stream.is_none() {
+                let error = self.error.take().or_else(|| (!self.has_pairs).then(|| self.nothing()));
+                self.has_pairs = true;
+                return error.map(Err);
+            }
+            self.read_on();
+        }
+    }
+}

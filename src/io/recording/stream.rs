@@ -1,0 +1,114 @@
+//! The messages of a recording, file by file.
+
+use std::{borrow::Cow, fs::File, io::Read, path::PathBuf, vec::IntoIter};
+
+use mcap::{
+    read::ChannelAccumulator,
+    records::{MessageHeader, Record, op},
+};
+
+use super::{
+    Told,
+    fields::Encoding,
+    io_error,
+    messages::Kind,
+    records::{Records, told},
+};
+use crate::error::Result;
+
+/// A message.
+pub(super) struct Message {
+    pub topic: String,
+    pub kind: Kind,
+    /// When it was recorded, in nanoseconds.
+    pub recorded: u64,
+    pub encoding: Encoding,
+    pub data: Vec<u8>,
+}
+
+/// The messages of several files, one file after the other.
+pub(super) struct Stream {
+    files: IntoIter<PathBuf>,
+    /// The file that is read; `None` after the last one.
+    messages: Option<Messages<File>>,
+}
+
+impl Stream {
+    pub fn new(files: Vec<PathBuf>) -> Result<Self> {
+        let mut stream = Self { files: files.into_iter(), messages: None };
+        stream.open_next()?;
+        Ok(stream)
+    }
+
+    fn open_next(&mut self) -> Result<()> {
+        self.messages = None;
+        if let Some(path) = self.files.next() {
+            self.messages = Some(Messages::new(File::open(&path).map_err(io_error(&path))?));
+        }
+        Ok(())
+    }
+
+    /// The next message of a topic that is `wanted`.
+    ///
+    /// # Errors
+    /// What is wrong with the recording.
+    pub fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Told<Option<Message>> {
+        while let Some(messages) = &mut self.messages {
+            if let Some(message) = messages.next(&wanted)? {
+                return Ok(Some(message));
+            }
+            self.open_next().map_err(|error| error.to_string())?;
+        }
+        Ok(None)
+    }
+}
+
+/// The messages of a file.
+pub(super) struct Messages<R> {
+    records: Records<R>,
+    channels: ChannelAccumulator<'static>,
+}
+
+impl<R: Read> Messages<R> {
+    pub fn new(from: R) -> Self {
+        Self { records: Records::of_file(from), channels: ChannelAccumulator::default() }
+    }
+
+    fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Told<Option<Message>> {
+        while let Some((code, data)) = self.records.next()? {
+            if let Some((header, data)) = known(code, data, &mut self.channels)? {
+                let channel =
+                    self.channels.get(header.channel_id).ok_or("the recording is damaged: a message of no topic")?;
+                let encoding = match channel.message_encoding.as_str() {
+                    "cdr" => Encoding::Cdr,
+                    "ros1" => Encoding::Ros1,
+                    _ => continue,
+                };
+                let kind = channel.schema.as_ref().and_then(|schema| Kind::of(&schema.name));
+                if let Some(kind) = kind.filter(|_| wanted(&channel.topic)) {
+                    let (topic, data) = (channel.topic.clone(), data.into_owned());
+                    return Ok(Some(Message { topic, kind, recorded: header.log_time, encoding, data }));
+                }
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Notes a schema or a channel, and returns a message.
+pub(super) fn known<'a>(
+    code: u8,
+    data: &'a [u8],
+    channels: &mut ChannelAccumulator<'static>,
+) -> Told<Option<(MessageHeader, Cow<'a, [u8]>)>> {
+    if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&code) {
+        return Ok(None);
+    }
+    let noted = match mcap::parse_record(code, data).map_err(|error| told(&error))? {
+        Record::Schema { header, data } => channels.add_schema_from_slice(header, &data),
+        Record::Channel(channel) => channels.add_channel(channel),
+        Record::Message { header, data } => return Ok(Some((header, data))),
+        _ => Ok(()),
+    };
+    noted.map(|()| None).map_err(|error| told(&error))
+}

@@ -1,0 +1,403 @@
+//! Recordings that are written here.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{Cursor, Write},
+    path::Path,
+};
+
+use mcap::{WriteOptions, records::MessageHeader};
+
+use super::{fields::Encoding, *};
+use crate::io::load::{Unseen, decode_pair};
+
+/// The bytes of a message, as ROS writes them.
+pub(super) struct Bytes {
+    bytes: Vec<u8>,
+    encoding: Encoding,
+}
+
+impl Bytes {
+    /// A message whose header has a time in nanoseconds.
+    pub fn with_header(encoding: Encoding, stamp: u64) -> Self {
+        let mut message = Self { bytes: Vec::new(), encoding };
+        if encoding == Encoding::Ros1 {
+            message.number(7_u32.to_le_bytes());
+        }
+        message.number(((stamp / 1_000_000_000) as u32).to_le_bytes());
+        message.number(((stamp % 1_000_000_000) as u32).to_le_bytes());
+        message.text("camera");
+        message
+    }
+
+    pub fn number<const N: usize>(&mut self, number: [u8; N]) {
+        if self.encoding == Encoding::Cdr {
+            self.bytes.resize(self.bytes.len().next_multiple_of(N), 0);
+        }
+        self.bytes.extend(number);
+    }
+
+    pub fn text(&mut self, text: &str) {
+        let end: &[u8] = if self.encoding == Encoding::Cdr { &[0] } else { &[] };
+        self.list(&[text.as_bytes(), end].concat());
+    }
+
+    pub fn list(&mut self, bytes: &[u8]) {
+        self.number((bytes.len() as u32).to_le_bytes());
+        self.bytes.extend(bytes);
+    }
+
+    pub fn floats(&mut self, floats: &[f64]) {
+        floats.iter().for_each(|float| self.number(float.to_le_bytes()));
+    }
+
+    pub fn whole(self) -> Vec<u8> {
+        let head: &[u8] = if self.encoding == Encoding::Cdr { &[0, 1, 0, 0] } else { &[] };
+        [head, &self.bytes].concat()
+    }
+}
+
+pub(super) fn image(
+    encoding: Encoding,
+    stamp: u64,
+    (width, height): (u32, u32),
+    name: &str,
+    is_big_endian: u8,
+    step: u32,
+    samples: &[u8],
+) -> Vec<u8> {
+    let mut message = Bytes::with_header(encoding, stamp);
+    message.number(height.to_le_bytes());
+    message.number(width.to_le_bytes());
+    message.text(name);
+    message.number([is_big_endian]);
+    message.number(step.to_le_bytes());
+    message.list(samples);
+    message.whole()
+}
+
+/// A grey picture of 4x2 pixels whose first one has the level `level`.
+fn grey(stamp: u64, level: u8) -> Vec<u8> {
+    image(Encoding::Cdr, stamp, (4, 2), "mono8", 0, 4, &[level, 1, 2, 3, 4, 5, 6, 7])
+}
+
+fn compressed(stamp: u64, file: &[u8]) -> Vec<u8> {
+    let mut message = Bytes::with_header(Encoding::Cdr, stamp);
+    message.text("png");
+    message.list(file);
+    message.whole()
+}
+
+/// The camera at the right if `shift` is below 0.
+fn camera_info(focal: f64, shift: f64) -> Vec<u8> {
+    let mut message = Bytes::with_header(Encoding::Cdr, 1);
+    message.number(2_u32.to_le_bytes());
+    message.number(4_u32.to_le_bytes());
+    message.text("plumb_bob");
+    message.number(5_u32.to_le_bytes());
+    message.floats(&[0.0; 5]);
+    message.floats(&[focal, 0.0, 2.0, 0.0, focal, 1.0, 0.0, 0.0, 1.0]);
+    message.floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+    message.floats(&[focal, 0.0, 2.0, shift, 0.0, focal, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    message.whole()
+}
+
+const IMAGE: &str = "sensor_msgs/msg/Image";
+const COMPRESSED: &str = "sensor_msgs/msg/CompressedImage";
+const INFO: &str = "sensor_msgs/msg/CameraInfo";
+
+/// A message of a recording: topic, type, bytes.
+type Sent<'a> = (&'a str, &'a str, Vec<u8>);
+
+/// A recording of messages that follow one another by a nanosecond, from time 100 on.
+fn recorded(options: WriteOptions, sent: &[Sent<'_>]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = options.profile("ros2").create(&mut bytes).unwrap();
+    let mut channels = BTreeMap::new();
+    for (number, (topic, message_type, data)) in (0..).zip(sent) {
+        let encoding = if message_type.contains("/msg/") { "cdr" } else { "ros1" };
+        let channel = *channels.entry(topic).or_insert_with(|| {
+            let schema = writer.add_schema(message_type, "ros2msg", b"").unwrap();
+            writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap()
+        });
+        let header =
+            MessageHeader { channel_id: channel, sequence: number, log_time: 100 + u64::from(number), publish_time: 0 };
+        writer.write_to_known_channel(&header, data).unwrap();
+    }
+    writer.finish().unwrap();
+    drop(writer);
+    bytes.into_inner()
+}
+
+fn plain() -> WriteOptions {
+    WriteOptions::new().compression(None)
+}
+
+/// What comes of a recording: times and first pixels of both views, then the error that ends it.
+fn read(file: &Path) -> Result<(Vec<(u64, [u8; 2])>, LeftOut, Option<String>)> {
+    let recording = Recording::open(file)?;
+    let mut pairs = recording.pairs(recording.both_views(None)?)?;
+    let (mut found, mut error) = (Vec::new(), None);
+    for pair in pairs.by_ref() {
+        match pair {
+            Ok((stamp, [left, right])) => {
+                let files = [left.to_file()?, right.to_file()?];
+                let paths = [&left, &right].map(|shot| shot.path.as_path());
+                let loaded = decode_pair((&files[0], paths[0]), (&files[1], paths[1]), &Unseen::default())?;
+                found.push((stamp, [loaded.left, loaded.right].map(|picture| picture.get(0, 0)[0])));
+            }
+            Err(reason) => error = Some(reason.to_string()),
+        }
+    }
+    let left_out = pairs.left_out().lock().unwrap().clone();
+    Ok((found, left_out, error))
+}
+
+fn written(bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ride.mcap");
+    fs::write(&file, bytes).unwrap();
+    (folder, file)
+}
+
+/// Three pairs and a left frame between them, among messages of other kinds.
+fn ride() -> Vec<Sent<'static>> {
+    vec![
+        ("/tf", "tf2_msgs/msg/TFMessage", vec![0, 1, 0, 0]),
+        ("/left/image", IMAGE, grey(10, 50)),
+        ("/right/image", IMAGE, grey(10, 60)),
+        ("/left/image", IMAGE, grey(20, 51)),
+        ("/left/image", IMAGE, grey(30, 52)),
+        ("/right/image", IMAGE, grey(30, 62)),
+        ("/right/image", IMAGE, grey(41, 63)),
+        ("/left/image", IMAGE, grey(40, 53)),
+    ]
+}
+
+const PAIRS: [(u64, [u8; 2]); 3] = [(10, [50, 60]), (30, [52, 62]), (40, [53, 63])];
+
+#[test]
+fn pairs_come_out_of_chunks_of_any_size_and_of_none() {
+    for options in
+        [plain(), plain().chunk_size(Some(1)), plain().use_chunks(false), plain().emit_summary_records(false)]
+    {
+        let (_folder, file) = written(&recorded(options, &ride()));
+        let (found, left_out, error) = read(&file).unwrap();
+        assert_eq!((found, error), (PAIRS.to_vec(), None));
+        assert_eq!(left_out, LeftOut { alone: [1, 0], ..LeftOut::default() });
+    }
+}
+
+/// The chunks of a recording, compressed anew.
+fn with_chunks(bytes: &[u8], name: &str, compress: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    let mut out = mcap::MAGIC.to_vec();
+    let mut rest = &bytes[8..];
+    while let Some(([code, length @ ..], after)) = rest.split_first_chunk::<9>() {
+        let (body, after) = after.split_at(u64::from_le_bytes(*length) as usize);
+        rest = after;
+        let body = match mcap::parse_record(*code, body) {
+            Ok(mcap::records::Record::Chunk { header, data }) => {
+                let data = compress(&data);
+                let name = [&(name.len() as u32).to_le_bytes(), name.as_bytes()].concat();
+                let sizes = [header.message_start_time, header.message_end_time, header.uncompressed_size]
+                    .map(u64::to_le_bytes);
+                let length = (data.len() as u64).to_le_bytes();
+                [&sizes.concat()[..], &header.uncompressed_crc.to_le_bytes(), &name, &length, &data].concat()
+            }
+            _ => body.to_vec(),
+        };
+        out.push(*code);
+        out.extend((body.len() as u64).to_le_bytes());
+        out.extend(body);
+        if *code == mcap::records::op::DATA_END {
+            break;
+        }
+    }
+    out
+}
+
+#[test]
+fn compressed_chunks_are_read_and_others_named() {
+    let whole = recorded(plain(), &ride());
+    let lz4 = |data: &[u8]| {
+        let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+        encoder.write_all(data).unwrap();
+        encoder.finish().unwrap()
+    };
+    let zstd = |data: &[u8]| ruzstd::encoding::compress_to_vec(data, ruzstd::encoding::CompressionLevel::Fastest);
+    for bytes in
+        [with_chunks(&whole, "lz4", lz4), with_chunks(&whole, "zstd", zstd), with_chunks(&whole, "", <[u8]>::to_vec)]
+    {
+        let (_folder, file) = written(&bytes);
+        let (found, _, error) = read(&file).unwrap();
+        assert_eq!((found, error), (PAIRS.to_vec(), None));
+    }
+    let error = |bytes: Vec<u8>| {
+        let (_folder, file) = written(&bytes);
+        read(&file).map(|(.., error)| error.unwrap()).unwrap_or_else(|error| error.to_string())
+    };
+    let told = error(with_chunks(&whole, "brotli", <[u8]>::to_vec));
+    assert!(told.contains("compressed by \"brotli\"") && told.contains("mcap compress"), "{told}");
+    let told = error(with_chunks(&whole, "zstd", |_| vec![1; 20]));
+    assert!(told.contains("a chunk is damaged"), "{told}");
+    let told = error(with_chunks(&whole, "lz4", |data| lz4(&data[1..])));
+    assert!(told.contains("a chunk is damaged (of"), "{told}");
+    let told =
+        error(with_chunks(&whole, "", |data| data.iter().map(|&byte| if byte == 52 { 53 } else { byte }).collect()));
+    assert!(told.contains("its checksum is another one"), "{told}");
+}
+
+#[test]
+fn a_recording_that_breaks_off_gives_its_pairs_first() {
+    let whole = recorded(plain().chunk_size(Some(1)), &ride());
+    let mut most = 0;
+    for length in 0..whole.len() {
+        let (_folder, file) = written(&whole[..length]);
+        let Ok((found, _, error)) = read(&file) else { continue };
+        assert_eq!(found, PAIRS[..found.len()]);
+        // What follows the data may be missing.
+        if found.len() < 3 {
+            assert!(error.is_some_and(|error| error.ends_with("the recording is cut off")), "{length}");
+        }
+        most = most.max(found.len());
+    }
+    assert_eq!(most, 3);
+}
+
+/// A small generator (xorshift).
+fn random(state: &mut u64) -> u64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    *state
+}
+
+#[test]
+fn no_damage_is_more_than_an_error() {
+    for options in [plain().chunk_size(Some(200)), plain().use_chunks(false)] {
+        let whole = recorded(options, &ride());
+        let mut state = 88;
+        for _ in 0..400 {
+            let mut bytes = whole.clone();
+            for _ in 0..=random(&mut state) % 3 {
+                let place = random(&mut state) as usize % bytes.len();
+                bytes[place] = [0, 255, 127, 1, random(&mut state) as u8][random(&mut state) as usize % 5];
+            }
+            let (_folder, file) = written(&bytes);
+            let _ = read(&file);
+        }
+    }
+}
+
+#[test]
+fn damaged_messages_are_counted_and_a_frame_without_a_time_has_that_of_its_record() {
+    let mut sent = ride();
+    sent.insert(0, ("/right/image", IMAGE, vec![0, 1, 0, 0, 9]));
+    // Recorded at 109 and 110.
+    sent.extend([("/left/image", IMAGE, grey(0, 54)), ("/right/image", IMAGE, grey(0, 64))]);
+    let (_folder, file) = written(&recorded(plain(), &sent));
+    let (found, left_out, _) = read(&file).unwrap();
+    assert_eq!(found, [&PAIRS[..], &[(109, [54, 64])]].concat());
+    assert_eq!((left_out.alone, left_out.damaged), ([1, 0], [0, 1]));
+    assert!(left_out.reason.unwrap().contains("cut off"));
+}
+
+#[test]
+fn compressed_pictures_and_messages_of_ros_1_are_read() {
+    let png = |level: u8| {
+        let mut png = Vec::new();
+        crate::io::png::write_grey8(&mut png, &crate::image::Plane::filled((4, 2), level)).unwrap();
+        png
+    };
+    let sent = [
+        ("/cam0/image_raw/compressed", COMPRESSED, compressed(5, &png(80))),
+        ("/cam1/image_raw/compressed", COMPRESSED, compressed(5, &png(81))),
+    ];
+    let (_folder, file) = written(&recorded(plain(), &sent));
+    assert_eq!(read(&file).unwrap().0, [(5, [80, 81])]);
+    let old = |level| image(Encoding::Ros1, 5, (1, 1), "bgr8", 0, 3, &[9, 9, level]);
+    let sent = [("/cam1/image_raw", "sensor_msgs/Image", old(91)), ("/cam0/image_raw", "sensor_msgs/Image", old(90))];
+    let (_folder, file) = written(&recorded(plain(), &sent));
+    assert_eq!(read(&file).unwrap().0, [(5, [90, 91])]);
+}
+
+#[test]
+fn files_of_one_recording_follow_one_another() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("metadata.yaml"), "").unwrap();
+    for (number, part) in ride().chunks(1).enumerate() {
+        fs::write(folder.path().join(format!("ride_{}.mcap", number + 5)), recorded(plain(), part)).unwrap();
+    }
+    assert!(Recording::is_one(folder.path()));
+    let (found, left_out, error) = read(folder.path()).unwrap();
+    assert_eq!((found, left_out.alone, error), (PAIRS.to_vec(), [1, 0], None));
+    let recording = Recording::open(folder.path()).unwrap();
+    let counts: Vec<_> = recording.topics().iter().map(|topic| (topic.name.as_str(), topic.messages)).collect();
+    assert_eq!(counts, [("/left/image", Some(4)), ("/right/image", Some(3)), ("/tf", Some(1))]);
+}
+
+#[test]
+fn the_calibration_lies_beside_the_pictures() {
+    let calibration = |infos: [Vec<u8>; 2]| {
+        let [left, right] = infos;
+        let mut sent = vec![("/left/camera_info", INFO, left), ("/right/camera_info", INFO, right)];
+        sent.extend(ride());
+        let (_folder, file) = written(&recorded(plain(), &sent));
+        let recording = Recording::open(&file).unwrap();
+        recording.calibration(recording.both_views(None).unwrap())
+    };
+    let found = calibration([camera_info(100.0, 0.0), camera_info(100.0, -12.0)]).unwrap().unwrap();
+    let rectified = found.loaded.for_rectified((4, 2).into()).unwrap();
+    assert_eq!((rectified.focal, rectified.baseline, found.is_rectified), (100.0, 0.12, false));
+    assert!(found.path.ends_with("ride.mcap#/right/camera_info"));
+    assert!(calibration([camera_info(0.0, 0.0), camera_info(0.0, 0.0)]).unwrap().is_none(), "not calibrated");
+    let error = calibration([camera_info(100.0, 0.0), camera_info(100.0, 0.0)]).unwrap_err().to_string();
+    assert!(error.contains("minus focal length times baseline"), "{error}");
+    assert!(calibration([vec![0, 1, 0, 0, 5], camera_info(100.0, -12.0)]).unwrap().is_none(), "damaged");
+}
+
+#[test]
+fn what_cannot_be_read_names_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, told) in [
+        ("ride.bag", "mcap convert IN.bag OUT.mcap"),
+        ("ride.db3", "mcap convert IN.db3"),
+        ("ride.mcap.zstd", "zstd -d"),
+        ("short.mcap", "the recording is cut off"),
+        ("other.mcap", "no MCAP recording begins there"),
+    ] {
+        let file = folder.path().join(name);
+        fs::write(&file, if name.starts_with("other") { &b"\x89PNG\r\n\x1a\n"[..] } else { b"\x89MCAP" }).unwrap();
+        assert!(Recording::is_one(&file), "{name}");
+        let error = Recording::open(&file).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+    }
+    let empty = folder.path().join("folder");
+    fs::create_dir(&empty).unwrap();
+    fs::write(empty.join("metadata.yaml"), "").unwrap();
+    assert!(Recording::open(&empty).unwrap_err().to_string().contains("no recording (.mcap) in the folder"));
+    fs::write(empty.join("ride_0.db3"), "").unwrap();
+    assert!(Recording::open(&empty).unwrap_err().to_string().contains("ride_0.db3: SQLite bags are not read"));
+
+    let (_folder, file) =
+        written(&recorded(plain(), &[("/left/image", IMAGE, grey(1, 1)), ("/front", IMAGE, grey(1, 1))]));
+    let recording = Recording::open(&file).unwrap();
+    let error = |named| recording.both_views(named).unwrap_err().to_string();
+    let told = error(None);
+    assert!(told.contains("do not tell") && told.contains("/front (1 messages), /left/image (1 messages)"), "{told}");
+    assert!(error(Some(["/left/image", "/rear"])).contains("there is no topic /rear; topics of pictures are /front"));
+    assert!(error(Some(["/front", "/front"])).contains("are the same"));
+    assert!(recording.both_views(Some(["/front", "/left/image"])).is_ok());
+
+    let sent = [("/left/scan", "sensor_msgs/msg/LaserScan", vec![0, 1, 0, 0])];
+    let (_folder, file) = written(&recorded(plain(), &sent));
+    let recording = Recording::open(&file).unwrap();
+    let told = recording.both_views(Some(["/left/scan", "/left/scan"])).unwrap_err().to_string();
+    assert!(told.contains("/left/scan has sensor_msgs/msg/LaserScan") && told.contains("no topic has"), "{told}");
+
+    let apart = [("/left/image", IMAGE, grey(1, 1)), ("/right/image", IMAGE, grey(2, 1))];
+    let (_folder, file) = written(&recorded(plain(), &apart));
+    let (found, _, error) = read(&file).unwrap();
+    assert!(found.is_empty() && error.unwrap().contains("has a partner of /right/image at the same time"), "none");
+}
