@@ -9,6 +9,7 @@ use hsad::{
     io::{
         Calibration,
         calibration::{self, Hints, Loaded},
+        recording::RecordedCalibration,
     },
 };
 
@@ -84,7 +85,17 @@ pub struct DepthOptions {
     doffs: Option<f64>,
 }
 
-/// What options tell of the cameras of a pair.
+/// What is known of the cameras of a pair besides the options.
+#[derive(Clone, Copy)]
+pub enum Known<'a> {
+    Nothing,
+    /// A calibration file of the pair, which takes the place of those that the options name.
+    File(&'a Path),
+    /// The calibration of a recording, unless the options have one.
+    Recorded(&'a RecordedCalibration),
+}
+
+/// What is known of the cameras of a pair.
 pub enum Cameras {
     Unknown,
     /// The geometry of the pictures, if they are rectified.
@@ -94,20 +105,30 @@ pub enum Cameras {
 }
 
 impl DepthOptions {
-    /// What the options tell of the cameras of `pictures` of these sizes in pixels. A file `of_pair` takes the place of all.
+    /// What is known of the cameras of `pictures` of these sizes in pixels.
     ///
     /// # Errors
-    /// As [`CalibrationOptions::read`]; [`Error::Parameter`] for values outside their range.
-    pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2], of_pair: Option<&Path>) -> Result<Cameras> {
-        let file = match of_pair {
-            Some(file) => self.files.read_from(&[file.into()], pictures, sizes)?,
-            None => self.files.read(pictures, sizes)?,
+    /// As [`CalibrationOptions::read`]; [`Error::Parameter`] for values outside their range; [`Error::Format`] for a recorded calibration of
+    /// pictures of other sizes.
+    pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2], known: Known<'_>) -> Result<Cameras> {
+        let file = match known {
+            Known::File(file) => self.files.read_from(&[file.into()], pictures, sizes)?,
+            _ => self.files.read(pictures, sizes)?,
         };
         if let Some(file) = file {
             return Ok(Cameras::Files(file.into()));
         }
-        let Some((focal, baseline)) = self.focal.zip(self.baseline) else { return Ok(Cameras::Unknown) };
-        Ok(Cameras::Rectified(Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), sizes[0])?))
+        if let Some((focal, baseline)) = self.focal.zip(self.baseline) {
+            return Ok(Cameras::Rectified(Calibration::centred(focal, baseline, self.doffs.unwrap_or(0.0), sizes[0])?));
+        }
+        let Known::Recorded(RecordedCalibration { loaded, is_rectified, path }) = known else {
+            return Ok(Cameras::Unknown);
+        };
+        let file = CalibrationFile { path: path.clone(), loaded: loaded.clone() };
+        if !is_rectified {
+            return Ok(Cameras::Files(file.into()));
+        }
+        file.loaded.for_rectified(sizes[0]).map(Cameras::Rectified).map_err(|error| file.misfit(&error))
     }
 }
 

@@ -7,7 +7,7 @@ use clap::Args;
 use super::{
     options::RunOptions,
     output::Output,
-    recipe::{Prepared, Recipe},
+    recipe::{Known, Prepared, Recipe},
     summary,
     terminal::{self, Progress},
     view_files::ViewOptions,
@@ -61,7 +61,7 @@ impl Match {
     pub fn run(self) -> anyhow::Result<()> {
         self.recipe.config()?;
         let mut output = Output::open_set(&self.output)?;
-        let Prepared { job, warnings } = self.recipe.prepare(&self.views.views(), None, &mut output)?;
+        let Prepared { job, warnings } = self.recipe.prepare(&self.views.views(), Known::Nothing, &mut output)?;
         let told = warnings.len();
         if !self.run.quiet {
             warnings.iter().for_each(terminal::warning);

@@ -1,7 +1,5 @@
 //! How a pair is matched, and which files come out: what `hsad match` and `hsad batch` share.
 
-use std::path::Path;
-
 use clap::Args;
 use hsad::{
     Error,
@@ -21,6 +19,8 @@ use super::{
     view_files::Views,
     way::Rectify,
 };
+
+pub use super::depth::Known;
 
 /// Names of the files of a pair that was rectified first.
 const NAMES: Names = Names {
@@ -86,16 +86,19 @@ impl Recipe {
         Ok((config, self.figure.strongest(&self.matching)?))
     }
 
-    /// Reads the files of a pair, and checks that its results can be written to `output`. `calibration` takes the place of the files that
-    /// the options name.
-    pub fn prepare(&self, views: &Views, calibration: Option<&Path>, output: &mut Output) -> anyhow::Result<Prepared> {
+    /// Reads the files of a pair, and checks that its results can be written to `output`.
+    pub fn prepare(&self, views: &Views, known: Known<'_>, output: &mut Output) -> anyhow::Result<Prepared> {
         let (config, strongest) = self.config()?;
         let unseen = self.unseen.unseen();
         output.spare(views.paths());
         output.spare(unseen.files());
         let LoadedPair { left, right, stretch, mut warnings } = views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
-        let cameras = self.depth.cameras(views.paths(), sizes, calibration)?;
+        let known = match known {
+            Known::Recorded(_) if self.rectify == Rectify::Uncalibrated => Known::Nothing,
+            known => known,
+        };
+        let cameras = self.depth.cameras(views.paths(), sizes, known)?;
         let is_calibrated = !matches!(cameras, Cameras::Unknown);
         self.cloud.check(is_calibrated)?;
         self.check_places(output, is_calibrated)?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use hsad::{
     Result,
-    io::load::{Halves, LoadedPair, Unseen, decode_halves, load_both, load_pair},
+    io::load::{Halves, LoadedPair, Unseen, decode_halves, decode_pair, load_both, load_pair},
 };
 
 /// The files of a pair.
@@ -44,14 +44,23 @@ pub struct Views<'a> {
     pub left: &'a Path,
     pub right: Option<&'a Path>,
     pub halves: Option<Halves>,
-    /// The bytes of the picture file with both, if they do not come from a file called `left`.
-    pub bytes: Option<&'a [u8]>,
+    /// The bytes of the picture files, if they do not come from files of these names.
+    pub in_memory: Option<InMemory<'a>>,
+}
+
+/// Picture files in memory.
+#[derive(Clone, Copy)]
+pub enum InMemory<'a> {
+    /// One with both views.
+    Both(&'a [u8]),
+    /// Those of the left and of the right view.
+    Each([&'a [u8]; 2]),
 }
 
 impl ViewOptions {
     /// The files.
     pub fn views(&self) -> Views<'_> {
-        Views { left: &self.left, right: self.right.as_deref(), halves: self.halves.halves(), bytes: None }
+        Views { left: &self.left, right: self.right.as_deref(), halves: self.halves.halves(), in_memory: None }
     }
 }
 
@@ -66,8 +75,12 @@ impl Views<'_> {
     /// # Errors
     /// As [`load_pair`] and [`load_both`].
     pub fn load(&self, unseen: &Unseen) -> Result<LoadedPair> {
-        match (self.bytes, self.right) {
-            (Some(bytes), _) => decode_halves(bytes, self.left, self.halves.unwrap_or(Halves::LeftRight), unseen),
+        let [left, right] = self.paths();
+        match (self.in_memory, self.right) {
+            (Some(InMemory::Both(bytes)), _) => {
+                decode_halves(bytes, left, self.halves.unwrap_or(Halves::LeftRight), unseen)
+            }
+            (Some(InMemory::Each(bytes)), _) => decode_pair((bytes[0], left), (bytes[1], right), unseen),
             (None, Some(right)) => load_pair(self.left, right, unseen),
             (None, None) => load_both(self.left, self.halves, unseen),
         }

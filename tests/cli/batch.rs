@@ -29,19 +29,19 @@ fn batch(arguments: &[&str], output: &Path) -> Assert {
 }
 
 /// The records of a journal, in the order of the names.
-fn records(journal: &Path) -> Vec<Value> {
+pub fn records(journal: &Path) -> Vec<Value> {
     let text = fs::read_to_string(journal).expect("a journal");
     let mut records: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     records.sort_by_key(|record| record["name"].to_string());
     records
 }
 
-fn statuses(journal: &Path) -> Vec<(String, String)> {
+pub fn statuses(journal: &Path) -> Vec<(String, String)> {
     let text = |value: &Value| value.as_str().expect("a text").to_owned();
     records(journal).iter().map(|record| (text(&record["name"]), text(&record["status"]))).collect()
 }
 
-fn of(pairs: &[(&str, &str)]) -> Vec<(String, String)> {
+pub fn of(pairs: &[(&str, &str)]) -> Vec<(String, String)> {
     pairs.iter().map(|&(name, status)| (name.into(), status.into())).collect()
 }
 

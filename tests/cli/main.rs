@@ -33,6 +33,7 @@ mod one_file;
 #[path = "../pictures/mod.rs"]
 mod pictures;
 mod pipeline_cache;
+mod recordings;
 mod rectify;
 mod sets;
 mod tune;

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 
 use super::{journal::Journal, load::Shares, record::Record, tally::Tally};
 
@@ -53,6 +53,19 @@ impl Desk {
     /// Notes how long the run took, and how busy it kept the machine.
     pub fn note_load(&self, time: Duration, shares: &Shares) {
         self.state().tally.note_load(time, shares);
+    }
+
+    /// Ends the run with an error, unless another one has ended it.
+    pub fn end(&self, error: Error) {
+        let State { result, .. } = &mut *self.state();
+        if result.is_ok() {
+            *result = Err(error);
+        }
+    }
+
+    /// Notes which frames are in no pair.
+    pub fn note_left_out(&self, text: Option<String>) {
+        self.state().tally.note_left_out(text);
     }
 
     /// The tally of a run that was not ended by an error.

@@ -1,7 +1,8 @@
 //! `hsad batch`: many pairs on one device.
 
 mod desk;
-mod group;
+mod feed;
+mod frame;
 mod journal;
 mod list;
 mod load;
@@ -10,32 +11,27 @@ mod patterns;
 mod record;
 mod results;
 mod shard;
+mod source;
 mod tally;
 mod tree;
 mod video;
 mod work;
 mod workers;
 
-use std::{
-    fs,
-    num::NonZero,
-    path::{Path, PathBuf},
-    thread,
-};
+use std::{fs, num::NonZero, path::PathBuf, thread};
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::Result;
 use clap::Args;
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
 use desk::Desk;
-use group::Grouping;
+use feed::{Feed, Grouping};
 use journal::{Earlier, Journal};
 use load::Load;
-use pair::Pair;
 use results::Results;
 use shard::Shard;
+use source::Source;
 use tally::Tally;
-use video::{Frame, Video, is_video};
 use work::Work;
 use workers::side_by_side;
 
@@ -59,6 +55,7 @@ const KEPT: u64 = 1 << 30;
   hsad batch --left 'cam0/*.png' --right 'cam1/*.png' -o out --resume
   hsad batch pairs.jsonl -o out --shard $SLURM_ARRAY_TASK_ID/64
   ffmpeg -i video.mp4 -f yuv4mpegpipe - | hsad batch - --side-by-side left-right -o out --temporal
+  hsad batch ride.mcap --topics /cam0/image_raw /cam1/image_raw -o out
 
 A list is CSV with the columns left, right, name and calib in any order (right is missing where left has both views), or JSON lines with
 the same fields; paths are relative to the list.
@@ -66,7 +63,8 @@ the same fields; paths are relative to the list.
 Exit codes: 0 all pairs done, 1 some failed, 4 all files are written and some maps are not to be trusted or have no depth, 2 usage"))]
 pub struct Batch {
     /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair;
-    /// or a video with both views in each frame, as ffmpeg -f yuv4mpegpipe writes it (.y4m, or - for standard input)
+    /// or a video with both views in each frame, as ffmpeg -f yuv4mpegpipe writes it (.y4m, or - for standard input); or a recording of ROS (.mcap,
+    /// or the folder that ros2 bag record -s mcap writes)
     #[arg(required_unless_present = "left")]
     source: Option<PathBuf>,
     /// Left views: a path with one *, whose text names the pair; or pictures with both views, with --side-by-side or --top-bottom
@@ -75,6 +73,10 @@ pub struct Batch {
     /// Right views: a path with one *
     #[arg(long, value_name = "PATTERN", requires = "left", group = "second_view")]
     right: Option<String>,
+    /// Topics of the left and of the right view in a recording [default: those whose names differ in left and right, cam0 and cam1, or
+    /// infra1 and infra2]
+    #[arg(long, num_args = 2, value_names = ["LEFT", "RIGHT"], conflicts_with = "left")]
+    topics: Option<Vec<String>>,
     /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -124,7 +126,7 @@ impl Batch {
     pub fn run(self) -> Result<()> {
         let (config, strongest) = self.recipe.config()?;
         let parameters = parameters(&config, strongest);
-        let source = self.source()?;
+        let source = Source::of(&self)?;
         let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
@@ -132,7 +134,7 @@ impl Batch {
         let recipe = format!("{:?} {:?}{temporal}", self.recipe, self.halves);
         let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
         let results = Results { folder: &self.output, resumes: self.resume, parameters };
-        let tally = Tally::new(source.len().map(|count| grouping.count(count)), self.run.quiet);
+        let tally = Tally::new(source.count.map(|count| grouping.count(count)), self.run.quiet);
         let desk = Desk::new(journal, tally);
         self.work_on(source, grouping, &earlier, &results, &desk)?;
         let tally = desk.into_tally()?;
@@ -153,27 +155,32 @@ impl Batch {
         results: &Results<'_>,
         desk: &Desk,
     ) -> Result<()> {
-        let mut groups = grouping
-            .of(source.into_pairs(), |pair| {
-                // Results that were removed since are made again.
-                let record = earlier.finished(pair)?.filter(|_| results.report_of(pair).is_some());
-                record.iter().for_each(|record| desk.count_earlier(record));
-                Ok(record.cloned())
-            })
-            .peekable();
-
-        if groups.peek().is_some() {
+        let feed = Feed::new(source.pairs, grouping, |pair| {
+            // Results that were removed since are made again.
+            let record = earlier.finished(pair)?.filter(|_| results.report_of(pair).is_some());
+            record.iter().for_each(|record| desk.count_earlier(record));
+            Ok(record.cloned())
+        });
+        if feed.has_work() {
             let cached = self.run.open()?.keeping(KEPT);
             let load = Load::begin(&cached.backend);
             let halves = self.halves.halves();
-            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, results };
-            side_by_side(groups, self.jobs(), |group| match group {
-                Ok(group) => work.on_group(group, |record| desk.record(record.map_err(Into::into))),
-                Err(error) => desk.record(Err(error)),
+            let recorded = source.recorded.as_ref().and_then(|recorded| recorded.calibration.as_ref());
+            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, recorded, results };
+            side_by_side(source.count.unwrap_or(usize::MAX).min(self.jobs()), || {
+                while let Some(group) = feed.group() {
+                    if work.on_group(group, |record| desk.record(record.map_err(Into::into))).is_break() {
+                        feed.stop();
+                    }
+                }
             });
             desk.note_load(load.elapsed(), &load.shares(&cached.backend));
             cached.save();
         }
+        if let Some(error) = feed.into_error() {
+            desk.end(error);
+        }
+        desk.note_left_out(source.recorded.and_then(|recorded| recorded.left_out()));
         Ok(())
     }
 
@@ -185,55 +192,5 @@ impl Batch {
         }
         let processors = || thread::available_parallelism().map_or(1, NonZero::get);
         self.jobs.map_or_else(|| processors().clamp(2, MOST_JOBS), usize::from)
-    }
-
-    /// Where the pairs come from.
-    fn source(&self) -> Result<Source> {
-        let pairs = match (&self.source, &self.left, &self.right) {
-            (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
-            (None, Some(both), None) => patterns::pictures_of_both(both)?,
-            (Some(source), ..) if is_video(source) => {
-                if self.halves.halves().is_none() {
-                    bail!(
-                        "{}: tell where both views lie in a frame (--side-by-side, --top-bottom)",
-                        hsad::shown(source)
-                    );
-                }
-                return Ok(Source::Video(Video::open(source)?));
-            }
-            (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
-            (Some(source), ..) if list::is_list(source) => list::read(source)?,
-            (Some(source), ..) => bail!(
-                "{}: neither a folder nor a list of pairs (.csv, .jsonl) nor a video (.y4m); hsad match matches a pair",
-                hsad::shown(source)
-            ),
-            _ => return Err(anyhow!("name a list or a folder, or --left and --right")),
-        };
-        if pairs.is_empty() {
-            bail!("{}: no pairs", hsad::shown(self.source.as_deref().unwrap_or(Path::new("the list"))));
-        }
-        pair::check_names(&pairs)?;
-        Ok(Source::Pairs(pairs))
-    }
-}
-
-/// Where pairs come from.
-enum Source {
-    Pairs(Vec<Pair>),
-    Video(Video),
-}
-
-impl Source {
-    /// The number of pairs, if it is known.
-    fn len(&self) -> Option<usize> {
-        if let Self::Pairs(pairs) = self { Some(pairs.len()) } else { None }
-    }
-
-    /// The pairs in order, and the frames that were read for them.
-    fn into_pairs(self) -> Box<dyn Iterator<Item = Result<(Pair, Option<Frame>)>> + Send> {
-        match self {
-            Self::Pairs(pairs) => Box::new(pairs.into_iter().map(|pair| Ok((pair, None)))),
-            Self::Video(video) => Box::new(video.map(|frame| frame.map(|(pair, frame)| (pair, Some(frame))))),
-        }
     }
 }

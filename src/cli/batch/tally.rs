@@ -29,6 +29,8 @@ pub struct Tally {
     stages: Stages,
     /// What the summary says of the run's time.
     load: String,
+    /// What the summary says of frames that are in no pair.
+    left_out: String,
     bar: ProgressBar,
     /// Whether records are printed.
     prints: bool,
@@ -53,6 +55,7 @@ impl Tally {
             found: Default::default(),
             stages: Stages::default(),
             load: String::new(),
+            left_out: String::new(),
             bar,
             prints,
             quiet,
@@ -113,6 +116,11 @@ impl Tally {
         }
     }
 
+    /// Notes which frames are in no pair.
+    pub fn note_left_out(&mut self, text: Option<String>) {
+        self.left_out = text.map_or_else(String::new, |text| format!("\n{text}"));
+    }
+
     /// Ends the progress line and prints the summary.
     ///
     /// # Errors
@@ -128,6 +136,7 @@ impl Tally {
             text += &format!("; {} by earlier runs", self.earlier);
         }
         text += &self.load;
+        text += &self.left_out;
         for (status, pairs) in Status::ALL.iter().zip(&self.found).skip(1) {
             for (name, reason) in pairs.iter().take(LISTED) {
                 text += &format!("\n  {} {name}: {}", status.name(), reason.as_deref().unwrap_or("unknown"));

@@ -145,6 +145,17 @@ impl Head {
 }
 
 impl Frame {
+    /// Bytes of memory.
+    pub fn bytes(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// A frame of as many bytes.
+    #[cfg(test)]
+    pub fn of_bytes(count: usize) -> Self {
+        Self { head: Head { width: 1, height: 1, chroma: None, is_full: true }, planes: vec![0; count] }
+    }
+
     /// The frame as a PPM, or a PGM if it is grey.
     pub fn to_pnm(&self) -> Vec<u8> {
         let Head { width, height, chroma, is_full } = self.head;

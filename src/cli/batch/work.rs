@@ -7,22 +7,26 @@ use std::{
 };
 
 use anyhow::Result;
-use hsad::{Backend, Error, io::load::Halves, pipeline::Precedent};
+use hsad::{
+    Backend, Error,
+    io::{load::Halves, recording::RecordedCalibration},
+    pipeline::Precedent,
+};
 
 use super::{
     super::{
         exit_code,
         job::CompletedJob,
         output::Output,
-        recipe::{Prepared, Recipe},
+        recipe::{Known, Prepared, Recipe},
         terminal::{Progress, described},
-        view_files::Views,
+        view_files::{InMemory, Views},
     },
-    group::{Group, Member},
+    feed::Member,
+    frame::{Files, Frame},
     pair::Pair,
     record::{Record, Times},
     results::Results,
-    video::Frame,
 };
 
 /// What all pairs share.
@@ -30,6 +34,8 @@ pub struct Work<'a> {
     pub backend: &'a Backend,
     pub recipe: &'a Recipe,
     pub halves: Option<Halves>,
+    /// The calibration that a recording has.
+    pub recorded: Option<&'a RecordedCalibration>,
     pub results: &'a Results<'a>,
 }
 
@@ -55,7 +61,7 @@ impl Work<'_> {
     /// its record.
     pub fn on_group(
         &self,
-        Group(members): Group,
+        members: impl Iterator<Item = Member>,
         then: impl Fn(hsad::Result<Record>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut before = Before::Nothing;
@@ -109,10 +115,18 @@ impl Work<'_> {
             fs::create_dir_all(above).map_err(|source| Error::Io { path: above.into(), source })?;
         }
         let mut output = Output::open_set(&folder)?;
-        let bytes = frame.map(Frame::to_pnm);
-        let views =
-            Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, bytes: bytes.as_deref() };
-        let Prepared { job, warnings } = self.recipe.prepare(&views, pair.calibration.as_deref(), &mut output)?;
+        let files = frame.map(Frame::to_files).transpose()?;
+        let in_memory = files.as_ref().map(|files| match files {
+            Files::Both(both) => InMemory::Both(both),
+            Files::Each(each) => InMemory::Each(each.each_ref().map(|bytes| &**bytes)),
+        });
+        let views = Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, in_memory };
+        let known = match (&pair.calibration, self.recorded) {
+            (Some(file), _) => Known::File(file),
+            (None, Some(recorded)) => Known::Recorded(recorded),
+            (None, None) => Known::Nothing,
+        };
+        let Prepared { job, warnings } = self.recipe.prepare(&views, known, &mut output)?;
         let read = start.elapsed();
         let mut completed = job.run_on(self.backend, precedent, &Progress::new(true), Instant::now())?;
         completed.warnings.splice(0..0, warnings);
