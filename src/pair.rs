@@ -8,7 +8,7 @@ use crate::{
     dense::{Dense, DenseConfig, DenseParameters, Masks, UploadedPair, View, compute_uploaded, kernels::Loss},
     error::{Error, Result, check},
     features::{Detected, FeatureConfig, detect_both},
-    gpu::{Gpu, Readback, check_limits, guarded, storage_buffer},
+    gpu::{Gpu, Readback, check_limits, storage_buffer},
     image::{Luma, Size, reduced},
     io::Picture,
     luma::{Colours, check_size, kernels::luma::RgbaToLuma, packed_bytes, unpack, upload},
@@ -101,7 +101,7 @@ impl<'b> Pair<'b> {
             Ok(colours)
         };
         let [left_colours, right_colours] = pictures;
-        let colours = guarded(gpu, "the picture", || {
+        let colours = gpu.with_room("the picture", || {
             Ok([left_colours.map(uploaded).transpose()?, right_colours.map(uploaded).transpose()?])
         });
         let device = Some(OnDevice { gpu, luma, colours: colours.await? });
@@ -246,7 +246,7 @@ impl<'b> Pair<'b> {
         if let Some(OnDevice { gpu, luma, colours }) = &self.device {
             let masks = match seen {
                 Some(Seen { masks, loss }) => {
-                    Some(guarded(gpu, "the masks", || Masks::new(gpu, self.size(), masks, loss)).await?)
+                    Some(gpu.with_room("the masks", || Masks::new(gpu, self.size(), masks, loss)).await?)
                 }
                 None => None,
             };
@@ -274,7 +274,7 @@ impl<'b> Pair<'b> {
 /// Uploads a picture, and converts it to luma, on the device and on the host.
 async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Colours, Luma)> {
     let Size { width, height } = picture.size();
-    let (luma, colours, readback) = guarded(gpu, "the picture", || {
+    let (luma, colours, readback) = gpu.with_room("the picture", || {
         let kernel = RgbaToLuma::new(gpu);
         let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
         let colours = Colours::new(gpu, picture.size())?;

@@ -46,7 +46,7 @@ impl ReferenceColours {
         config: &DenseConfig,
         luma: [&wgpu::Buffer; 2],
     ) -> Result<Option<Colours>> {
-        guarded(gpu, "the grey levels", || {
+        gpu.with_room("the grey levels", || {
             let Some(own) = Self::new(gpu, size, config, luma)? else { return Ok(None) };
             let mut encoder = gpu.encoder("grey levels");
             own.grey().iter().for_each(|one| one.record(&mut encoder));

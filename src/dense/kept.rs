@@ -43,18 +43,13 @@ pub(super) async fn matched(
     pair: &UploadedPair,
     progress: impl FnMut(f32),
 ) -> Result<Dense> {
-    let purpose = Purpose {
+    let purpose = &Purpose {
         size,
         config: DenseConfig { brightness: Brightness::SAME, ..config.clone() },
         masks: pair.masks.as_ref().map(|masks| masks.loss),
     };
-    let mut kept = match gpu.take_kept(|kept: &Kept| kept.purpose == purpose) {
-        Some(kept) => kept,
-        None => match Kept::new(gpu, &purpose, pair).await {
-            built if gpu.has_made_room(&built) => Kept::new(gpu, &purpose, pair).await?,
-            built => built?,
-        },
-    };
+    let build = |gpu: Gpu| async move { Kept::new(&gpu, purpose, pair).await };
+    let mut kept = gpu.kept_or_built(|kept: &Kept| kept.purpose == *purpose, build).await?;
     // A matcher whose work failed is not kept.
     let dense = kept.matcher.run_on(pair, config.brightness, &mut kept.readback, progress).await?;
     let bytes = kept.bytes;
@@ -63,10 +58,9 @@ pub(super) async fn matched(
 }
 
 impl Kept {
-    /// A matcher for pairs such as `pair`.
+    /// A matcher for pairs such as `pair`, on a `gpu` that keeps nothing.
     async fn new(gpu: &Gpu, purpose: &Purpose, pair: &UploadedPair) -> Result<Self> {
         let Purpose { size, config, .. } = purpose;
-        let gpu = &gpu.not_keeping();
         let own = guarded(gpu, "the pair", || pair.another(gpu, *size)).await?;
         let of_colours = own.colours.as_ref().map_or(0, Colours::bytes);
         let matcher = Matcher::build(gpu, *size, config, Views::Uploaded(own), u32::MAX).await?;

@@ -61,9 +61,9 @@ pub(super) async fn compute(
 
 /// The pairs of all levels, the finest first, which alone has colours and masks.
 async fn halved(gpu: &Gpu, pair: UploadedPair, levels: &[Level]) -> Result<Vec<UploadedPair>> {
-    guarded(gpu, "the pyramid", || {
+    gpu.with_room("the pyramid", || {
         let halve = Halve::new(gpu);
-        let mut pairs = vec![pair];
+        let mut pairs = vec![pair.clone()];
         let mut encoder = gpu.encoder("pyramid");
         for sizes in levels.windows(2) {
             let [left, right] = pairs[pairs.len() - 1].luma.each_ref().map(|picture| -> Result<wgpu::Buffer> {
@@ -88,7 +88,7 @@ async fn matched(
     mut progress: impl FnMut(f32),
 ) -> Result<Dense> {
     let size = task.table.size;
-    let (matching, mut readback) = guarded(gpu, "dense matching", || {
+    let (matching, mut readback) = gpu.with_room("dense matching", || {
         let plan = kernels.plan(gpu, task, limits)?;
         Ok((plan, readback(gpu, size, &task.pair.luma[0])))
     })
@@ -97,7 +97,7 @@ async fn matched(
     matching.run_by_parts(readback.outputs(), |share| progress(part * share)).await?;
     // The volumes are free before the map is refined, and read.
     if let Some(map) = matching.into_map() {
-        let refinement = guarded(gpu, "dense matching", || task.plan_refinement(gpu, map, limits)).await?;
+        let refinement = gpu.with_room("dense matching", || task.plan_refinement(gpu, map.clone(), limits)).await?;
         let after = |share| progress(part + (1.0 - part) * share);
         refinement.run_by_parts(readback.outputs(), after).await?;
     }

@@ -13,13 +13,8 @@ pub(crate) async fn detect_both(
     config: &FeatureConfig,
     [left, right]: [&wgpu::Buffer; 2],
 ) -> Result<[Detected; 2]> {
-    let detector = match gpu.take_kept(|kept: &Detector| kept.serves(size, config)) {
-        Some(kept) => kept,
-        None => match Detector::new(&gpu.not_keeping(), size, config).await {
-            built if gpu.has_made_room(&built) => Detector::new(&gpu.not_keeping(), size, config).await?,
-            built => built?,
-        },
-    };
+    let build = |gpu: Gpu| async move { Detector::new(&gpu, size, config).await };
+    let detector = gpu.kept_or_built(|kept: &Detector| kept.serves(size, config), build).await?;
     let detected = [detector.detect(left).await?, detector.detect(right).await?];
     let bytes = detector.memory();
     gpu.keep(detector, bytes);

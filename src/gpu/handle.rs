@@ -7,6 +7,7 @@ use wgpu::WasmNotSend;
 
 use super::{
     device::{DeviceChoice, adapters, find},
+    guard::guarded,
     pipelines::Pipelines,
     shapes::{SgmPlan, Shapes},
     shelf::Shelf,
@@ -182,23 +183,36 @@ impl Gpu {
     }
 
     /// A clone that keeps nothing, for what is kept: it holds its `Gpu`, and what is kept would else hold itself.
-    pub(crate) fn not_keeping(&self) -> Self {
+    fn not_keeping(&self) -> Self {
         self.clone().keeping(0)
     }
 
-    /// Takes a kept `T` that `fits` accepts.
-    pub(crate) fn take_kept<T: Any>(&self, fits: impl Fn(&T) -> bool) -> Option<T> {
-        self.shelf.take(fits)
+    /// Takes a kept `T` that `fits` accepts, or builds one on a `Gpu` that keeps nothing.
+    ///
+    /// # Errors
+    /// Those of `build`.
+    pub(crate) async fn kept_or_built<T: Any, F: Future<Output = Result<T>>>(
+        &self,
+        fits: impl Fn(&T) -> bool,
+        build: impl Fn(Self) -> F,
+    ) -> Result<T> {
+        match self.shelf.take(fits) {
+            Some(kept) => Ok(kept),
+            None => self.shelf.with_room(|| build(self.not_keeping())).await,
+        }
+    }
+
+    /// What `build` creates on the device, as [`guarded`] does. Where there is no memory for it, what is kept makes room for a second attempt.
+    ///
+    /// # Errors
+    /// As [`guarded`].
+    pub(crate) async fn with_room<T>(&self, what: &str, build: impl Fn() -> Result<T>) -> Result<T> {
+        self.shelf.with_room(|| guarded(self, what, &build)).await
     }
 
     /// Keeps a `T` that is not in use and takes `bytes` of the device.
     pub(crate) fn keep<T: Any + WasmNotSend>(&self, thing: T, bytes: u64) {
         self.shelf.put(thing, bytes);
-    }
-
-    /// Drops what is kept if `built` found no memory; whether that makes room for a second attempt.
-    pub(crate) fn has_made_room<T>(&self, built: &Result<T>) -> bool {
-        matches!(built, Err(Error::OutOfMemory(_))) && self.shelf.clear()
     }
 
     /// Creates an encoder for the library's own submissions.

@@ -8,6 +8,8 @@ use std::{
 
 use wgpu::WasmNotSend;
 
+use crate::error::{Error, Result};
+
 /// Devices of browsers stay on their thread.
 #[cfg(not(target_arch = "wasm32"))]
 type Thing = Box<dyn Any + Send>;
@@ -73,13 +75,23 @@ impl Shelf {
     }
 
     /// Drops everything; whether there was anything.
-    pub fn clear(&self) -> bool {
+    fn clear(&self) -> bool {
         !self.with(std::mem::take).is_empty()
+    }
+
+    /// What `build` builds. Where there is no memory for it, what is kept makes room for a second attempt.
+    pub async fn with_room<T, F: Future<Output = Result<T>>>(&self, build: impl Fn() -> F) -> Result<T> {
+        match build().await {
+            Err(Error::OutOfMemory(_)) if self.clear() => build().await,
+            built => built,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::{cell::Cell, future::ready};
+
     use super::*;
 
     #[test]
@@ -97,5 +109,25 @@ mod tests {
         assert_eq!(shelf.take(|&number: &u8| number == 9), None, "more than all room");
         assert_eq!([shelf.clear(), shelf.clear()], [true, false]);
         assert_eq!(Shelf::default().most(), 0, "nothing is kept unless it is asked for");
+    }
+
+    #[test]
+    fn what_is_kept_makes_room_for_what_finds_no_memory() {
+        let shelf = Shelf::new(10);
+        let attempts = Cell::new(0);
+        let build = |needed: u64| {
+            attempts.set(0);
+            pollster::block_on(shelf.with_room(|| {
+                attempts.set(attempts.get() + 1);
+                let kept: u64 = shelf.with(|kept| kept.iter().map(|(_, bytes)| bytes).sum());
+                ready(if kept + needed <= 10 { Ok(needed) } else { Err(Error::OutOfMemory("a thing".into())) })
+            }))
+        };
+        shelf.put("a text", 6);
+        assert!(matches!(build(4), Ok(4)) && attempts.get() == 1, "there is room");
+        assert!(matches!(build(5), Ok(5)) && attempts.get() == 2, "the text makes room");
+        assert!(matches!(build(11), Err(Error::OutOfMemory(_))) && attempts.get() == 1, "nothing is kept");
+        shelf.put("a text", 6);
+        assert!(matches!(build(11), Err(Error::OutOfMemory(_))) && attempts.get() == 2);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Result, check},
-    gpu::{Gpu, check_buffer, guarded, storage_buffer},
+    gpu::{Gpu, check_buffer, storage_buffer},
     image::{Luma, Size},
 };
 
@@ -46,7 +46,7 @@ pub fn pack(luma: &Luma) -> Vec<u32> {
 pub(crate) async fn upload(gpu: &Gpu, luma: &Luma) -> Result<wgpu::Buffer> {
     let Size { width, height } = luma.size();
     let allocate = || storage_buffer(gpu, "luma", packed_bytes((width, height)));
-    let buffer = guarded(gpu, "the picture", allocate).await?;
+    let buffer = gpu.with_room("the picture", allocate).await?;
     gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&pack(luma)));
     Ok(buffer)
 }

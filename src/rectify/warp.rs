@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Dispatch, Gpu, Readback, buffer_of, guarded, storage_buffer},
+    gpu::{BUFFER_LIMITS, Dispatch, Gpu, Readback, buffer_of, storage_buffer},
     image::{Luma, Size},
     io::Picture,
     luma::{Colours, packed_bytes, unpack, upload},
@@ -64,7 +64,7 @@ impl<'m> UploadedMap<'m> {
 /// [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
 pub(crate) async fn warp(gpu: &Gpu, source: &wgpu::Buffer, map: &WarpMap) -> Result<(wgpu::Buffer, Luma)> {
     let bytes = packed_bytes(map.size());
-    let (warped, readback) = guarded(gpu, "the warped picture", || {
+    let (warped, readback) = gpu.with_room("the warped picture", || {
         let warped = storage_buffer(gpu, "warped luma", bytes)?;
         let readback = Readback::new(gpu, "warped luma", bytes);
         let mut encoder = gpu.encoder("warp");
@@ -84,7 +84,7 @@ pub(crate) async fn warp(gpu: &Gpu, source: &wgpu::Buffer, map: &WarpMap) -> Res
 /// # Errors
 /// As [`warp`].
 pub(crate) async fn warp_colours(gpu: &Gpu, source: &Picture, map: &WarpMap) -> Result<Picture> {
-    let begun = guarded(gpu, "the warped picture", || {
+    let begun = gpu.with_room("the warped picture", || {
         let colours = Colours::new(gpu, source.size())?;
         if colours.bands().count() > 1 {
             return Ok(None);
