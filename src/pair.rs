@@ -274,25 +274,26 @@ impl<'b> Pair<'b> {
 /// Uploads a picture, and converts it to luma, on the device and on the host.
 async fn luma_on(gpu: &Gpu, picture: &Picture) -> Result<(wgpu::Buffer, Colours, Luma)> {
     let Size { width, height } = picture.size();
-    let (luma, colours, readback) = gpu.with_room("the picture", || {
-        let kernel = RgbaToLuma::new(gpu);
-        let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
-        let colours = Colours::new(gpu, picture.size())?;
-        colours.write(gpu, picture);
-        for (first_row, size, rgba) in colours.bands() {
-            let band = storage_buffer(gpu, "luma of a band", packed_bytes(size))?;
+    let (luma, colours, readback) = gpu
+        .with_room("the picture", || {
+            let kernel = RgbaToLuma::new(gpu);
+            let luma = storage_buffer(gpu, "luma", packed_bytes((width, height)))?;
+            let colours = Colours::new(gpu, picture.size())?;
+            colours.write(gpu, picture);
+            for (first_row, size, rgba) in colours.bands() {
+                let band = storage_buffer(gpu, "luma of a band", packed_bytes(size))?;
+                let mut encoder = gpu.encoder("luma");
+                kernel.prepare(size, rgba, &band).record(&mut encoder);
+                encoder.copy_buffer_to_buffer(&band, 0, &luma, packed_bytes((width, first_row)), None);
+                gpu.queue.submit([encoder.finish()]);
+            }
+            let readback = Readback::new(gpu, "luma", packed_bytes((width, height)));
             let mut encoder = gpu.encoder("luma");
-            kernel.prepare(size, rgba, &band).record(&mut encoder);
-            encoder.copy_buffer_to_buffer(&band, 0, &luma, packed_bytes((width, first_row)), None);
+            readback.record(&mut encoder, &luma);
             gpu.queue.submit([encoder.finish()]);
-        }
-        let readback = Readback::new(gpu, "luma", packed_bytes((width, height)));
-        let mut encoder = gpu.encoder("luma");
-        readback.record(&mut encoder, &luma);
-        gpu.queue.submit([encoder.finish()]);
-        Ok((luma, colours, readback))
-    })
-    .await?;
+            Ok((luma, colours, readback))
+        })
+        .await?;
     let words = readback.read((packed_bytes((width, height)) / 4) as usize).await?;
     Ok((luma, colours, unpack((width, height), &words)))
 }

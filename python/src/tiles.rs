@@ -10,7 +10,7 @@ use hsad::{
     gpu::block_on,
     io::{Picture, load, pfm, png},
     pipeline,
-    tiles::{Area, Tile, TilePair},
+    tiles::{Area, Tile, TileMap, TilePair},
 };
 use pyo3::{
     import_exception,
@@ -123,7 +123,7 @@ pub fn match_tile<'py>(
 /// left, right : bytes
 ///     The files of the views that were cut.
 /// tiles : list of dict
-///     The rows of :func:`cut_tiles`, of which the place, the range and the options are needed, with the answers of :func:`match_tile` as
+///     The rows of :func:`cut_tiles`, of which all but the views and their masks are needed, with the answers of :func:`match_tile` as
 ///     ``disparity`` and ``confidence``; in any order.
 /// names : tuple of str
 ///     What the report calls the views.
@@ -138,7 +138,7 @@ pub fn match_tile<'py>(
 /// Raises
 /// ------
 /// ParameterError, FormatError
-///     Tiles of another pair, missing ones, damaged maps.
+///     Tiles of another pair, of different ranges or options, missing ones and those that are there twice; damaged maps.
 #[pyfunction]
 #[pyo3(signature = (left, right, tiles, *, names = ("left".into(), "right".into()), device = "best"))]
 pub fn merge_tiles(
@@ -152,7 +152,8 @@ pub fn merge_tiles(
     let Some(first) = tiles.first() else { return Err(ParameterError::new_err("there is no tile to put together")) };
     let range = range_of(first)?;
     let config = Config { range: Some(range), least: Some(range.min), ..config_of(first)? };
-    let maps = tiles.iter().map(|row| Ok((place_of(row)?, map_of(row)?))).collect::<PyResult<Vec<_>>>()?;
+    let map = |row| Ok(TileMap { tile: place_of(row)?, config: dense_config_of(row)?, dense: map_of(row)? });
+    let maps = tiles.iter().map(map).collect::<PyResult<Vec<_>>>()?;
     let backend = backend(py, device)?;
     let (names, start) = ([names.0, names.1], Instant::now());
     py.detach(|| {
@@ -254,8 +255,7 @@ fn config_of(row: &Bound<'_, PyDict>) -> PyResult<Config> {
     given(options.cast().ok())?.config().raise()
 }
 
-fn pair_of(row: &Bound<'_, PyDict>) -> PyResult<TilePair> {
-    let tile = place_of(row)?;
+fn dense_config_of(row: &Bound<'_, PyDict>) -> PyResult<DenseConfig> {
     let config = config_of(row)?;
     let Method::Hsad(mut parameters) = config.method else {
         return Err(ParameterError::new_err("method is kamencay, which is not for tiles"));
@@ -264,6 +264,12 @@ fn pair_of(row: &Bound<'_, PyDict>) -> PyResult<TilePair> {
     if let Aggregation::Costs(costs) = &mut parameters.aggregation {
         costs.search = if levels > 1 { Search::Levels(levels.min(24)) } else { Search::Whole };
     }
+    let brightness = Brightness { gain: value(row, "gain")?, offset: value(row, "offset")? };
+    Ok(DenseConfig { range: range_of(row)?, reference: config.reference, brightness, parameters })
+}
+
+fn pair_of(row: &Bound<'_, PyDict>) -> PyResult<TilePair> {
+    let tile = place_of(row)?;
     let picture = |name: &str| -> PyResult<Option<Picture>> {
         let Some(bytes) = value::<Option<PyBackedBytes>>(row, name)? else { return Ok(None) };
         let picture = load::decode(&bytes, Path::new(name)).raise()?;
@@ -285,12 +291,7 @@ fn pair_of(row: &Bound<'_, PyDict>) -> PyResult<TilePair> {
         colours: picture("colors")?,
         masks: [own?, other?],
         keeps_hidden: value(row, "keeps_hidden")?,
-        config: DenseConfig {
-            range: range_of(row)?,
-            reference: config.reference,
-            brightness: Brightness { gain: value(row, "gain")?, offset: value(row, "offset")? },
-            parameters,
-        },
+        config: dense_config_of(row)?,
     })
 }
 

@@ -81,8 +81,15 @@ def test_columns_of_tiles_are_refused_and_groups_are_of_one_pair():
         return told
 
     assert error([1, 0]) is None
-    assert error([0, 1, 0]).startswith("two tiles of the pair are at (0, 0): group")
-    levels = int(maps["levels"][0])
-    for name, values in (("min_disparity", [0, 1]), ("disparities", [8, 9]), ("options", ["{}", ""]), ("levels", [levels, levels + 1])):
-        assert error([0, 1], **{name: values}).startswith(f"tiles of one pair differ in {name}: group")
+    assert error([0, 1, 0]).startswith("the list of tiles is with more than one at (0, 0), but all tiles")
+    levels, gain = (int(maps[name][0]) for name in ("levels", "gain"))
+    options = maps["options"][0]
+    for name, values, told in (
+        ("min_disparity", [0, 1], "ranges"),
+        ("disparities", [8, 9], "ranges"),
+        ("gain", [gain, gain + 1], "changes of brightness"),
+        ("options", [options, options.replace("fast", "quality")], "options"),
+        ("levels", [levels, levels + 1], "options"),
+    ):
+        assert error([0, 1], **{name: values}).startswith(f"the list of tiles is of different {told}"), name
     assert "differ in right_file:" in error([0, 1], right_file=[str(RIGHT), "other.png"])

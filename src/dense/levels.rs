@@ -88,11 +88,12 @@ async fn matched(
     mut progress: impl FnMut(f32),
 ) -> Result<Dense> {
     let size = task.table.size;
-    let (matching, mut readback) = gpu.with_room("dense matching", || {
-        let plan = kernels.plan(gpu, task, limits)?;
-        Ok((plan, readback(gpu, size, &task.pair.luma[0])))
-    })
-    .await?;
+    let (matching, mut readback) = gpu
+        .with_room("dense matching", || {
+            let plan = kernels.plan(gpu, task, limits)?;
+            Ok((plan, readback(gpu, size, &task.pair.luma[0])))
+        })
+        .await?;
     let part = if task.goes_on() { MATCHING } else { 1.0 };
     matching.run_by_parts(readback.outputs(), |share| progress(part * share)).await?;
     // The volumes are free before the map is refined, and read.

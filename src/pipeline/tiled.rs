@@ -4,11 +4,11 @@ use super::{Clock, Given, Known, Outcome, range::at_ends, search::Found, seeded,
 use crate::{
     backend::Backend,
     config::{Config, Method},
-    dense::{Dense, DenseConfig},
+    dense::DenseConfig,
     error::{Error, Result},
     gpu::block_on,
     io::Picture,
-    tiles::{Merged, Tile, TilePair, Tiling},
+    tiles::{TileMap, TilePair, Tiling, merged},
 };
 
 /// Cuts the tiles of a pair whose rows correspond, or are slightly off: [`Config::tiles`] says how. The range is searched as it was found;
@@ -29,29 +29,20 @@ pub fn cut_tiles(backend: &Backend, views: (&Picture, &Picture), config: &Config
 /// The outcome of a pair from the maps of its tiles, as [`super::run`] finds it with the range of the tiles in [`Config::range`].
 ///
 /// # Errors
-/// As [`cut_tiles`]; [`Error::Parameter`] for tiles that are not those of the pair, or not all of them.
+/// As [`cut_tiles`]; [`Error::Parameter`] for tiles that are not those of the pair, each once, or were matched over another range or with other
+/// parameters.
 pub fn merge_tiles(
     backend: &Backend,
     views: (&Picture, &Picture),
     config: &Config,
-    maps: &[(Tile, Dense)],
+    maps: &[TileMap],
 ) -> Result<Outcome> {
     block_on(async {
         let pictures = [views.0, views.1];
         let (views, known) = prepared(backend, pictures, config).await?;
         let (tiling, task) = task(&views, &known, config)?;
-        let mut merged = Merged::new(views.size());
-        for tile in tiling.tiles(views.size(), &task) {
-            let Some((_, map)) = maps.iter().find(|(found, _)| *found == tile) else {
-                return Err(Error::Parameter {
-                    name: "the tiles",
-                    value: format!("without one at ({}, {})", tile.core.x, tile.core.y),
-                    expected: "all tiles of the pair, cut with the same options, are needed".into(),
-                });
-            };
-            merged.put(&tile, map)?;
-        }
-        let dense = views.confirmed(merged.into_dense(), config.reference);
+        let dense = merged(views.size(), &tiling.tiles(views.size(), &task), &task, maps)?;
+        let dense = views.confirmed(dense, config.reference);
         let found = Found { range: task.range, at_ends: at_ends(&dense.disparity, task.range), dense };
         Ok(known.outcome(views, &Given { pictures, rectified: None }, config, found))
     })

@@ -64,16 +64,17 @@ impl<'m> UploadedMap<'m> {
 /// [`Error::TooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
 pub(crate) async fn warp(gpu: &Gpu, source: &wgpu::Buffer, map: &WarpMap) -> Result<(wgpu::Buffer, Luma)> {
     let bytes = packed_bytes(map.size());
-    let (warped, readback) = gpu.with_room("the warped picture", || {
-        let warped = storage_buffer(gpu, "warped luma", bytes)?;
-        let readback = Readback::new(gpu, "warped luma", bytes);
-        let mut encoder = gpu.encoder("warp");
-        UploadedMap::new(gpu, map).luma(source, &warped).record(&mut encoder);
-        readback.record(&mut encoder, &warped);
-        gpu.queue.submit([encoder.finish()]);
-        Ok((warped, readback))
-    })
-    .await?;
+    let (warped, readback) = gpu
+        .with_room("the warped picture", || {
+            let warped = storage_buffer(gpu, "warped luma", bytes)?;
+            let readback = Readback::new(gpu, "warped luma", bytes);
+            let mut encoder = gpu.encoder("warp");
+            UploadedMap::new(gpu, map).luma(source, &warped).record(&mut encoder);
+            readback.record(&mut encoder, &warped);
+            gpu.queue.submit([encoder.finish()]);
+            Ok((warped, readback))
+        })
+        .await?;
     let words = readback.read((bytes / 4) as usize).await?;
     Ok((warped, unpack(map.size(), &words)))
 }
@@ -84,25 +85,26 @@ pub(crate) async fn warp(gpu: &Gpu, source: &wgpu::Buffer, map: &WarpMap) -> Res
 /// # Errors
 /// As [`warp`].
 pub(crate) async fn warp_colours(gpu: &Gpu, source: &Picture, map: &WarpMap) -> Result<Picture> {
-    let begun = gpu.with_room("the warped picture", || {
-        let colours = Colours::new(gpu, source.size())?;
-        if colours.bands().count() > 1 {
-            return Ok(None);
-        }
-        colours.write(gpu, source);
-        let warped = Colours::new(gpu, map.size())?;
-        let mut encoder = gpu.encoder("warp in colour");
-        UploadedMap::new(gpu, map).colours(&colours, &warped)?.iter().for_each(|one| one.record(&mut encoder));
-        let bands = warped.bands().map(|(_, _, pixels)| {
-            let readback = Readback::new(gpu, "warped colours", pixels.size());
-            readback.record(&mut encoder, pixels);
-            (readback, pixels.size())
-        });
-        let bands: Vec<_> = bands.collect();
-        gpu.queue.submit([encoder.finish()]);
-        Ok(Some(bands))
-    })
-    .await?;
+    let begun = gpu
+        .with_room("the warped picture", || {
+            let colours = Colours::new(gpu, source.size())?;
+            if colours.bands().count() > 1 {
+                return Ok(None);
+            }
+            colours.write(gpu, source);
+            let warped = Colours::new(gpu, map.size())?;
+            let mut encoder = gpu.encoder("warp in colour");
+            UploadedMap::new(gpu, map).colours(&colours, &warped)?.iter().for_each(|one| one.record(&mut encoder));
+            let bands = warped.bands().map(|(_, _, pixels)| {
+                let readback = Readback::new(gpu, "warped colours", pixels.size());
+                readback.record(&mut encoder, pixels);
+                (readback, pixels.size())
+            });
+            let bands: Vec<_> = bands.collect();
+            gpu.queue.submit([encoder.finish()]);
+            Ok(Some(bands))
+        })
+        .await?;
     let Some(bands) = begun else { return channel_by_channel(gpu, source, map).await };
     let mut pixels: Vec<[u8; 4]> = Vec::with_capacity(map.size().pixels() as usize);
     for (readback, bytes) in bands {

@@ -46,20 +46,25 @@ impl Whole<'_> {
 
     pub fn cut(&self, tile: Tile) -> TilePair {
         let part = |plane: &Luma| tile.view.cut(plane);
-        let levels = levels(self.config, self.size());
         TilePair {
             tile,
             luma: self.luma.map(part),
             colours: self.colours.map(|picture| tile.view.cut(picture)),
             masks: self.masks.map(|mask| mask.map(part)),
             keeps_hidden: matches!(self.loss, Loss::Nothing),
-            config: self.config.clone().with(|parameters| {
-                if let Aggregation::Costs(costs) = &mut parameters.aggregation {
-                    costs.search = if levels == 1 { Search::Whole } else { Search::Levels(levels) };
-                }
-            }),
+            config: of_tiles(self.config, self.size()),
         }
     }
+}
+
+/// The parameters of the tiles of a picture of `size` that is matched by `config`.
+pub(super) fn of_tiles(config: &DenseConfig, size: Size) -> DenseConfig {
+    let levels = levels(config, size);
+    config.clone().with(|parameters| {
+        if let Aggregation::Costs(costs) = &mut parameters.aggregation {
+            costs.search = if levels == 1 { Search::Whole } else { Search::Levels(levels) };
+        }
+    })
 }
 
 impl TilePair {

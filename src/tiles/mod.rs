@@ -16,5 +16,6 @@ mod plan;
 
 pub use cut::TilePair;
 pub(crate) use cut::Whole;
-pub use merge::Merged;
+pub(crate) use merge::merged;
+pub use merge::{Merged, TileMap};
 pub use plan::{Area, Tile, Tiling};

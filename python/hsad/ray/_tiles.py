@@ -152,20 +152,16 @@ class MergeTiles:
 
 
 def _check(rows: list[dict[str, Any]]) -> None:
-    """Tiles of one pair are cut by one call: of the same files and options, each place once.
+    """Tiles of one pair are of the same files; :func:`hsad.merge_tiles` checks the rest.
 
     Raises
     ------
     ParameterError
         They are not.
     """
-    differ = [name for name in (*_FILES, *_FOUND) if any(row.get(name) != rows[0].get(name) for row in rows)]
+    differ = [name for name in _FILES if any(row.get(name) != rows[0].get(name) for row in rows)]
     if differ:
         raise hsad.ParameterError(f"tiles of one pair differ in {', '.join(differ)}: group them by a name that each pair has alone")
-    places = [(row.get("x"), row.get("y")) for row in rows]
-    if len(set(places)) < len(places):
-        x, y = next(place for place in places if places.count(place) > 1)
-        raise hsad.ParameterError(f"two tiles of the pair are at ({x}, {y}): group them by a name that each pair has alone")
 
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
