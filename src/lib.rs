@@ -103,6 +103,7 @@
 //! | `pictures` | reading PNG, JPEG and other picture files, writing maps as PNG |
 //! | `calibrations` | reading the calibrations of OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP and hsad itself |
 //! | `files` | writing files whole or not at all, and reading scenes with their ground truth |
+//! | `recordings` | reading pairs of pictures from recordings of robots: MCAP files of ROS |
 //! | `reports` | parameters, figures and scores as JSON |
 //! | `verify` | the kernels and their twins as a regression suite for a device |
 //! | `cli` | the command line, with all of the above |

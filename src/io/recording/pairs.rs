@@ -132,9 +132,12 @@ impl Pairs {
     /// The error of a recording without any pair.
     fn nothing(&self) -> Error {
         let [left, right] = self.pairing.alone;
+        let LeftOut { reason, .. } = self.left_out.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let reason = format!(
-            "no frame of {} has a partner of {} at the same time, or near it: there are {left} and {right} that can be read",
-            self.topics[0], self.topics[1]
+            "no frame of {} has a partner of {} at the same time, or near it: there are {left} and {right} that can be read{}",
+            self.topics[0],
+            self.topics[1],
+            reason.map_or_else(String::new, |reason| format!(" ({reason})"))
         );
         malformed(&self.path, reason)
     }

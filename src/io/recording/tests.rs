@@ -396,6 +396,16 @@ fn what_cannot_be_read_names_the_way_out() {
     let told = recording.both_views(Some(["/left/scan", "/left/scan"])).unwrap_err().to_string();
     assert!(told.contains("/left/scan has sensor_msgs/msg/LaserScan") && told.contains("no topic has"), "{told}");
 
+    let zstd = [("/left/image", IMAGE, b"\x28\xb5\x2f\xfd12".to_vec()), ("/right/image", IMAGE, grey(2, 1))];
+    let (_folder, file) = written(&recorded(plain(), &zstd));
+    assert!(
+        read(&file)
+            .unwrap()
+            .2
+            .unwrap()
+            .contains("there are 0 and 1 that can be read (rosbag2 has compressed the messages")
+    );
+
     let apart = [("/left/image", IMAGE, grey(1, 1)), ("/right/image", IMAGE, grey(2, 1))];
     let (_folder, file) = written(&recorded(plain(), &apart));
     let (found, _, error) = read(&file).unwrap();
