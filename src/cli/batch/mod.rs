@@ -98,7 +98,7 @@ pub struct Batch {
         conflicts_with_all = ["figures", "matches"]
     )]
     temporal: Option<u16>,
-    /// Pairs that are worked on at once [default: one per processor, 2 to 8]
+    /// Pairs that are worked on at once [default: one more than there are processors, 2 to 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -190,7 +190,8 @@ impl Batch {
         if rayon::current_thread_index().is_some() {
             return 1;
         }
+        // One is written, which waits for the disk, while the others keep the processors busy.
         let processors = || thread::available_parallelism().map_or(1, NonZero::get);
-        self.jobs.map_or_else(|| processors().clamp(2, MOST_JOBS), usize::from)
+        self.jobs.map_or_else(|| (processors() + 1).min(MOST_JOBS), usize::from)
     }
 }

@@ -1,6 +1,7 @@
 //! Files that take the place of earlier ones together.
 
 use std::{
+    collections::BTreeSet,
     fs::{self, File},
     io,
     path::{Path, PathBuf},
@@ -31,7 +32,8 @@ pub fn replace_all(staged: Vec<Staged>, stale: &[PathBuf]) -> Result<()> {
         }
     }
     earlier.forget();
-    targets.iter().chain(stale).for_each(|path| sync_folder(path));
+    let folders: BTreeSet<PathBuf> = targets.iter().chain(stale).map(|path| folder(path)).collect();
+    folders.iter().for_each(|path| sync(path));
     Ok(())
 }
 
@@ -73,10 +75,10 @@ impl Drop for Earlier {
     }
 }
 
-/// Makes the names in the folder of `path` outlast a loss of power, where the system lets a folder be synced.
-fn sync_folder(path: &Path) {
+/// Makes the names in a folder outlast a loss of power, where the system lets a folder be synced.
+fn sync(folder: &Path) {
     if cfg!(unix) {
-        let _ = File::open(folder(path)).and_then(|folder| folder.sync_all());
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
 }
 
