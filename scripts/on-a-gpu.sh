@@ -6,7 +6,7 @@
 #
 # DEVICE is the index or a part of the name of a device (hsad devices). FOLDER receives verify-PLAN.json, tune.json, and bench-PLAN.json and its
 # table for each plan; hsad keeps nothing outside it. The tests run on the best device, as everything that has no --device does.
-# SIZES, RUNS: picture sizes and runs of each in place of those below. HSAD: the program, in place of a build; then no tests.
+# SIZES, RUNS: picture sizes and runs of each preset in place of those below. HSAD: the program, in place of a build; then no tests.
 set -eu
 device="${1:?DEVICE, the index or a part of the name of a device}"
 mkdir -p "${2:?FOLDER for the figures}"
@@ -33,6 +33,6 @@ for plan in lanes lines; do
     hsad verify --device "$device" --plan "$plan" --json "$folder/verify-$plan.json" -o "$folder/failures-$plan"
     bench "$plan" --plan "$plan"
 done
-hsad tune --device "$device" --runs "${RUNS:-100}" --json "$folder/tune.json" | tee "$folder/tune.txt"
+hsad tune --device "$device" --json "$folder/tune.json" | tee "$folder/tune.txt"
 bench tuned --compare "$folder/bench-lanes.json"
 [ -n "${HSAD:-}" ] || cargo test --release --test kernels --test embedding

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::common::{folder, hsad, names};
 
-const SMALL: [&str; 6] = ["--size", "64x48", "--disparities", "32", "--runs", "1"];
+const SMALL: [&str; 8] = ["--size", "64x48", "--disparities", "32", "--runs", "5", "--seconds", "900"];
 
 /// The program with the user's cache in `cache`; the driver keeps its own cache where it is.
 fn hsad_with(cache: &Path) -> Command {
@@ -37,12 +37,14 @@ fn the_choice_is_kept_for_later_runs_until_it_is_forgotten() {
     let output = hsad_with(cache.path()).arg("tune").args(SMALL).args(["--json", "-"]).assert().success().stderr("");
     let report: Value = serde_json::from_slice(&output.get_output().stdout).expect("JSON");
     let parts = report["parts"].as_array().expect("parts");
-    let candidates = parts[0]["candidates"].as_array().expect("candidates");
+    let candidates = parts[4]["candidates"].as_array().expect("candidates");
     assert_eq!((parts.len(), candidates.len()), (5, 25), "{report:#}");
     for part in parts {
         let chosen =
             part["candidates"].as_array().unwrap().iter().find(|candidate| candidate["name"] == part["chosen"]);
         assert!(chosen.is_some_and(|chosen| chosen["ms"].as_f64().is_some_and(|time| time > 0.0)), "{part:#}");
+        let of_default = |candidate: &Value| candidate["of_default"].as_f64().expect("a ratio");
+        assert!(chosen.is_some_and(|chosen| of_default(chosen) <= 1.0), "{part:#}");
     }
     let kept = report["shapes"].as_str().expect("the shapes");
     assert_eq!(shapes_of(cache.path()), kept);
@@ -73,7 +75,8 @@ fn what_cannot_be_measured_is_told() {
     let tune = |args: &[&str]| hsad_with(cache.path()).arg("tune").args(args).assert();
     tune(&["--size", "99999x1"]).code(2).stdout("").stderr(contains("1 to 4096 px"));
     tune(&["--disparities", "0"]).code(2).stdout("");
-    tune(&["--forget", "--runs", "3"]).code(2).stderr(contains("cannot be used with"));
+    tune(&["--runs", "4"]).code(2).stdout("").stderr(contains("5..=10000"));
+    tune(&["--forget", "--runs", "7"]).code(2).stderr(contains("cannot be used with"));
     tune(&["--device", "cpu"]).code(1).stderr(contains("hsad tune times the kernels of a device"));
     tune(&["--json", "/nonexistent/figures.json"]).code(1).stderr(contains("figures.json").and(contains("error: ")));
     let mut homeless = hsad();

@@ -76,7 +76,7 @@ impl Case {
 
 /// The least time of each kernel over `runs` runs, in the order of execution; `None` without timestamps, by which the device tells
 /// times of kernels.
-pub fn least_times(matcher: &Matcher, runs: u32) -> hsad::Result<Option<Vec<(&'static str, Duration)>>> {
+fn least_times(matcher: &Matcher, runs: u32) -> hsad::Result<Option<Vec<(&'static str, Duration)>>> {
     let mut least = match block_on(matcher.profile()) {
         Ok((_, times)) => times,
         Err(hsad::Error::Unsupported(_)) => return Ok(None),

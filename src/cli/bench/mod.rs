@@ -17,7 +17,7 @@ use hsad::{
 };
 use serde_json::json;
 
-pub use case::{Case, Scene, least_times};
+pub use case::{Case, Scene};
 use earlier::Earlier;
 
 use super::{
