@@ -21,6 +21,7 @@ use serde_json::Value;
 use super::{
     cloud::CloudOptions,
     job::Job,
+    names,
     options::RunOptions,
     output::Output,
     products, summary,
@@ -32,9 +33,6 @@ const RIGHT: &[u8] = include_bytes!("../../data/curved/right.png");
 const TRUTH: &[u8] = include_bytes!("../../data/curved/disp_left.pfm");
 const NON_OCCLUDED: &[u8] = include_bytes!("../../data/curved/nonocc.png");
 const META: &str = include_str!("../../data/curved/meta.json");
-
-/// The files that the demo adds to those of `hsad match`.
-const PICTURES: [&str; 3] = ["demo.png", "left.png", "right.png"];
 
 /// Error thresholds of the wrong-pixel shares, in pixels.
 const THRESHOLDS: [f32; 2] = [1.0, 2.0];
@@ -67,10 +65,10 @@ impl Demo {
     /// Matches the built-in scene as `hsad match` does, writes all files and prints the scores.
     pub fn run(self) -> anyhow::Result<()> {
         let mut output = Output::open_set(&self.output)?;
-        let names = PICTURES.into_iter().chain(products::maps(true)).chain(products::FIGURES);
-        names.into_iter().try_for_each(|name| output.check(name))?;
+        let files = names::DEMO.into_iter().chain(products::maps(true)).chain(names::FIGURES);
+        files.into_iter().try_for_each(|name| output.check(name))?;
         let scene = Scene::new()?;
-        let [_, left, right] = PICTURES.map(String::from);
+        let [_, left, right] = names::DEMO.map(String::from);
         let job = Job {
             names: [left, right],
             left: scene.left.clone(),
@@ -89,7 +87,7 @@ impl Demo {
         progress.begin("writing");
         let panels = products::beside_truth(&scene.left, &completed.outcome.dense.disparity, &scene.truth);
         let panels = figure::side_by_side(&panels.each_ref());
-        let [demo_file, left_file, right_file] = PICTURES;
+        let [demo_file, left_file, right_file] = names::DEMO;
         output.add(demo_file, |out| png::write_rgb8(out, &panels))?;
         output.add(left_file, |out| out.write_all(LEFT))?;
         output.add(right_file, |out| out.write_all(RIGHT))?;

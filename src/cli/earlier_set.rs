@@ -2,38 +2,32 @@
 
 use std::{
     fs,
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
-use hsad::report::ResultFile;
 use serde_json::Value;
 
-/// The file of a set that lists all files of the set.
-pub const REPORT: &str = ResultFile::Report.name();
+use super::names::is_ours;
 
-/// Size beyond which a file named `report.json` is none of ours, in bytes.
+/// Size beyond which a list of files is none of ours, in bytes.
 const MOST: u64 = 1 << 26;
 
-/// Names of the files in a folder that an earlier run of hsad wrote, as its report lists them.
+/// Names of the files in a folder that an earlier run of hsad wrote, as a file among them lists them.
 #[derive(Debug, Default, PartialEq)]
 pub struct EarlierSet(Vec<String>);
 
 impl EarlierSet {
-    /// The set in `folder`; empty if nothing there is hsad's.
-    pub fn read(folder: &Path) -> Self {
-        let path = folder.join(REPORT);
+    /// The set in `folder` that the file called `list` lists; empty if nothing there is hsad's.
+    pub fn read(folder: &Path, list: &str) -> Self {
+        let path = folder.join(list);
         if !fs::metadata(&path).is_ok_and(|found| found.is_file() && found.len() <= MOST) {
             return Self::default();
         }
-        let report: Option<Value> = fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        report.as_ref().and_then(Self::of).unwrap_or_default()
-    }
-
-    /// The files of a report; `None` if it is none of hsad's.
-    fn of(report: &Value) -> Option<Self> {
-        report["version"].as_str()?;
-        let names = report["files"].as_array()?.iter().map(|name| name.as_str().map(String::from));
-        Some(Self(names.collect::<Option<Vec<_>>>()?.into_iter().filter(|name| is_plain(name)).collect()))
+        let listed: Option<Value> = fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let names = listed.as_ref().and_then(listed_in);
+        // What else is listed is none of ours, whoever wrote the list.
+        let ours = names.map(|names| names.into_iter().chain([list]).filter(|name| is_ours(name)));
+        Self(ours.into_iter().flatten().map(String::from).collect())
     }
 
     /// Whether hsad wrote the file of this name.
@@ -48,10 +42,14 @@ impl EarlierSet {
     }
 }
 
-/// Whether a name stays in its folder.
-fn is_plain(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == name)
+/// The files that a report lists, or a result with the hash of each; `None` if it is none of hsad's.
+fn listed_in(list: &Value) -> Option<Vec<&str>> {
+    list["version"].as_str().or(list["fingerprint"].as_str())?;
+    match &list["files"] {
+        Value::Array(names) => names.iter().map(Value::as_str).collect(),
+        Value::Object(hashes) => Some(hashes.keys().map(String::as_str).collect()),
+        _ => None,
+    }
 }
 
 /// Keeps other runs out of a folder, until it is dropped.
@@ -86,27 +84,34 @@ impl FolderLock {
 mod tests {
     use serde_json::json;
 
-    use super::*;
+    use super::{
+        super::names::{REPORT, RESULT},
+        *,
+    };
 
-    #[test]
-    fn a_report_tells_the_files_of_its_folder_only() {
-        let found = |report: Value| EarlierSet::of(&report).map(|set| set.0);
-        let files = json!(["report.json", "../above", "/etc/passwd", "a/b", "..", "", ".", "cloud.ply"]);
-        let expected = ["report.json", "cloud.ply"].map(String::from).to_vec();
-        assert_eq!(found(json!({ "version": "0.1.0", "files": files })), Some(expected));
-        for other in
-            [json!({ "files": ["a"] }), json!({ "version": "1", "files": [1] }), json!({ "version": "1" }), json!(7)]
-        {
-            assert_eq!(found(other), None);
-        }
+    /// The set that a file of this name and content lists.
+    fn listed(name: &str, content: &str) -> Vec<String> {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(name), content).unwrap();
+        EarlierSet::read(folder.path(), name).0
     }
 
     #[test]
-    fn what_is_no_report_lists_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        assert_eq!(EarlierSet::read(folder.path()), EarlierSet::default());
-        fs::write(folder.path().join(REPORT), "no JSON").unwrap();
-        assert_eq!(EarlierSet::read(folder.path()), EarlierSet::default());
+    fn a_list_tells_files_of_its_folder_that_hsad_writes_and_no_others() {
+        let names = ["disparity.pfm", "../cloud.ply", "/etc/passwd", "a/b", "..", "", ".", "thesis.tex", "cloud.ply"];
+        let report = json!({ "version": "0.1.0", "files": names });
+        assert_eq!(listed(REPORT, &report.to_string()), ["disparity.pfm", "cloud.ply", "report.json"]);
+        let result = json!({ "fingerprint": "0a", "files": { "error.png": "01", "thesis.tex": "02" } });
+        assert_eq!(listed(RESULT, &result.to_string()), ["error.png", "result.json"]);
+    }
+
+    #[test]
+    fn what_is_no_list_lists_nothing() {
+        let others = [json!({ "files": ["a"] }), json!({ "version": "1", "files": [1] }), json!({ "version": "1" })];
+        for other in others.map(|other| other.to_string()).iter().map(String::as_str).chain(["7", "no JSON"]) {
+            assert_eq!(listed(REPORT, other), [""; 0], "{other}");
+        }
+        assert_eq!(EarlierSet::read(Path::new("nowhere"), REPORT), EarlierSet::default());
     }
 
     #[cfg(unix)]

@@ -24,20 +24,14 @@ use hsad::{
 use serde_json::{Value, json};
 
 use super::{
-    earlier_set::REPORT,
     matches::MatchTable,
+    names::{MATCHED_POINTS, POINTS, REPORT},
     options::{FeatureOptions, RunOptions, with_default},
     output::Output,
     products,
     terminal::{self, Progress},
     view_files::HalvesOptions,
 };
-
-/// The files of one picture.
-const POINTS: [&str; 2] = ["features.csv", "keypoints.png"];
-
-/// The files of two pictures.
-const MATCHES: [&str; 2] = ["matches.csv", "matches.png"];
 
 /// Find the interest points of one picture, or match those of two
 ///
@@ -134,7 +128,7 @@ impl Features {
         let mut seeding = SeedingConfig::default();
         seeding.matching.ratio = self.ratio.unwrap_or(seeding.matching.ratio);
         seeding.matching.validate()?;
-        let mut output = self.open_set(&images, &MATCHES)?;
+        let mut output = self.open_set(&images, &MATCHED_POINTS)?;
         let [left, right] = self.views(images)?;
         let cached = self.run.open()?;
         let progress = Progress::new(self.run.quiet);
@@ -160,7 +154,7 @@ impl Features {
         if let Some(output) = &mut output {
             progress.begin("writing");
             let figure = figure::matches(&left, &right, &table.positions());
-            let [table_file, drawn] = MATCHES;
+            let [table_file, drawn] = MATCHED_POINTS;
             output.add(table_file, |out| out.write_all(csv.as_bytes()))?;
             output.add(drawn, |out| png::write_rgb8(out, &figure))?;
             let points = features.each_ref().map(Vec::len);

@@ -17,6 +17,7 @@ mod job;
 mod man;
 mod match_views;
 mod matches;
+mod names;
 mod options;
 pub mod out_of_memory;
 mod output;

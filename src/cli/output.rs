@@ -16,6 +16,7 @@ use serde_json::Value;
 use super::{
     earlier_set::{EarlierSet, FolderLock},
     interruption::{self, remove_empty},
+    names::{REPORT, RESULT, is_ours},
     terminal,
 };
 
@@ -35,6 +36,8 @@ pub struct Output {
 
 /// A folder of which one run at a time writes all files that are hsad's.
 struct Set {
+    /// Name of the file that lists the others.
+    list: &'static str,
     earlier: EarlierSet,
     _lock: FolderLock,
 }
@@ -76,6 +79,18 @@ impl Output {
     /// # Errors
     /// As [`Self::open`], and if another run is about to write a set there.
     pub fn open_set(folder: &Path) -> Result<Self> {
+        Self::open_listed(folder, REPORT)
+    }
+
+    /// As [`Self::open_set`], for a result of an evaluation and the files beside it.
+    ///
+    /// # Errors
+    /// As [`Self::open_set`].
+    pub fn open_result(folder: &Path) -> Result<Self> {
+        Self::open_listed(folder, RESULT)
+    }
+
+    fn open_listed(folder: &Path, list: &'static str) -> Result<Self> {
         let mut output = Self::open(folder)?;
         let Some(lock) = FolderLock::take(folder) else {
             // The folder is that of the other run.
@@ -84,7 +99,7 @@ impl Output {
                 "another run of hsad is writing its results there: name another folder (-o), or wait for its end";
             return Err(Error::Io { path: folder.into(), source: io::Error::new(io::ErrorKind::ResourceBusy, reason) });
         };
-        output.set = Some(Set { earlier: EarlierSet::read(folder), _lock: lock });
+        output.set = Some(Set { list, earlier: EarlierSet::read(folder, list), _lock: lock });
         Ok(output)
     }
 
@@ -107,18 +122,20 @@ impl Output {
     /// [`Error::Io`] with its path, if it would replace a file that is spared, or in a set one that hsad did not write.
     pub fn check(&self, name: &str) -> Result<()> {
         let path = self.folder.join(name);
-        let refused = |reason: &str| {
+        let refused = |reason: String| {
             Err(Error::Io { path: path.clone(), source: io::Error::new(io::ErrorKind::AlreadyExists, reason) })
         };
         if path.canonicalize().is_ok_and(|path| self.spared.contains(&path)) {
-            return refused("a result of this name would replace a file that was read: name another folder (-o)");
+            return refused(
+                "a result of this name would replace a file that was read: name another folder (-o)".into(),
+            );
         }
         let is_foreign = |set: &Set| path.is_file() && !set.earlier.contains(name);
-        if self.set.as_ref().is_some_and(is_foreign) {
-            return refused(
-                "a result of this name would replace a file that no report.json beside it lists as hsad's: name another folder \
-                 (-o), or move the file",
-            );
+        if let Some(Set { list, .. }) = self.set.as_ref().filter(|set| is_foreign(set)) {
+            return refused(format!(
+                "a result of this name would replace a file that no {list} beside it lists as hsad's: name another folder (-o), or move the \
+                 file"
+            ));
         }
         Ok(())
     }
@@ -132,6 +149,7 @@ impl Output {
         name: &'static str,
         write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>,
     ) -> Result<T> {
+        debug_assert!(self.set.is_none() || is_ours(name), "{name} is in no list of names");
         self.check(name)?;
         let path = self.folder.join(name);
         let (staged, written) = Staged::write(&path, write)?;
@@ -156,6 +174,12 @@ impl Output {
     /// Names of the files added so far.
     pub fn names(&self) -> &[&'static str] {
         &self.names
+    }
+
+    /// Names of the files that are not in their places yet, and paths of their contents.
+    pub fn contents(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let staged = &self.names[self.names.len() - self.staged.len()..];
+        staged.iter().copied().zip(self.staged.iter().map(Staged::content))
     }
 
     /// Moves all files to their places; those of an earlier set that are not among them go. An interruption waits until all is done.

@@ -26,9 +26,9 @@ use serde_json::Value;
 use super::{
     cloud::{CloudOptions, WrittenCloud},
     doubts::NoDepth,
-    earlier_set::REPORT,
     job::{CompletedJob, Job},
     matches::MatchTable,
+    names::{FIGURES, MATCHES, MESH, REPORT},
     output::Output,
 };
 
@@ -36,15 +36,6 @@ use super::{
 pub fn maps(with_depth: bool) -> impl Iterator<Item = &'static str> {
     ResultFile::ALL.into_iter().filter(move |file| with_depth || !file.needs_depth()).map(ResultFile::name)
 }
-
-/// The files of [`CompletedJob::add_figures`].
-pub const FIGURES: [&str; 2] = ["keypoints.png", "matches.png"];
-
-/// The file that `--mesh` adds.
-pub const MESH: &str = "mesh.ply";
-
-/// The file of [`CompletedJob::add_matches`].
-pub const MATCHES: &str = "matches.csv";
 
 impl CompletedJob {
     /// Adds the disparity and confidence maps; with a calibration also depth and the point cloud that `cloud` asks for.

@@ -12,24 +12,15 @@ use super::{
     cloud::CloudOptions,
     depth::{Cameras, DepthOptions},
     job::{CompletedJob, Job},
+    names,
     options::{FigureOptions, MatchOptions, UnseenOptions},
     output::Output,
-    products,
-    rectification::{self, Names},
+    products, rectification,
     view_files::Views,
     way::Rectify,
 };
 
 pub use super::depth::Known;
-
-/// Names of the files of a pair that was rectified first.
-const NAMES: Names = Names {
-    pictures: ["rectified-left.png", "rectified-right.png"],
-    masks: ["rectified-left-mask.png", "rectified-right-mask.png"],
-    figure: "epipolar-lines.png",
-    json: "rectification.json",
-    yaml: "rectification.yml",
-};
 
 /// How a pair is matched, and which files come out.
 #[derive(Args, Debug)]
@@ -113,7 +104,7 @@ impl Recipe {
     pub fn add_files(&self, completed: &mut CompletedJob, output: &mut Output) -> hsad::Result<()> {
         completed.add_maps(output, &self.cloud)?;
         if let Some(pair) = &completed.rectified {
-            rectification::add_files(pair, &NAMES, output)?;
+            rectification::add_files(pair, &names::RECTIFIED_FIRST, output)?;
         }
         if self.figures {
             completed.add_figures(output)?;
@@ -126,9 +117,9 @@ impl Recipe {
 
     /// Checks that each file that is sure to be written may be.
     fn check_places(&self, output: &Output, is_calibrated: bool) -> hsad::Result<()> {
-        let figures = products::FIGURES.into_iter().filter(|_| self.figures);
-        let tables = self.matches.then_some(products::MATCHES);
-        let mesh = self.cloud.mesh.then_some(products::MESH);
+        let figures = names::FIGURES.into_iter().filter(|_| self.figures);
+        let tables = self.matches.then_some(names::MATCHES);
+        let mesh = self.cloud.mesh.then_some(names::MESH);
         products::maps(is_calibrated).chain(figures).chain(tables).chain(mesh).try_for_each(|name| output.check(name))
     }
 }

@@ -13,30 +13,13 @@ use hsad::{
     report,
 };
 
-use super::output::Output;
+use super::{names::Rectified, output::Output};
 
 /// Number of epipolar lines in a figure.
 const LINES: usize = 24;
 
-/// Names of the files of a rectified pair: both pictures, both masks, the figure, matrices as JSON and for OpenCV.
-pub struct Names {
-    pub pictures: [&'static str; 2],
-    pub masks: [&'static str; 2],
-    pub figure: &'static str,
-    pub json: &'static str,
-    pub yaml: &'static str,
-}
-
-impl Names {
-    /// All names.
-    pub fn all(&self) -> [&'static str; 7] {
-        let Self { pictures: [left, right], masks: [left_mask, right_mask], figure, json, yaml } = *self;
-        [left, right, left_mask, right_mask, figure, json, yaml]
-    }
-}
-
 /// Adds all files of a rectified pair.
-pub fn add_files(pair: &RectifiedPair, names: &Names, output: &mut Output) -> Result<()> {
+pub fn add_files(pair: &RectifiedPair, names: &Rectified, output: &mut Output) -> Result<()> {
     for ((name, mask_name), (picture, mask)) in
         names.pictures.iter().zip(names.masks).zip(pair.pictures.iter().zip(pair.masks()))
     {

@@ -14,22 +14,12 @@ use serde_json::json;
 use super::{
     depth::CalibrationOptions,
     doubts,
-    earlier_set::REPORT,
+    names::{RECTIFIED, REPORT},
     options::{RunOptions, UnseenOptions},
     output::Output,
-    products,
-    rectification::{self, Names},
-    report, summary,
+    products, rectification, report, summary,
     terminal::{self, Progress},
     view_files::ViewOptions,
-};
-
-const NAMES: Names = Names {
-    pictures: ["left.png", "right.png"],
-    masks: ["left-mask.png", "right-mask.png"],
-    figure: "epipolar-lines.png",
-    json: "rectification.json",
-    yaml: "rectification.yml",
 };
 
 /// Number of matches below which nothing tells whether a calibration fits.
@@ -71,7 +61,7 @@ impl Rectify {
     pub fn run(self) -> anyhow::Result<()> {
         let unseen = self.unseen.unseen();
         let mut output = Output::open_set(&self.output)?.sparing(self.views.views().paths()).sparing(unseen.files());
-        NAMES.all().into_iter().chain([REPORT]).try_for_each(|name| output.check(name))?;
+        RECTIFIED.all().into_iter().chain([REPORT]).try_for_each(|name| output.check(name))?;
         let LoadedPair { left, right, mut warnings, .. } = self.views.views().load(&unseen)?;
         let sizes = [left.size(), right.size()];
         let file = self.calibration.read(self.views.views().paths(), sizes)?;
@@ -100,7 +90,7 @@ impl Rectify {
         warnings.extend(doubts::of_rectified(&pair));
         warnings.extend(exchanged(&pair));
         progress.begin("writing");
-        rectification::add_files(&pair, &NAMES, &mut output)?;
+        rectification::add_files(&pair, &RECTIFIED, &mut output)?;
         let report = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "left": self.views.views().paths()[0].display().to_string(),

@@ -400,9 +400,40 @@ fn finished_scenes_are_kept_until_something_changes() {
     assert_eq!(run(&[]).0, Some("3 of 4".into()));
     // A saved result with a missing file, and one changed by hand.
     fs::remove_file(out.join("a/error.png")).unwrap();
-    fs::write(out.join("bb/result.json"), "{}").unwrap();
+    fs::write(out.join("bb/figure.png"), "").unwrap();
     assert_eq!(run(&[]).0, Some("2 of 4".into()));
     assert!(out.join("a/error.png").is_file());
+}
+
+#[test]
+fn files_that_hsad_did_not_write_are_not_replaced() {
+    let temporary = folder();
+    let path = |name: &str| temporary.path().join(name);
+    for name in ["a", "bb"] {
+        scene(&path("ev"), name);
+        fs::write(path("ev").join(name).join("disparity.pfm"), "mine").unwrap();
+    }
+    fs::remove_file(path("ev/bb/disparity.pfm")).unwrap();
+    let output = eval(&[&path("ev")]).arg("-o").arg(path("ev")).output().unwrap();
+    // The scores are shown all the same.
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("\n  a ") && told.contains("\n  bb "), "{told}");
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("a/disparity.pfm: a result of this name would replace a file that no result.json"),
+        "{error}"
+    );
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(fs::read(path("ev/a/disparity.pfm")).unwrap(), b"mine");
+    let mut files = vec!["disp_left.pfm", "disparity.pfm", "left.png", "nonocc.png", "right.png"];
+    assert_eq!(names(&path("ev/a")), files);
+    files.extend(["error.png", "figure.png", "result.json"]);
+    files.sort_unstable();
+    assert_eq!(names(&path("ev/bb")), files);
+    // What it wrote itself it writes again.
+    eval(&[&path("ev/bb")]).args(["--fresh", "-o"]).arg(path("ev")).assert().success();
+    fs::write(path("ev/bb/result.json"), "mine").unwrap();
+    eval(&[&path("ev/bb")]).arg("-o").arg(path("ev")).assert().code(1);
 }
 
 #[test]

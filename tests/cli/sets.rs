@@ -67,6 +67,16 @@ fn files_that_hsad_did_not_write_are_not_replaced() {
     let picture = scene("weak", "left.png");
     refused("keypoints.png", run(&["features", picture.to_str().unwrap()], &out("points")), &out("points"));
 
+    // Nor those that a report names which another program wrote.
+    let named = temporary.path().join("named");
+    fs::create_dir(&named).unwrap();
+    fs::write(named.join("thesis.tex"), "mine").unwrap();
+    fs::write(named.join("report.json"), r#"{ "version": "0.1.0", "files": ["thesis.tex", "cloud.ply"] }"#).unwrap();
+    fs::write(named.join("cloud.ply"), "").unwrap();
+    short_match(&named).assert().success();
+    let expected: Vec<&str> = MAPS.into_iter().chain(["thesis.tex"]).collect();
+    assert_eq!(names(&named), expected);
+
     // A name that is not needed is free.
     fs::create_dir(out("free")).unwrap();
     fs::write(out("free").join("cloud.ply"), "mine").unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use hsad::io::read_whole;
 use serde_json::Value;
 
-use super::{super::earlier_set::REPORT, pair::Pair, record::is_of};
+use super::{super::names::REPORT, pair::Pair, record::is_of};
 
 /// Longest report that is read, in bytes.
 const MOST: u64 = 1 << 26;

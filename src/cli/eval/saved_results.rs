@@ -11,10 +11,7 @@ use std::{
 use hsad::{Error, Result};
 use serde_json::Value;
 
-use crate::cli::output::Output;
-
-/// The file of a saved result, next to its pictures if it has any.
-const NAME: &str = "result.json";
+use crate::cli::{names::RESULT, output::Output};
 
 /// A result that can be saved as JSON.
 pub trait Saveable: Sized {
@@ -100,40 +97,36 @@ impl SavedResults {
     /// The result of an earlier run; `None` if its files or one of its dependencies have changed.
     pub fn load<R: Saveable>(&self) -> Option<R> {
         let location = self.0.as_ref().filter(|location| !location.fresh)?;
-        let result: Value = serde_json::from_str(&fs::read_to_string(location.folder.join(NAME)).ok()?).ok()?;
-        let is_whole = |(name, hash): (&String, &Value)| location.hash(name).is_ok_and(|found| *hash == found);
+        let result: Value = serde_json::from_str(&fs::read_to_string(location.folder.join(RESULT)).ok()?).ok()?;
+        let is_whole =
+            |(name, hash): (&String, &Value)| hash_of(&location.folder.join(name)).is_ok_and(|found| *hash == found);
         let holds =
             result["fingerprint"] == text(&location.fingerprint) && result["files"].as_object()?.iter().all(is_whole);
         if holds { R::from_json(&result) } else { None }
     }
 
-    /// Saves a result, with the files that `add` adds beside it.
+    /// Saves a result, with the files that `add` adds beside it, in the place of an earlier one.
     ///
     /// # Errors
-    /// [`Error::Io`] with the file; the errors of `add`.
+    /// [`Error::Io`] with the file, also for one that hsad did not write and that would be replaced; the errors of `add`.
     pub fn save(&self, result: &impl Saveable, add: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
         let Some(location) = &self.0 else { return Ok(()) };
-        let mut output = Output::open(&location.folder)?.sparing(location.read.iter().map(PathBuf::as_path));
+        let mut output = Output::open_result(&location.folder)?.sparing(location.read.iter().map(PathBuf::as_path));
         add(&mut output)?;
-        // Until `result.json` is replaced, its hashes do not match the new files, and no result is loaded.
-        output.finish()?;
         let mut result = result.to_json();
         result["fingerprint"] = text(&location.fingerprint).into();
-        let files = output.names().iter().map(|&name| Ok((name.to_string(), location.hash(name)?.into())));
+        let files = output.contents().map(|(name, content)| Ok((name.into(), hash_of(content)?.into())));
         result["files"] = Value::Object(files.collect::<Result<_>>()?);
-        output.add_json(NAME, &result)?;
+        output.add_json(RESULT, &result)?;
         output.finish()
     }
 }
 
-impl Location {
-    /// Hash of a file in the folder.
-    fn hash(&self, name: &str) -> Result<String> {
-        let path = self.folder.join(name);
-        let mut hasher = DefaultHasher::new();
-        hash_content(&path, &mut hasher).map_err(|source| Error::Io { path, source })?;
-        Ok(text(&hasher))
-    }
+/// Hash of the content of a file.
+fn hash_of(path: &Path) -> Result<String> {
+    let mut hasher = DefaultHasher::new();
+    hash_content(path, &mut hasher).map_err(|source| Error::Io { path: path.into(), source })?;
+    Ok(text(&hasher))
 }
 
 /// Adds the content of a file, piece by piece. A pipe or device is left to what reads it: it may have no end, or be read but once.
@@ -197,7 +190,7 @@ mod tests {
         let root = SavedResults::new(Some(folder.path()), false);
         let saved = || root.clone().below("a").depending_on("noise=3").depending_on_file(&input).unwrap();
         assert_eq!(saved().load::<Number>(), None);
-        saved().save(&Number(7), |output| output.add("map", |out| out.write_all(b"1"))).unwrap();
+        saved().save(&Number(7), |output| output.add("disparity.pfm", |out| out.write_all(b"1"))).unwrap();
         assert_eq!(saved().load(), Some(Number(7)));
 
         assert_eq!(
@@ -214,7 +207,7 @@ mod tests {
         assert_eq!(saved().load::<Number>(), None);
         fs::write(&input, "picture").unwrap();
         assert_eq!(saved().load(), Some(Number(7)));
-        let map = folder.path().join("a/map");
+        let map = folder.path().join("a/disparity.pfm");
         fs::write(&map, "2").unwrap();
         assert_eq!(saved().load::<Number>(), None, "half of it is another");
         fs::write(&map, "1").unwrap();

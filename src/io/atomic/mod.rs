@@ -59,6 +59,11 @@ impl Staged {
         self.file.as_ref().map(|(_, target)| &**target)
     }
 
+    /// The path of the content before [`Self::put`].
+    pub fn content(&self) -> &Path {
+        self.file.as_ref().map_or(&self.path, |(temporary, _)| temporary.path())
+    }
+
     /// Moves the file to its place.
     ///
     /// # Errors

@@ -27,6 +27,7 @@ use crate::cli::{
         saved_results::SavedResults,
         truth_scale::{self, TruthOptions},
     },
+    names::ERRORS,
     output::Output,
     products, report,
     terminal::Progress,
@@ -228,7 +229,8 @@ fn add_files(output: &mut Output, scene: &Scene, map: &Plane<f32>) -> Result<()>
     let in_fixed_point = map.map(|&pixels| fixed_point(pixels));
     let [view, found, truth] = products::beside_truth(scene.reference_view(), &in_fixed_point, &scene.truth);
     let figure = figure::side_by_side(&[&view, &truth, &found, &errors]);
+    let [error_file, figure_file] = ERRORS;
     output.add(ResultFile::Disparities.name(), |out| pfm::write(out, map))?;
-    output.add("error.png", |out| png::write_rgb8(out, &errors))?;
-    output.add("figure.png", |out| png::write_rgb8(out, &figure))
+    output.add(error_file, |out| png::write_rgb8(out, &errors))?;
+    output.add(figure_file, |out| png::write_rgb8(out, &figure))
 }

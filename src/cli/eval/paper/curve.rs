@@ -3,6 +3,7 @@
 use hsad::eval::curves::{accuracy_of_first, f_measure_over_recall, recall_precision};
 
 use super::record::{Record, steps};
+use crate::cli::names::CURVES;
 
 /// A kind of curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,12 +31,7 @@ impl Figure {
 
     /// Names of the CSV and the SVG file.
     pub fn files(self) -> [&'static str; 2] {
-        match self {
-            Self::RecallPrecision => ["recall-precision.csv", "recall-precision.svg"],
-            Self::FMeasure => ["f-measure.csv", "f-measure.svg"],
-            Self::Accuracy => ["accuracy.csv", "accuracy.svg"],
-            Self::Coverage => ["coverage.csv", "coverage.svg"],
-        }
+        CURVES[self as usize]
     }
 
     /// Names of the axes in the CSV file.

@@ -34,7 +34,7 @@ use crate::cli::{
     },
     options::RunOptions,
     output::Output,
-    report, terminal,
+    products, report, terminal,
     wording::in_options,
 };
 
@@ -162,7 +162,7 @@ impl Paper {
     /// Writes the scene's curves, plots and report, if there is an output folder.
     fn write(&self, scene: &str, groups: &[Group], found: &SceneResults, backend: &Backend) -> hsad::Result<()> {
         let Some(root) = &self.output else { return Ok(()) };
-        let mut output = Output::open(&root.join(scene))?;
+        let mut output = Output::open_set(&root.join(scene))?;
         for figure in Figure::ALL {
             let [csv_file, svg_file] = figure.files();
             let curves: Vec<_> = groups.iter().map(|group| (group, group.curve(figure))).collect();
@@ -174,9 +174,9 @@ impl Paper {
                 out.write_all(svg.as_bytes())
             })?;
         }
-        output.add_json(
-            "report.json",
-            &json!({
+        products::add_report(
+            &mut output,
+            json!({
                 "version": env!("CARGO_PKG_VERSION"),
                 "device": report::device(backend),
                 "scene": scene,
