@@ -8,6 +8,7 @@ pub mod conditions;
 pub mod curves;
 mod matches;
 mod metrics;
+mod other_form;
 mod overlap;
 mod repeatability;
 #[cfg(feature = "files")]
@@ -17,6 +18,7 @@ mod unit;
 
 pub use matches::{Judged, PointMatch, PointScores};
 pub use metrics::{Bad, OUTLIER_PIXELS, OUTLIER_SHARE, Outliers, Score, score, score_pixels};
+pub use other_form::{Form, OtherForm};
 pub use overlap::{NORMAL_RADIUS, Region, overlap_error};
 pub use repeatability::{MAX_OVERLAP_ERROR, Point, Repeatability};
 pub use truth::Truth;

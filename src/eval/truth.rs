@@ -99,6 +99,13 @@ impl Truth {
         Self { change: Some((change.map, change.visible.clone())), ..self }
     }
 
+    /// The truth with what `other` makes of its homography; `None` for the truth of a stereo pair, and for a matrix without an inverse.
+    pub(super) fn with_homography(&self, other: impl FnOnce(DMat3) -> DMat3) -> Option<Self> {
+        let Model::Plane { matrix, .. } = self.model else { return None };
+        let truth = Self::homography(other(matrix), self.first_size, self.second_size).ok()?;
+        Some(Self { change: self.change.clone(), ..truth })
+    }
+
     /// Width and height of the first and the second view, in pixels.
     pub fn sizes(&self) -> [Size; 2] {
         [self.first_size, self.second_size]

@@ -9,8 +9,9 @@ use assert_cmd::Command;
 use hsad::{
     disparity::{DisparityMap, fixed_point},
     eval::conditions::Changed,
+    glam::{DMat3, DVec2},
     image::Plane,
-    io::{Picture, disparity_png, load, pfm, png},
+    io::{Picture, disparity_png, homography, load, pfm, png},
 };
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
@@ -189,6 +190,29 @@ fn a_homography_set_has_a_pair_for_each_view() {
         command
     };
     fails(of_view("3"), 1, "there is no H1to3p");
+
+    // Homographies from the second view to the first, and by columns.
+    let matrix = homography::read(&set.join("H1to4p")).unwrap();
+    let write = |matrix: DMat3| {
+        let rows = matrix.transpose().to_cols_array();
+        fs::write(set.join("H1to4p"), rows.map(|n| n.to_string()).join(" ")).unwrap();
+    };
+    for (other, told) in [(matrix.inverse(), "inverted"), (matrix.transpose(), "transposed")] {
+        write(other);
+        fails(of_view("4"), 1, "set 1-4, none: the homography is in another form");
+        fails(of_view("4"), 1, &format!("% if it is {told}: write it {told}"));
+    }
+    let supplied = temporary.path().join("supplied.csv");
+    let places = (20..200).step_by(9).map(|x| DVec2::new(f64::from(x), 60.0));
+    let line = |first: DVec2| {
+        let second = (matrix * first.extend(1.0)).truncate();
+        format!("{},{},{},{}", second.x, second.y, first.x, first.y)
+    };
+    write_lines(&supplied, "x1,y1,x2,y2", &places.map(line).collect::<Vec<_>>());
+    write(matrix);
+    let mut exchanged = judge(&set, &supplied);
+    exchanged.args(["--view", "4"]);
+    fails(exchanged, 1, "or exchange the columns of the first and the second view in the matches");
     fs::write(set.join("H1to4p"), "1 0 0 0 1 0 0 0").unwrap();
     fails(of_view("4"), 1, "a homography is nine numbers");
     evaluate(&[&set]).assert().code(1).stdout(contains("set 1-2"));

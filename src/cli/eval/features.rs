@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use hsad::{
     Backend, Error, Result,
-    eval::{Judged, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
+    eval::{Form, Judged, OtherForm, Point, PointMatch, PointScores, conditions::Changed, curves::accuracy_of_first},
     gpu::block_on,
     io::{atomic::write_whole, png},
     wide_baseline::{WideBaselineConfig, match_views},
@@ -352,6 +352,9 @@ impl Features {
                 (matches, points)
             }
         };
+        if let Some(other) = OtherForm::of(&matches, &truth, self.tolerance)? {
+            return Err(of_another_form(other, finder));
+        }
         let judged = Judged::new(&matches, &truth, self.tolerance)?;
         let point_scores = points.map(|[first, second]| PointScores::new(&matches, &judged, [&first, &second], &truth));
         let by_points = |figure: &dyn Fn(&PointScores) -> f64| point_scores.as_ref().map_or(f64::NAN, figure);
@@ -397,5 +400,24 @@ impl Features {
             write_text(path, &format!("{report:#}\n"))?;
         }
         Ok(())
+    }
+}
+
+/// The error of a homography that would agree with the matches in another form.
+fn of_another_form(OtherForm { form, agree }: OtherForm, finder: &Finder) -> Error {
+    let [as_it_is, other] = agree.map(|share| 100.0 * share);
+    let or_exchange = match (form, finder) {
+        (Form::Inverse, Finder::Supplied { .. }) => {
+            ", or exchange the columns of the first and the second view in the matches"
+        }
+        _ => "",
+    };
+    Error::Parameter {
+        name: "the homography",
+        value: "in another form than from the first view to the second, row by row".into(),
+        expected: format!(
+            "{as_it_is:.0} % of the matches agree with it, and {other:.0} % if it is {0}: write it {0}{or_exchange}",
+            form.words()
+        ),
     }
 }
