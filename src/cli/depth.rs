@@ -105,6 +105,11 @@ pub enum Cameras {
 }
 
 impl DepthOptions {
+    /// Whether options tell anything of the cameras.
+    pub fn are_given(&self) -> bool {
+        !self.files.calib.is_empty() || self.focal.is_some()
+    }
+
     /// What is known of the cameras of `pictures` of these sizes in pixels.
     ///
     /// # Errors

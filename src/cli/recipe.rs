@@ -77,6 +77,16 @@ impl Recipe {
         Ok((config, self.figure.strongest(&self.matching)?))
     }
 
+    /// Checks, before any pair is read, what all pairs have in common; `have_calibrations`: whether a pair may have a calibration of its own.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for options that no pair can follow.
+    pub fn check_common(&self, have_calibrations: bool) -> hsad::Result<()> {
+        let is_calibrated = have_calibrations || self.depth.are_given();
+        self.cloud.check(is_calibrated)?;
+        if is_calibrated { Ok(()) } else { self.rectify.check_uncalibrated() }
+    }
+
     /// Reads the files of a pair, and checks that its results can be written to `output`.
     pub fn prepare(&self, views: &Views, known: Known<'_>, output: &mut Output) -> anyhow::Result<Prepared> {
         let (config, strongest) = self.config()?;

@@ -24,6 +24,14 @@ pub enum Rectify {
 }
 
 impl Rectify {
+    /// Checks that a pair without any calibration can be brought to correspond so.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if it cannot.
+    pub fn check_uncalibrated(self) -> Result<()> {
+        if self == Self::Calibrated { Err(needs_files()) } else { Ok(()) }
+    }
+
     /// The geometry of a pair with views of these sizes, in pixels.
     ///
     /// # Errors

@@ -199,6 +199,17 @@ fn what_is_no_batch_is_told() {
     let list = root.join("pairs.csv");
     fs::write(&list, "left,right,name\na.png,b.png,x\nc.png,d.png,x\n").unwrap();
     fails(&[list.to_str().unwrap()], 1, "have the same name 'x'");
+    fs::write(&list, "left,right,name\na.png,b.png,x\n").unwrap();
+    let pairs = list.to_str().unwrap();
+    for (arguments, told) in [
+        (&["--mesh"][..], "--mesh is given, but without a calibration there is no point cloud"),
+        (&["--filled"], "--filled is given, but without a calibration"),
+        (&["--max-depth", "9"], "--max-depth is 9, but without a calibration"),
+        (&["--rectify", "calibrated"], "--rectify is calibrated, but it needs the calibration"),
+        (&["--max-depth", "0", "--focal", "300", "--baseline", "0.1"], "the largest depth is 0, but"),
+    ] {
+        fails(&[&[pairs], arguments].concat(), 2, told);
+    }
     fs::write(&list, "left,right,name\na.png,b.png,../x\n").unwrap();
     fails(&[list.to_str().unwrap()], 1, "is no folder in the output folder");
     fs::write(&list, "left,right\n").unwrap();

@@ -127,6 +127,7 @@ impl Batch {
         let (config, strongest) = self.recipe.config()?;
         let parameters = parameters(&config, strongest);
         let source = Source::of(&self)?;
+        self.recipe.check_common(source.has_calibrations)?;
         let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;

@@ -24,6 +24,8 @@ pub struct Source {
     pub pairs: Pairs,
     /// The number of pairs, if it is known.
     pub count: Option<usize>,
+    /// Whether a pair may have a calibration of its own.
+    pub has_calibrations: bool,
     /// What a recording tells besides its pairs.
     pub recorded: Option<Recorded>,
 }
@@ -63,7 +65,9 @@ impl Source {
         }
         pair::check_names(&pairs)?;
         let count = Some(pairs.len());
-        Ok(Self { pairs: Box::new(pairs.into_iter().map(|pair| Ok((pair, None)))), count, recorded: None })
+        let has_calibrations = pairs.iter().any(|pair| pair.calibration.is_some());
+        let pairs = Box::new(pairs.into_iter().map(|pair| Ok((pair, None))));
+        Ok(Self { pairs, count, has_calibrations, recorded: None })
     }
 
     fn of_video(path: &Path, batch: &Batch) -> Result<Self> {
@@ -72,7 +76,7 @@ impl Source {
         }
         let frames = Video::open(path)?;
         let pairs = frames.map(|frame| frame.map(|(pair, frame)| (pair, Some(Frame::Both(frame)))));
-        Ok(Self { pairs: Box::new(pairs), count: None, recorded: None })
+        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations: false, recorded: None })
     }
 
     fn of_recording(path: &Path, batch: &Batch) -> Result<Self> {
@@ -91,6 +95,7 @@ impl Source {
             }
             None
         });
+        let has_calibrations = calibration.is_some();
         let frames = recording.pairs(views)?;
         let recorded =
             Recorded { topics: views.map(|topic| topic.name.clone()), calibration, left_out: frames.left_out() };
@@ -100,7 +105,7 @@ impl Source {
             let pair = Pair { name: stamp.to_string(), left, right: Some(right), calibration: None };
             Ok((pair, Some(Frame::Each(Box::new(shots)))))
         });
-        Ok(Self { pairs: Box::new(pairs), count: None, recorded: Some(recorded) })
+        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations, recorded: Some(recorded) })
     }
 }
 
