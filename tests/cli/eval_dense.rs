@@ -302,6 +302,20 @@ fn what_fails_is_told_and_loses_nothing_else() {
 
 /// A scene without its left view fails, too, and the others are scored.
 #[test]
+fn a_truth_without_a_known_pixel_is_an_error() {
+    let temporary = folder();
+    let [known, unknown] = ["known", "unknown"].map(|name| scene(temporary.path(), name));
+    write_pfm(&unknown.join("disp_left.pfm"), &Plane::filled(SIZE, NONE));
+    let output = eval(&[temporary.path()]).output().unwrap();
+    let [told, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(told.contains("\n  known ") && !told.contains("\n  unknown "), "{told}");
+    assert!(error.contains("unknown/disp_left.pfm: no pixel has a known disparity"), "{error}");
+    assert_eq!(output.status.code(), Some(1));
+    fs::remove_dir_all(known).unwrap();
+    fails(eval(&[temporary.path()]), 1, "no pixel has a known disparity");
+}
+
+#[test]
 fn half_a_scene_is_named() {
     let temporary = folder();
     let path = |name: &str| temporary.path().join(name);

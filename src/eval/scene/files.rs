@@ -132,7 +132,8 @@ impl SceneFiles {
     /// Reads the scene with the ground truth of `reference`.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] with the file; [`Error::SizesDiffer`] if the views differ in size.
+    /// [`Error::Io`] and [`Error::Format`] with the file, also for a truth without a known pixel; [`Error::SizesDiffer`] if the views differ
+    /// in size.
     pub fn read(&self, reference: View) -> Result<Scene> {
         let files = self.truth(reference)?;
         let LoadedPair { left, right, .. } = load::load_pair(&self.left, &self.right, &Unseen::default())?;
@@ -141,6 +142,10 @@ impl SceneFiles {
         }
         let truth = files.read(left.size())?;
         same_size(&files.disparities, truth.size(), left.size())?;
+        if truth.data().iter().all(|disparity| !disparity.is_finite()) {
+            let reason = "no pixel has a known disparity: there is nothing to compare a map with";
+            return Err(Error::Format { path: files.disparities.clone(), reason: reason.into() });
+        }
         let non_occluded = match &files.non_occluded {
             None => None,
             Some(Mask::Picture(path)) => Some(load::load(path)?.luma()),
