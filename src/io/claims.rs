@@ -1,5 +1,7 @@
 //! What the header of a picture claims, against what its file can hold: memory is allocated for no more.
 
+use super::jpeg::HEIGHT_BEHIND;
+
 /// Largest ratio of DEFLATE: a match of 258 bytes in two bits (RFC 1951).
 const DEFLATE: u64 = 1032;
 
@@ -9,6 +11,9 @@ const DEFLATE: u64 = 1032;
 /// Why the file cannot hold so many pixels.
 pub(super) fn size(bytes: &[u8]) -> Result<Option<(u32, u32)>, String> {
     let Some(Claim { size: (width, height), least }) = png(bytes).or_else(|| jpeg(bytes)) else { return Ok(None) };
+    if height == 0 && bytes.starts_with(&[0xff, 0xd8]) {
+        return Err(HEIGHT_BEHIND.into());
+    }
     if least > bytes.len() as u64 {
         return Err(format!(
             "its header claims {width}x{height} pixels, which take {least} bytes or more, and the file has {}: it is damaged or cut off, \
@@ -90,6 +95,7 @@ mod tests {
         // 64 blocks per 8 bytes.
         assert_eq!(size(&jpeg_header(8 * 64, 8 * 32, 256)), Ok(Some((512, 256))));
         assert!(size(&jpeg_header(8 * 64, 8 * 33, 256)).unwrap_err().contains("512x264 pixels, which take 264 bytes"));
+        assert_eq!(size(&jpeg_header(9, 0, 90)), Err(HEIGHT_BEHIND.into()));
         for other in [
             &b""[..],
             b"\xff\xd8",

@@ -1,5 +1,6 @@
 //! Checks of JPEG files that the decoder does not report: data that are cut off or damaged (it fills the rest with grey), and CMYK (it
-//! converts the colours by guess).
+//! converts the colours by guess). And what the decoder calls damage, though it is none: a height behind the pixels, which is not read, and
+//! sampling factors of a grey picture, which mean nothing (A.2.2) and become 1.
 //!
 //! The markers are read, and the entropy-coded data as far as it takes to count their blocks (ITU-T T.81).
 
@@ -17,8 +18,13 @@ const END_OF_IMAGE: u8 = 0xd9;
 const HUFFMAN_TABLES: u8 = 0xc4;
 const RESTART_INTERVAL: u8 = 0xdd;
 const START_OF_SCAN: u8 = 0xda;
+const NUMBER_OF_LINES: u8 = 0xdc;
+const COMMENT: u8 = 0xfe;
 
 const CUT_OFF: &str = "the JPEG is cut off: copy or export it again";
+
+/// Why a JPEG is not read that tells its height behind the pixels.
+pub(super) const HEIGHT_BEHIND: &str = "the JPEG tells its height behind its pixels (DNL), which is not read: open it in a viewer and save it as PNG or JPEG";
 
 /// The bytes of a JPEG with all of its blocks, with an end marker if it has none, and what is odd about them.
 ///
@@ -27,13 +33,15 @@ const CUT_OFF: &str = "the JPEG is cut off: copy or export it again";
 pub(super) fn whole(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<String>), String> {
     let mut tables: [[Option<Table>; 4]; 2] = Default::default();
     let (mut frame, mut interval, mut surplus) = (None, 0, 0);
+    let mut height = None;
+    let mut readable = Cow::Borrowed(bytes);
     // The first two bytes are the start-of-image marker, FF D8.
     let mut rest = bytes.get(2..).unwrap_or_default();
     loop {
         let Some((marker, behind)) = next_marker(rest) else {
             return match frame {
                 Some(frame) if is_whole(&frame) => Ok((
-                    [bytes, &[0xff, END_OF_IMAGE]].concat().into(),
+                    [&*readable, &[0xff, END_OF_IMAGE]].concat().into(),
                     Some("the JPEG has no end marker, but all of its picture: copy or export it again".into()),
                 )),
                 _ => Err(CUT_OFF.into()),
@@ -47,6 +55,7 @@ pub(super) fn whole(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<String>), Str
             _ => {}
         }
         let (segment, behind) = split_segment(rest).ok_or(CUT_OFF)?;
+        let place = bytes.len() - behind.len() - segment.len();
         rest = behind;
         match marker {
             HUFFMAN_TABLES => read_tables(segment, &mut tables),
@@ -58,7 +67,14 @@ pub(super) fn whole(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<String>), Str
                     return Err("a JPEG in CMYK: convert it to RGB, its colours depend on a printing profile".into());
                 }
                 frame = if marker <= 0xc2 { Frame::new(segment, marker == 0xc2) } else { None };
+                if frame.as_ref().is_some_and(|frame| frame.components.len() == 1) && segment[7] != 0x11 {
+                    readable.to_mut()[place + 7] = 0x11;
+                }
+                height = segment.get(1..3);
             }
+            // The height once more says nothing, another one that there are other lines than the frame claims (B.2.5).
+            NUMBER_OF_LINES if height == Some(segment) => readable.to_mut()[place - 3] = COMMENT,
+            NUMBER_OF_LINES => return Err(HEIGHT_BEHIND.into()),
             START_OF_SCAN => {
                 let data;
                 (data, rest) = split_entropy_coded(rest);
@@ -87,7 +103,7 @@ pub(super) fn whole(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<String>), Str
         0 => None,
         _ => Some(format!("{surplus} bytes of the JPEG belong to no part of its picture: it may be damaged")),
     };
-    Ok((bytes.into(), doubt))
+    Ok((readable, doubt))
 }
 
 /// Whether all bits of all coefficients were sent.

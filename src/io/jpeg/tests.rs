@@ -101,3 +101,33 @@ fn restart_intervals_by_hand() {
     assert!(whole(&with(&[0, 0, 0xff, 0xd0, 0xfe])).unwrap_err().contains("lack 1 of 3 blocks"));
     assert!(doubt(&with(&[0, 0, 0xff, 0xd0, 0, 0, 0, 0, 0])).unwrap().starts_with("2 bytes"));
 }
+
+#[test]
+fn sampling_factors_of_a_grey_picture_mean_nothing() {
+    let (bytes, path) = (jpeg(), std::path::Path::new("a.jpg"));
+    let decode = |bytes: &[u8]| crate::io::load::decode_with_doubt(bytes, path).unwrap();
+    let expected = decode(&bytes);
+    let factors = place_of(&bytes, 0xc0) + 11;
+    assert_eq!((bytes[factors], &expected.1), (0x11, &None));
+    for other in [0x22, 0x21, 0x12, 0x33, 0x13, 0x31, 0x44, 0x23] {
+        let mut bytes = bytes.clone();
+        bytes[factors] = other;
+        assert!(decode(&bytes) == expected, "{other:x}");
+    }
+}
+
+#[test]
+fn a_height_behind_the_pixels_is_named() {
+    let (bytes, path) = (jpeg(), std::path::Path::new("a.jpg"));
+    let size = place_of(&bytes, 0xc0) + 5;
+    let height = [bytes[size], bytes[size + 1]];
+    let (pixels, end) = bytes.split_at(bytes.len() - 2);
+    let with_lines = |lines: [u8; 2]| [pixels, &[0xff, NUMBER_OF_LINES, 0, 4], &lines, end].concat();
+    // The same height once more.
+    let decode = |bytes: &[u8]| crate::io::load::decode_with_doubt(bytes, path);
+    assert!(decode(&with_lines(height)).unwrap() == decode(&bytes).unwrap());
+    assert_eq!(whole(&with_lines([0, 16])).unwrap_err(), HEIGHT_BEHIND);
+    let mut behind = with_lines(height);
+    behind[size..size + 2].fill(0);
+    assert!(decode(&behind).unwrap_err().to_string().contains("behind its pixels (DNL), which is not read"));
+}
