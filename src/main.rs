@@ -4,20 +4,14 @@ mod cli;
 
 use std::io::{self, Write};
 
-use clap::Parser;
-
 #[global_allocator]
 static ALLOCATOR: cli::out_of_memory::Allocator = cli::out_of_memory::Allocator;
 
 fn main() {
     without_desktop();
-    // Log records of the library and of wgpu are shown only if RUST_LOG asks for them, but for a dump that failed and a
-    // pipe that nobody writes: a failure is one message.
-    env_logger::Builder::from_env(
-        env_logger::Env::default().default_filter_or("off,hsad::gpu::dump=warn,hsad::io=warn"),
-    )
-    .init();
-    let code = match cli::Cli::parse().run() {
+    let (command, is_quiet) = cli::Cli::parse_with_verbosity();
+    cli::logging::init(is_quiet);
+    let code = match command.run() {
         Ok(()) => 0,
         Err(error) => {
             cli::terminal::error(&error);

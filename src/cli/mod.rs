@@ -14,6 +14,7 @@ mod eval;
 mod features;
 pub mod interruption;
 mod job;
+pub mod logging;
 mod man;
 mod match_views;
 mod matches;
@@ -35,7 +36,7 @@ mod view_files;
 mod way;
 mod wording;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use doubts::{NoDepth, NotTrusted};
 
@@ -74,6 +75,15 @@ enum Command {
 }
 
 impl Cli {
+    /// Reads the command line, and whether it asks for errors only. A command line that is wrong ends the program.
+    pub fn parse_with_verbosity() -> (Self, bool) {
+        let matches = Self::command().get_matches();
+        match Self::from_arg_matches(&matches) {
+            Ok(command) => (command, is_quiet(&matches)),
+            Err(error) => error.format(&mut Self::command()).exit(),
+        }
+    }
+
     /// Runs the subcommand.
     pub fn run(self) -> anyhow::Result<()> {
         interruption::clean_up_when_interrupted()?;
@@ -93,6 +103,12 @@ impl Cli {
             Command::Man(command) => command.run(),
         }
     }
+}
+
+/// Whether a subcommand has the flag `--quiet`.
+fn is_quiet(matches: &ArgMatches) -> bool {
+    matches.try_get_one("quiet").is_ok_and(|quiet| quiet == Some(&true))
+        || matches.subcommand().is_some_and(|(_, matches)| is_quiet(matches))
 }
 
 /// The exit code that [`EXIT_CODES`] promises for an error.

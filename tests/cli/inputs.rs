@@ -86,19 +86,31 @@ fn maps_and_figures_without_an_end_are_refused() {
 }
 
 #[test]
-fn a_pipe_that_nobody_writes_is_told() {
+fn a_pipe_that_nobody_writes_is_told_unless_quiet() {
     let temporary = folder();
     let pipe = temporary.path().join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hsad"));
-    command.arg("features").arg(&pipe).args(["--device", "cpu", "-q"]).env_remove("RUST_LOG");
-    let mut run = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let waiting = |options: &[&str]| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hsad"));
+        command.arg("features").arg(&pipe).args(["--device", "cpu"]).args(options).env_remove("RUST_LOG");
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let write = || {
+        let mut writer = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+        writer.write_all(&fs::read(scene("weak", "left.png")).unwrap()).unwrap();
+    };
+    let mut run = waiting(&[]);
     let mut told = String::new();
     BufReader::new(run.stderr.take().unwrap()).read_line(&mut told).unwrap();
-    assert!(told.contains("/pipe is a pipe, and nobody writes to it yet: waiting"), "{told}");
-    let mut writer = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
-    writer.write_all(&fs::read(scene("weak", "left.png")).unwrap()).unwrap();
-    drop(writer);
+    assert_eq!(told, format!("warning: {} is a pipe, and nobody writes to it yet: waiting\n", pipe.display()));
+    write();
     let output = run.wait_with_output().unwrap();
     assert!(output.status.success() && output.stdout.starts_with(b"x,y,scale"));
+
+    let run = waiting(&["-q"]);
+    // More than the time after which it would be told.
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    write();
+    let output = run.wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
