@@ -16,6 +16,16 @@ pub enum Halves {
 }
 
 impl Halves {
+    /// The place of the left view, in words.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::LeftRight => "on the left",
+            Self::RightLeft => "on the right",
+            Self::LeftOnTop => "on top",
+            Self::RightOnTop => "below",
+        }
+    }
+
     /// The left and the right view; of an odd number of columns or rows the middle one is in neither. `None` if there is but one.
     pub(super) fn split(self, Decoded { image, orientation, doubt }: &Decoded) -> Option<[Decoded; 2]> {
         let is_beside = matches!(self, Self::LeftRight | Self::RightLeft);

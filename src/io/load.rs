@@ -24,7 +24,7 @@ use std::path::Path;
 use ::image::metadata::Orientation;
 
 use super::{
-    Picture, codec,
+    Picture, claims, codec,
     decoded::Decoded,
     jps, malformed, mpo,
     samples::{Kind, Samples},
@@ -127,14 +127,41 @@ pub fn load_both(path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result
     })
 }
 
-/// Decodes both views from the halves of the picture in a file's bytes; `path` is named in errors.
+/// Decodes both views from the halves of the picture in a file's bytes; `path` is named in errors. A JPS that says otherwise of its views is
+/// among the warnings.
 ///
 /// # Errors
-/// As [`load_both`].
+/// As [`load_both`], and for a multi-picture file, whose views are no halves of a picture.
 pub fn decode_halves(bytes: &[u8], path: &Path, halves: Halves, unseen: &Unseen) -> Result<LoadedPair> {
+    // The second picture of other files with an index is smaller, such as a gain map.
+    if let Ok(Some([left, right])) = mpo::views(bytes)
+        && claims::size(left) == claims::size(right)
+    {
+        let reason = "it is an MPO with a picture per view, not one with both: leave the order of the views out (--side-by-side, --top-bottom)";
+        return Err(malformed(path, reason));
+    }
     let both = codec::decode(bytes, path)?;
     let views = halves.split(&both).ok_or_else(|| malformed(path, "the picture is too small to hold two views"))?;
-    pair(views, [path; 2], unseen)
+    let mut loaded = pair(views, [path; 2], unseen)?;
+    let told = jps::descriptor(bytes);
+    let otherwise = match told {
+        Ok(Some(told)) if told.halves != halves => {
+            Some(format!("it is a JPS whose left view lies {}", told.halves.words()))
+        }
+        Ok(_) => None,
+        Err(reason) => Some(reason.into()),
+    };
+    loaded.warnings.extend(otherwise.map(|otherwise| {
+        format!(
+            "{}: the left view was taken to lie {} (--side-by-side, --top-bottom), but by its descriptor {otherwise}",
+            shown(path),
+            halves.words()
+        )
+    }));
+    loaded.warnings.extend(told.ok().flatten().and_then(|told| told.squeezed).map(|side| {
+        format!("the views were squeezed to half their {side}: disparities are those of the squeezed pictures, and so must a calibration be")
+    }));
+    Ok(loaded)
 }
 
 /// Decodes both views from the bytes of a file that tells where they lie: an MPO, or a JPS with a descriptor. `None` for any other file.
@@ -144,11 +171,7 @@ pub fn decode_halves(bytes: &[u8], path: &Path, halves: Halves, unseen: &Unseen)
 /// As [`load_both`].
 pub fn decode_both(bytes: &[u8], path: &Path, unseen: &Unseen) -> Result<Option<LoadedPair>> {
     if let Some(told) = jps::descriptor(bytes).map_err(|reason| malformed(path, reason))? {
-        let mut loaded = decode_halves(bytes, path, told.halves, unseen)?;
-        loaded.warnings.extend(told.squeezed.map(|side| {
-            format!("the views were squeezed to half their {side}: disparities are those of the squeezed pictures, and so must a calibration be")
-        }));
-        return Ok(Some(loaded));
+        return decode_halves(bytes, path, told.halves, unseen).map(Some);
     }
     let Some([left, right]) = mpo::views(bytes).map_err(|reason| malformed(path, reason))? else { return Ok(None) };
     let views = [codec::decode(left, path)?, codec::decode(right, path)?];

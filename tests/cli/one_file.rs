@@ -63,6 +63,11 @@ fn an_mpo_has_both_views() {
     assert!(map("one") == map("two"));
     assert_eq!(report(&path("one"))["right"], path("both.mpo").to_str().unwrap());
 
+    // Halves of one of its pictures are no views.
+    let mut halved = match_one(&path("both.mpo"), &path("none"));
+    halved.args(["--side-by-side", "left-right"]);
+    fails(halved, 1, "it is an MPO with a picture per view, not one with both: leave the order of the views out");
+
     // Given twice it is its first picture twice.
     let told = contains("a file with both views is named once");
     match_on_cpu(&path("both.mpo"), &path("both.mpo"), &path("twice")).assert().code(4).stderr(told);
@@ -143,6 +148,18 @@ fn a_jps_tells_where_its_views_lie() {
     match_one(&path("half.jps"), &path("3")).assert().success().stderr(told);
     assert!(map("1") == map("2") && map("2") == map("3"));
     fails(match_one(&path("rows.jps"), &path("4")), 1, "it is a JPS with interleaved rows");
+    // An order on the command line holds, and is doubted where the file tells another one.
+    let ordered = |name: &str, order: &str, out: &str| {
+        let mut command = match_one(&path(name), &path(out));
+        command.args(["--side-by-side", order]).assert()
+    };
+    ordered("right.jps", "right-left", "5").success().stderr("");
+    let told = "the left view was taken to lie on the left (--side-by-side, --top-bottom), but by its descriptor it is a JPS whose left view lies \
+                on the right";
+    ordered("right.jps", "left-right", "6").stderr(contains(told));
+    let told =
+        "lie on the right (--side-by-side, --top-bottom), but by its descriptor it is a JPS with interleaved rows";
+    ordered("rows.jps", "right-left", "7").success().stderr(contains(told));
 
     let points = |args: &[&str]| {
         let mut command = hsad();
