@@ -46,6 +46,13 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
         let image = float_image(grey.size(), 1, grey.into_data());
         return Ok(Decoded::upright(image));
     }
+    if let Some(format) = heif(bytes) {
+        let reason = format!(
+            "a picture of the format {format}, which is not read: convert it to PNG or JPEG, for example by heif-convert photo.heic photo.png \
+             or by ImageMagick (magick photo.heic photo.png), or have the camera write JPEG"
+        );
+        return Err(malformed(path, reason));
+    }
     let damaged = |error| explain(error, path);
     let format = match ::image::guess_format(bytes) {
         _ if BIG_TIFF.iter().any(|magic| bytes.starts_with(magic)) => ImageFormat::Tiff,
@@ -101,6 +108,17 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Decoded> {
     let mut image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     image.apply_orientation(orientation);
     Ok(Decoded { image, orientation, doubt })
+}
+
+/// The name of the format of a file that begins as those of phones do: a box 'ftyp' with its brand (ISO/IEC 14496-12 and 23008-12).
+fn heif(head: &[u8]) -> Option<&'static str> {
+    let brand = head.get(4..12)?.strip_prefix(b"ftyp")?;
+    match brand {
+        b"avif" | b"avis" => Some("AVIF"),
+        b"heic" | b"heix" | b"heim" | b"heis" | b"hevc" | b"hevx" => Some("HEIC"),
+        b"mif1" | b"msf1" => Some("HEIF"),
+        _ => None,
+    }
 }
 
 /// Name of a colour type.

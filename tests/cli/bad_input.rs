@@ -24,10 +24,16 @@ fn pair_fails(left: &Path, right: &Path, args: &[&str], code: i32, expected: &st
 fn files_that_are_no_pictures() {
     let (temporary, [left, right]) = (folder(), views("planes"));
     let bytes = fs::read(&left).unwrap();
-    let contents: [(&str, &[u8], &str); 5] = [
+    let contents: [(&str, &[u8], &str); 7] = [
         ("empty.png", b"", "the file is empty"),
         ("cut.png", &bytes[..bytes.len() / 2], "cut.png: "),
         ("text.png", b"this is text, and long enough to be looked at", "PNG, JPEG, PNM, BMP, TIFF and WebP"),
+        (
+            "photo.heic",
+            b"\0\0\0\x18ftypheic\0\0\0\0mif1heic",
+            "the format HEIC, which is not read: convert it to PNG or JPEG",
+        ),
+        ("photo.avif", b"\0\0\0\x1cftypavif\0\0\0\0avifmif1miaf", "the format AVIF, which is not read: convert it"),
         ("cmyk.tiff", &cmyk_tiff(), "CMYK: convert it"),
         ("line\nfeed.png", b"text", r"line\nfeed.png: "),
     ];
