@@ -96,6 +96,11 @@ impl MatchOptions {
         self.0.config()
     }
 
+    /// A doubt about options that change nothing for views of this width in pixels.
+    pub fn without_effect(&self, width: u32) -> Option<String> {
+        self.0.without_effect(width).map(|doubt| in_words_of_options(&doubt))
+    }
+
     /// The first option that is given and not among `others`, as on the command line.
     pub fn any_but(&self, others: &[&str]) -> Option<String> {
         let given = Options::ALL.iter().find(|option| option.is_given(&self.0) && !others.contains(&option.name));

@@ -95,6 +95,7 @@ impl Recipe {
         output.spare(unseen.files());
         let LoadedPair { left, right, stretch, mut warnings } = views.load(&unseen)?;
         let sizes = [left.size(), right.size()];
+        warnings.extend(self.matching.without_effect(sizes[0].width.max(sizes[1].width)));
         let known = match known {
             Known::Recorded(_) if self.rectify == Rectify::Uncalibrated => Known::Nothing,
             known => known,

@@ -3,7 +3,7 @@
 use super::{MethodName, Options, PathCount};
 use crate::{
     config::{Config, Method, Preset},
-    dense::{Aggregation, Compared, CrossCheck, DenseParameters, Refinement, Search, SemiGlobal},
+    dense::{Aggregation, Compared, CrossCheck, DenseParameters, Pyramid, Refinement, Search, SemiGlobal},
     disparity::{DisparityRange, SCALE},
     error::{Error, Result},
     features::FeatureConfig,
@@ -82,6 +82,18 @@ impl Options {
         })
     }
 
+    /// A doubt about options that are given and change nothing for views of this width in pixels, in words with options between backticks.
+    pub fn without_effect(&self, width: u32) -> Option<String> {
+        let parameters = self.preset.unwrap_or_default().dense_parameters();
+        let follows_paths = matches!(parameters.aggregation, Aggregation::Costs(_)) && self.window.is_none();
+        (is_set(self.whole_range) && follows_paths && width < Pyramid::LEAST_WIDTH).then(|| {
+            format!(
+                "`whole_range` changes nothing: without it, too, pictures less than {} px wide are searched over the whole range",
+                Pyramid::LEAST_WIDTH
+            )
+        })
+    }
+
     fn check_exclusions(&self) -> Result<()> {
         let given = |name: &&&str| Self::described(name).is_ok_and(|option| option.is_given(self));
         for option in Self::ALL.iter().filter(|option| option.is_given(self)) {
@@ -109,7 +121,11 @@ impl Options {
         }
         let blocks = matches!(parameters.aggregation, Aggregation::Sad { .. });
         if is_set(self.search_both_views) && blocks && parameters.consistency.is_none() {
-            return Err(self.misfit("it makes no left-right check, unless `max_lr_difference` is given"));
+            return Err(Error::Parameter {
+                name: "search_both_views",
+                value: "given".into(),
+                expected: "these options make no left-right check: add `max_lr_difference`, or leave it out".into(),
+            });
         }
         parameters.agreement = self.agreement.unwrap_or(parameters.agreement);
         if is_set(self.fill) {
@@ -234,6 +250,10 @@ mod tests {
             (&[("paths", "4"), ("window", "7")], "paths is given, but `window` excludes it"),
             (&[("paths", "4"), ("preset", "fast")], "preset is fast, but `paths` and `cost_window` need"),
             (&[("method", "kamencay"), ("fill", "true")], "method is kamencay, but `fill` needs `method` hsad"),
+            (
+                &[("preset", "fast"), ("search_both_views", "true")],
+                "search_both_views is given, but these options make no",
+            ),
             (&[("max_lr_difference", "300")], "max_lr_difference is 300, but"),
             (&[("tile_margin", "64")], "tile_margin is given, but it is that of tiles"),
             (&[("tiles", "200")], "tiles is 200, but a tile is at least 256 px"),
@@ -241,6 +261,14 @@ mod tests {
             let error = options(given).config().unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");
         }
+    }
+
+    #[test]
+    fn what_changes_nothing_is_told() {
+        let whole = |preset| options(&[("whole_range", "true"), ("preset", preset)]);
+        assert!(whole("balanced").without_effect(1599).unwrap().starts_with("`whole_range` changes nothing"));
+        assert_eq!([whole("balanced").without_effect(1600), whole("fast").without_effect(99)], [None, None]);
+        assert_eq!(Options::default().without_effect(99), None);
     }
 
     #[test]

@@ -75,7 +75,7 @@ fn values_out_of_range() {
         (&["--paths", "0", "--preset", "paper"], "preset is paper"),
         (
             &["--search-both-views", "--preset", "fast"],
-            "--preset is fast, but it makes no left-right check, unless --max-lr-difference is given",
+            "--search-both-views is given, but these options make no left-right check: add --max-lr-difference, or leave it out",
         ),
         (&["--compare", "luma"], "--preset is balanced, but --compare needs blocks: --window"),
         (&["--agreement", "10"], "--agreement is 10"),

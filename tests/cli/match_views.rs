@@ -285,6 +285,13 @@ fn options_without_effect_are_refused() {
         command.args(args);
         fails(command, 2, expected);
     }
+    // Of narrow pictures the whole range is searched anyway, which the options alone do not tell.
+    let mut command = match_on_cpu(&left, &right, temporary.path());
+    command.args(["--whole-range", "--disparities", "72"]);
+    command
+        .assert()
+        .success()
+        .stderr(contains("warning: --whole-range changes nothing: without it, too, pictures less than 1600 px"));
     let mut command = match_on_cpu(&left, &right, temporary.path());
     command.args(["--strongest", "4"]).assert().code(2).stderr(contains("--figures"));
 }

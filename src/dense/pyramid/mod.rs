@@ -19,8 +19,7 @@ use crate::{disparity::DisparityRange, image::Size};
 /// the finest takes an eighth of the work over the whole range, the one above that a sixty-fourth.
 const COARSEST: u32 = 800;
 
-/// Smallest width of a picture whose pyramid saves more than it costs, in pixels, and smallest number of disparities.
-const LEAST_WIDTH: u32 = 1600;
+/// Smallest number of disparities of a pyramid that saves more than it costs.
 const LEAST_DISPARITIES: u32 = 128;
 
 /// Least support on levels but the finest, see [`crate::dense::Refinement::support`]: that of a line one pixel wide. Medians
@@ -51,6 +50,9 @@ pub struct Level {
 }
 
 impl Pyramid {
+    /// Smallest width in pixels of a picture whose pyramid saves more than it costs.
+    pub const LEAST_WIDTH: u32 = 1600;
+
     /// The pyramid by which a pair of `size` is matched; `None` where the whole range is searched: if `config` says so,
     /// averages costs over a window, follows no paths or searches the other view too; and if the picture is narrower than
     /// 1600 px or the range has fewer than 128 disparities, where a pyramid saves little.
@@ -58,7 +60,7 @@ impl Pyramid {
         let Aggregation::Costs(costs) = &config.parameters.aggregation else { return None };
         let is_possible = config.parameters.may_search_less();
         let range = config.searched(size.width).ok().filter(|_| is_possible)?;
-        let is_large = size.width >= LEAST_WIDTH && range.count >= LEAST_DISPARITIES;
+        let is_large = size.width >= Self::LEAST_WIDTH && range.count >= LEAST_DISPARITIES;
         match costs.search {
             Search::CoarseToFine if is_large => Some(Self::down_to(COARSEST, size, range)),
             Search::Levels(count) if count > 1 => Some(Self::of_levels(count, size, range)),
