@@ -4,7 +4,10 @@ use std::io::{self, Write};
 
 use glam::{DVec3, Vec3};
 
-use super::{Picture, ply::Point};
+use super::{
+    Picture,
+    ply::{Point, write_head},
+};
 use crate::{
     disparity::{DisparityMap, SCALE},
     error::{Result, check},
@@ -98,18 +101,9 @@ fn triangles(positions: &Plane<[f32; 3]>, map: &DisparityMap) -> Vec<[u32; 3]> {
 /// # Errors
 /// The errors of `out`.
 pub fn write(out: &mut impl Write, mesh: &Mesh) -> io::Result<()> {
-    write!(
-        out,
-        "ply\nformat binary_little_endian 1.0\n\
-         comment camera coordinates in metres: x right, y down, z forward\n\
-         element vertex {}\n\
-         property float x\nproperty float y\nproperty float z\n\
-         property float nx\nproperty float ny\nproperty float nz\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\n\
-         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        mesh.vertices.len(),
-        mesh.triangles.len()
-    )?;
+    let corner = [("float", "x y z nx ny nz"), ("uchar", "red green blue")];
+    let face = [("list uchar int", "vertex_indices")];
+    write_head(out, &[("vertex", mesh.vertices.len(), &corner), ("face", mesh.triangles.len(), &face)])?;
     for Vertex { point, normal } in &mesh.vertices {
         for number in point.position.iter().chain(normal) {
             out.write_all(&number.to_le_bytes())?;

@@ -80,15 +80,7 @@ fn check_size(name: &'static str, size: Size, picture: &Picture) -> Result<()> {
 /// # Errors
 /// The errors of `out`.
 pub fn write(out: &mut impl Write, points: &[Point]) -> io::Result<()> {
-    write!(
-        out,
-        "ply\nformat binary_little_endian 1.0\n\
-         comment camera coordinates in metres: x right, y down, z forward\n\
-         element vertex {}\n\
-         property float x\nproperty float y\nproperty float z\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-        points.len()
-    )?;
+    write_head(out, &[("vertex", points.len(), &[("float", "x y z"), ("uchar", "red green blue")])])?;
     for Point { position, color } in points {
         for coordinate in position {
             out.write_all(&coordinate.to_le_bytes())?;
@@ -96,6 +88,25 @@ pub fn write(out: &mut impl Write, points: &[Point]) -> io::Result<()> {
         out.write_all(color)?;
     }
     Ok(())
+}
+
+/// The properties of an element: types, and the names of each type.
+type Properties<'a> = &'a [(&'a str, &'a str)];
+
+/// Writes the head of a binary little-endian PLY: name, number and properties of each element.
+///
+/// # Errors
+/// The errors of `out`.
+pub(super) fn write_head(out: &mut impl Write, elements: &[(&str, usize, Properties)]) -> io::Result<()> {
+    let comment = "camera coordinates in metres: x right, y down, z forward";
+    write!(out, "ply\nformat binary_little_endian 1.0\ncomment {comment}\n")?;
+    for (element, count, properties) in elements {
+        writeln!(out, "element {element} {count}")?;
+        for (kind, names) in *properties {
+            names.split(' ').try_for_each(|name| writeln!(out, "property {kind} {name}"))?;
+        }
+    }
+    writeln!(out, "end_header")
 }
 
 #[cfg(test)]
