@@ -24,8 +24,8 @@ pub struct CloudOptions {
     /// Keep filled pixels in the cloud
     #[arg(long)]
     pub filled: bool,
-    /// Also write the surfaces (mesh.ply): triangles between neighbouring points of the cloud whose disparities differ by at most 1 px,
-    /// with normals
+    /// Also write the surfaces (mesh.ply): triangles between neighbouring points of the cloud whose disparities differ by at most 1 px and
+    /// whose depths by at most a quarter, with normals
     #[arg(long)]
     pub mesh: bool,
 }

@@ -19,6 +19,10 @@ use crate::{
 /// Science 208, 1980).
 const LARGEST_STEP: u32 = SCALE as u32;
 
+/// Largest ratio of the depths of pixels that a triangle joins. 1 px is less than this from 4 px of disparity on, and so in every cloud of
+/// the default depth; nearer to infinity it is the gap between things.
+const LARGEST_RATIO: f32 = 1.25;
+
 /// A corner of triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
@@ -39,8 +43,8 @@ pub struct Mesh {
 
 impl Mesh {
     /// The mesh of a map: two triangles per 2x2 pixels, one where three of them are points, none across steps of more than 1 px of
-    /// disparity. `positions` are those of the map's pixels in camera coordinates, not finite where a pixel is no point; a vertex has the
-    /// colour of its pixel, and as normal the mean of its triangles', weighted by their areas.
+    /// disparity or a quarter of the depth. `positions` are those of the map's pixels in camera coordinates, not finite where a pixel is no
+    /// point; a vertex has the colour of its pixel, and as normal the mean of its triangles', weighted by their areas.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] if the sizes differ.
@@ -78,7 +82,10 @@ fn triangles(positions: &Plane<[f32; 3]>, map: &DisparityMap) -> Vec<[u32; 3]> {
     let is_point: Vec<bool> =
         positions.data().iter().map(|place| place.iter().all(|value| value.is_finite())).collect();
     let step = |p: u32, q: u32| map.data()[p as usize].abs_diff(map.data()[q as usize]);
-    let joined = |p: u32, q: u32| is_point[p as usize] && is_point[q as usize] && step(p, q) <= LARGEST_STEP;
+    let depth = |p: u32| positions.data()[p as usize][2];
+    let is_near = |p: u32, q: u32| depth(p).max(depth(q)) <= LARGEST_RATIO * depth(p).min(depth(q));
+    let joined =
+        |p: u32, q: u32| is_point[p as usize] && is_point[q as usize] && step(p, q) <= LARGEST_STEP && is_near(p, q);
     let is_surface = |&[p, q, r]: &[u32; 3]| joined(p, q) && joined(q, r) && joined(r, p);
     let mut triangles = Vec::new();
     for y in 1..height {
@@ -153,6 +160,18 @@ mod tests {
         let edge = mesh(4, &[7, 7, 20, 20, 7, 7, 20, 20]);
         assert_eq!((edge.vertices.len(), edge.triangles.len()), (8, 4));
         assert_eq!(mesh(1, &[7, 7]).vertices, []);
+    }
+
+    /// Disparities of 3/4 and 7/4 px: more than twice as far away, in the cloud of any depth.
+    #[test]
+    fn small_steps_of_disparity_far_away_are_cut() {
+        let mesh = |near: i32, far: i32| {
+            let map = Plane::from_fn((4, 2), |x, _| if x < 2 { near } else { far });
+            let place = |x: u32, y: u32| [x as f32, y as f32, 1e4 / map.get(x, y) as f32];
+            Mesh::new(&Plane::from_fn(map.size(), place), &map, &Picture::filled((4, 2), [9; 4])).unwrap()
+        };
+        assert_eq!(mesh(448, 192).triangles.len(), 4);
+        assert_eq!(mesh(6 * 256, 5 * 256).triangles.len(), 6);
     }
 
     #[test]
