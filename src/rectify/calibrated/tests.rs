@@ -106,6 +106,8 @@ fn pictures_are_as_large_as_needed_and_turned_by_quarters() {
         assert_eq!(rectification.quarter_turns(), quarter_turns, "{name}");
         let Size { width, height } = rectification.size();
         assert!(width.max(height) <= 1280, "{name}: {width}x{height}");
+        let middle = rectification.views()[0].rectified_of(DVec2::new(320.0, 240.0)).unwrap();
+        assert!((middle - middle.round()).length() < 1e-6, "{name}: the middle of the left view is at {middle}");
         for view in rectification.views() {
             // At the centre of the picture the rectified pixels are not larger than those of the source.
             let middle = view.rectified_of(DVec2::new(319.5, 239.5)).unwrap();

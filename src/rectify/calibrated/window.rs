@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-3;
 pub(super) struct Window {
     least: DVec2,
     most: DVec2,
-    /// Where the centre of the source appears.
+    /// Where the pixel in the middle of the source appears.
     middle: DVec2,
 }
 
@@ -36,19 +36,22 @@ impl Window {
         let (least, most) = places
             .map(|place| (place, place))
             .reduce(|(least, most), (place, _)| (least.min(place), most.max(place)))?;
-        let middle = centre(camera, size, rotation).map_or(0.5 * (least + most), |place| focal * place);
+        let middle = DVec2::new((size.width / 2).into(), (size.height / 2).into());
+        let middle = appears(camera, rotation, middle).map_or(0.5 * (least + most), |place| focal * place);
         Some(Self { least, most, middle })
     }
 
-    /// The window of a pair with this left view and that right view, with sides of at most `longest` pixels; `None` if
-    /// nothing corresponds.
+    /// The window of a pair with this left view and that right view, with sides of at most `longest` pixels, in which the pixel in the
+    /// middle of the left view is a pixel: around it a view that is hardly turned is resampled with the least loss. `None` if nothing
+    /// corresponds.
     pub fn common(&self, right: &Self, longest: f64) -> Option<Self> {
         // A left column x corresponds to the right columns from x to the left.
         let least = DVec2::new(right.least.x, self.least.y.max(right.least.y));
         let most = DVec2::new(self.most.x, self.most.y.min(right.most.y));
         let middle = (0.5 * (self.middle + right.middle)).clamp(least.min(most), most.max(least));
         let half = 0.5 * (longest - 1.0);
-        let window = Self { least: least.max(middle - half), most: most.min(middle + half), middle };
+        let least = self.middle + (least.max(middle - half) - self.middle - ROUNDING).ceil();
+        let window = Self { least, most: most.min(middle + half), middle };
         (window.least.cmplt(window.most).all()).then_some(window)
     }
 
@@ -118,8 +121,16 @@ mod tests {
         let common = left.common(&right, 1000.0).unwrap();
         assert_eq!((common.least, common.most), (DVec2::new(-60.0, -28.0), DVec2::new(60.0, 30.0)));
         assert_eq!((common.size(), common.principal_point()), (Size::new(121, 59), DVec2::new(60.0, 28.0)));
-        // The middles are at 10 and -7.5 along x: from 1.25 - 25 to 1.25 + 25.
-        assert_eq!(left.common(&right, 51.0).unwrap().size(), Size::new(51, 51));
+        // The middles are at 10 and -7.5 along x: from 1.25 - 25 to 1.25 + 25, of which 10 - 33 is the first whole pixel.
+        let cut = left.common(&right, 51.0).unwrap();
+        assert_eq!(
+            (cut.least, cut.most, cut.size()),
+            (DVec2::new(-23.0, -23.0), DVec2::new(26.25, 26.25), Size::new(50, 50))
+        );
+        // 0.3 px beside the middle of the left view nothing lies on a pixel.
+        let beside = Window { middle: left.middle + 0.3, ..left };
+        let least = beside.common(&right, 1000.0).unwrap().least;
+        assert!(least.abs_diff_eq(DVec2::new(-59.7, -27.7), 1e-9), "{least}");
         // What the left view sees lies left of all that the right view sees.
         assert_eq!(left.common(&window([61.0, -30.0], [90.0, 30.0]), 1000.0), None);
         assert_eq!(left.common(&window([-60.0, 31.0], [60.0, 60.0]), 1000.0), None);

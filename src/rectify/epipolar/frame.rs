@@ -58,6 +58,12 @@ impl Frame {
         (self.centres[1] - self.centres[0]) / self.pixels
     }
 
+    /// The place of the pixel in the middle of a view, right of and below the centre where that lies between pixels.
+    pub fn middle(&self, view: usize) -> DVec2 {
+        let Size { width, height } = self.sizes[view];
+        self.place(view, DVec2::new((width / 2).into(), (height / 2).into()))
+    }
+
     /// Half of width and height of a view between the centres of its outermost pixels, in units.
     pub fn half(&self, view: usize) -> DVec2 {
         self.centres[view] / self.pixels

@@ -265,8 +265,24 @@ impl Chosen {
         let stays = [DVec3::new(1.0, 0.0, frame.offset().x), DVec3::Z];
         let keeps_columns = model != Model::Both && [right.row(0), right.row(2)] == stays;
         let in_pixels = frame.map_to_pixels(0);
-        Self { model, maps: [in_pixels * maps[0], in_pixels * right], keeps_columns }
+        let maps = [in_pixels * maps[0], in_pixels * right];
+        Self { model, maps: if keeps_columns { maps } else { on_pixels(model, maps, frame) }, keeps_columns }
     }
+}
+
+/// The maps, from units to pixels, with what nothing tells chosen so that resampling loses least: the middle pixel of the right view lies
+/// on a column, and where both views are turned that of the left view on a column and a row. Of a view that is turned by a right angle all
+/// pixels lie so; halfway between pixels most of the detail is lost.
+fn on_pixels(model: Model, maps: [DMat3; 2], frame: &Frame) -> [DMat3; 2] {
+    let to_pixel = |view: usize| {
+        let there = frame::mapped(&maps[view], frame.middle(view)).unwrap_or_default();
+        there.round() - there
+    };
+    let (left, right) = match model {
+        Model::Right(_) => (DVec2::ZERO, to_pixel(1).with_y(0.0)),
+        Model::Both => (to_pixel(0), to_pixel(1).with_y(to_pixel(0).y)),
+    };
+    [DMat3::from_translation(left) * maps[0], DMat3::from_translation(right) * maps[1]]
 }
 
 /// The model of least cost, and homographies of both views from units to units.

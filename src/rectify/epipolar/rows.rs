@@ -13,7 +13,8 @@ use crate::rectify::{Correspondence, RowKind, cholesky::solved};
 /// the last one is the precision of a match.
 const WIDTHS: [f64; 5] = [30.0, 10.0, 3.0, 1.0, PRECISION];
 
-/// Largest distance by which turn and scale may move columns that stay as they are, in pixels of the detection.
+/// Largest distance by which turn and scale may move columns that stay as they are, or turned by right angles, in pixels of the
+/// detection.
 const STAYS: f64 = 1.0;
 
 /// The parameters `p0` to `p4` of a left row, `y = (p0 x + p1 y + p2) / (1 + p3 x + p4 y)`, in units of a frame.
@@ -30,15 +31,17 @@ pub(super) fn fundamental([p0, p1, p2, p3, p4]: Parameters) -> Fundamental {
 }
 
 /// The homography of the right view that brings its rows to the left ones. Columns that turn and scale hardly move stay those of the
-/// picture; others follow from a turn and a scale alone at the centre of the view, so that the surroundings of the centre are not sheared.
+/// picture, or of the picture turned by right angles, so that nothing of their detail is lost; others follow from a turn and a scale alone
+/// at the centre of the view, so that the surroundings of the centre are not sheared.
 pub(super) fn homography(kind: RowKind, [p0, p1, p2, p3, p4]: Parameters, frame: &Frame) -> DMat3 {
-    let half = frame.half(1);
-    let moved = p0.abs() * half.y + (p1 - 1.0).abs() * half.x;
-    if kind <= RowKind::Affine && moved * frame.unit <= STAYS {
+    let turned = DVec2::new(p1, -p0).round();
+    let moved = (DVec2::new(p1, -p0) - turned).abs().dot(frame.half(1));
+    if kind <= RowKind::Affine && turned.length_squared() == 1.0 && moved * frame.unit <= STAYS {
+        let offset = if turned == DVec2::X { frame.offset().x } else { 0.0 };
         return DMat3::from_cols(
-            DVec3::new(1.0, p0, 0.0),
-            DVec3::new(0.0, p1, 0.0),
-            DVec3::new(frame.offset().x, p2, 1.0),
+            DVec3::new(turned.x, p0, 0.0),
+            DVec3::new(turned.y, p1, 0.0),
+            DVec3::new(offset, p2, 1.0),
         );
     }
     let (by_x, by_y) = (p0 - p2 * p3, p1 - p2 * p4);

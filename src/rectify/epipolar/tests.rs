@@ -97,6 +97,13 @@ impl Rig {
     }
 }
 
+/// The pixel in the middle of a view.
+const MIDDLE: DVec2 = DVec2::new(400.0, 300.0);
+
+fn is_whole(coordinate: f64) -> bool {
+    (coordinate - coordinate.round()).abs() < 1e-6
+}
+
 /// Numbers from 0 to 1 in a fixed sequence.
 fn random() -> impl FnMut() -> f64 {
     let mut state = 7u64;
@@ -125,6 +132,7 @@ fn rows_of_one_view_are_enough_for_turns_of_the_right_camera() {
         let corner = DVec2::new(12.0, 34.0);
         assert!(found.rectified(0, corner).unwrap().abs_diff_eq(corner, 1e-9), "the left view stays");
         assert!(found.distortion.aspect < 1.2 && found.residual.most < 1.0, "{:?}", found.residual);
+        assert!(found.keeps_columns || is_whole(found.rectified(1, MIDDLE).unwrap().x), "{turn:?}");
     }
 }
 
@@ -222,6 +230,8 @@ fn both_views_are_turned_where_neither_has_level_epipolar_lines() {
             .into_iter()
             .filter(|point| found.rectified(0, point.left).unwrap().x > found.rectified(1, point.right).unwrap().x);
         assert_eq!(disparities.count(), 100, "{name}: the left camera stands on the left");
+        let [left, right] = [0, 1].map(|view| found.rectified(view, MIDDLE).unwrap());
+        assert!(is_whole(left.x) && is_whole(left.y) && is_whole(right.x), "{name}: {left} {right}");
         // Nothing that both views show is cut off.
         let inside = |view: usize, pixel: DVec2| {
             let there = found.rectified(view, pixel).unwrap();
