@@ -33,6 +33,9 @@ impl Member {
 /// Pairs as they are read.
 pub type Pairs = Box<dyn Iterator<Item = Result<(Pair, Option<Frame>)>> + Send>;
 
+/// Looks for what an earlier run has recorded.
+type Finished<'a> = Box<dyn Fn(&Pair) -> Result<Option<Record>> + Sync + 'a>;
+
 /// How pairs are grouped.
 #[derive(Clone, Copy)]
 pub struct Grouping {
@@ -56,8 +59,7 @@ impl Grouping {
 /// read through reads that one on for the other thread, as long as no more than [`AHEAD`] bytes of frames wait.
 pub struct Feed<'a> {
     grouping: Grouping,
-    /// Looks for what an earlier run has recorded.
-    finished: Box<dyn Fn(&Pair) -> Result<Option<Record>> + Sync + 'a>,
+    finished: Finished<'a>,
     state: Mutex<State>,
     /// Something was read or taken, or all has ended.
     changed: Condvar,
@@ -110,7 +112,7 @@ impl<'a> Feed<'a> {
     pub fn has_work(&self) -> bool {
         let mut state = self.state();
         loop {
-            if state.waiting.values().any(|members| has_work(members)) {
+            if state.waiting.values().any(has_work) {
                 return true;
             }
             if matches!(state.source, Source::Ended) {

@@ -134,8 +134,11 @@ fn plain() -> WriteOptions {
     WriteOptions::new().compression(None)
 }
 
-/// What comes of a recording: times and first pixels of both views, then the error that ends it.
-fn read(file: &Path) -> Result<(Vec<(u64, [u8; 2])>, LeftOut, Option<String>)> {
+/// The time of a pair, and the first pixels of its views.
+type Found = (u64, [u8; 2]);
+
+/// What comes of a recording: its pairs, what is left out, and the error that ends it.
+fn read(file: &Path) -> Result<(Vec<Found>, LeftOut, Option<String>)> {
     let recording = Recording::open(file)?;
     let mut pairs = recording.pairs(recording.both_views(None)?)?;
     let (mut found, mut error) = (Vec::new(), None);
@@ -175,7 +178,7 @@ fn ride() -> Vec<Sent<'static>> {
     ]
 }
 
-const PAIRS: [(u64, [u8; 2]); 3] = [(10, [50, 60]), (30, [52, 62]), (40, [53, 63])];
+const PAIRS: [Found; 3] = [(10, [50, 60]), (30, [52, 62]), (40, [53, 63])];
 
 #[test]
 fn pairs_come_out_of_chunks_of_any_size_and_of_none() {
