@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use glam::DAffine2;
+use glam::{DAffine2, DVec2};
 use hsad::{
     Backend,
     dense::View,
@@ -14,6 +14,8 @@ use hsad::{
         scene::SceneFiles,
     },
     gpu::{DeviceChoice, block_on},
+    io::load::load,
+    pipeline,
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
@@ -45,6 +47,31 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
             assert!(right.len() >= least && accuracy >= 0.97, "{name}, {condition}: {accuracy} of {}", right.len());
         }
     }
+}
+
+/// Surfaces that are 2.4 to 3.3 times as large in one view as in the other: most of their points show only in views that are not reduced.
+#[test]
+fn marked_rows_correspond_after_a_zoom() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/uncalibrated/zoom"));
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is absent", folder.display());
+        return;
+    }
+    let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
+    let [left, right] = ["img1.png", "img2.png"].map(|name| load(&folder.join(name)).unwrap());
+    let pair = pipeline::rectify(&backend, (&left, &right)).unwrap();
+    let text = std::fs::read_to_string(folder.join("points.txt")).unwrap();
+    let mut errors = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('#')) {
+        let numbers: Vec<f64> = line.split_whitespace().map(|number| number.parse().unwrap()).collect();
+        let row = |view: usize| {
+            let mark = DVec2::new(numbers[2 * view], numbers[2 * view + 1]);
+            pair.rectification.rectified_of(view, mark).unwrap().y
+        };
+        errors.push((row(0) - row(1)).abs());
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(errors.len() == 13 && mean < 1.5, "{mean}: {errors:?}");
 }
 
 /// All pictures of a size share a detector; an earlier picture must leave no trace.

@@ -10,7 +10,7 @@ use crate::{
     names::names,
     rectify::{
         Correspondence,
-        epipolar::{agreeing, turn},
+        epipolar::{Similarity, agreeing},
     },
     wide_baseline::match_points,
 };
@@ -56,7 +56,11 @@ pub async fn mirrored_async(backend: &Backend, (left, right): (&Picture, &Pictur
     let as_given = points(backend, [&left, &right]).await?.len();
     let found = points(backend, [&left, &back]).await?;
     let is_mirrored = found.len() >= LEAST.0 && found.len() >= LEAST.1 * as_given;
-    let kind = if turn(&found).abs() < std::f64::consts::FRAC_PI_2 { Mirrored::Columns } else { Mirrored::Rows };
+    let kind = if Similarity::between(&found).turn.abs() < std::f64::consts::FRAC_PI_2 {
+        Mirrored::Columns
+    } else {
+        Mirrored::Rows
+    };
     Ok(is_mirrored.then_some(kind))
 }
 

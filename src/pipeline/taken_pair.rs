@@ -15,14 +15,19 @@ use crate::{
     error::{Error, Result},
     image::Size,
     io::Picture,
-    rectify::{Correspondence, StereoRectification, WarpMap, epipolar::Uncalibrated},
+    rectify::{
+        Correspondence, StereoRectification, WarpMap,
+        epipolar::{Refusal, Similarity, Uncalibrated},
+    },
     seeding::Rectification,
-    wide_baseline::{Glance, WideBaselineConfig, glance, match_points, match_upright},
+    wide_baseline::{Glance, WideBaselineConfig, glance, grown, match_points, match_upright},
 };
 
-/// Number of inliers below which more points are sought along the rows of a first rectification.
+/// Number of inliers below which more points are sought, along the rows of a first rectification, and in views that are reduced less.
 const FEW: usize = 200;
-/// Number of times that they are sought, the second time along better rows.
+/// Ratio of scales of the views above which points are sought in views that are reduced less.
+const ZOOMED: f64 = 1.5;
+/// Number of times that points are sought along rows, the second time along better rows.
 const ROUNDS: usize = 2;
 /// Largest row difference of points that are sought along rows, in pixels of the detection.
 const MAX_DY: f32 = 3.0;
@@ -87,40 +92,20 @@ impl TakenPair {
     /// See [`rectify`].
     pub async fn rectify_async(self, backend: &Backend) -> Result<RectifiedPair> {
         let Self { views, small, factor, glance: Glance { map: start, .. } } = self;
-        let config = config();
-        let mut points = points_between(backend, [&small[0], &small[1]], &config, start).await?;
         let sizes = views.each_ref().map(|view| view.picture.size());
-        let fit = |points: &[Correspondence]| {
-            let points: Vec<Correspondence> = points.iter().map(|point| enlarged(point, factor)).collect();
-            (Uncalibrated::new(&points, sizes, factor), points)
-        };
-        let (mut found, mut in_views) = fit(&points);
-        if found.is_err() {
-            // Matching turns and scales the second view, which leaves other points than to turn and scale the first one.
-            let exchanged = points_between(backend, [&small[1], &small[0]], &config, start.inverse()).await?;
-            let exchanged = exchanged.iter().map(|point| Correspondence { left: point.right, right: point.left });
-            let both: Vec<Correspondence> = exchanged.chain(points.iter().copied()).collect();
-            let (better, better_in_views) = fit(&both);
-            if better.is_ok() {
-                (points, found, in_views) = (both, better, better_in_views);
-            }
+        let mut fitted = Fitted::new(backend, &small, sizes, factor, start).await?;
+        if factor > 1 && fitted.lacks_detail() {
+            let finer = factor.div_ceil(2);
+            let start = grown(start, f64::from(factor) / f64::from(finer));
+            let small = views.each_ref().map(|view| view.seen.reduced(finer));
+            fitted = fitted.better_of(Fitted::new(backend, &small, sizes, finer, start).await?);
         }
-        for round in 0..ROUNDS {
-            if found.as_ref().map_or(true, |found| round == 0 && found.evidence.inliers >= FEW) {
-                break;
-            }
-            let more = more_points(backend, &small, &points, &config).await?;
-            let (better, better_in_views) = fit(&more);
-            if better.is_err() || more.len() <= points.len() {
-                break;
-            }
-            (points, found, in_views) = (more, better, better_in_views);
-        }
+        let Fitted { found, points } = fitted;
         let found = found.map_err(|refusal| Error::NotRectifiable { reason: refusal.to_string() })?;
         let residual = found.residual;
         let rectification = StereoRectification::Uncalibrated(found.into());
         let resampled = warped(backend, &views, &rectification).await?;
-        Ok(RectifiedPair::new(views, rectification, resampled, in_views, residual))
+        Ok(RectifiedPair::new(views, rectification, resampled, points, residual))
     }
 }
 
@@ -140,6 +125,70 @@ pub fn rectify(backend: &Backend, views: (&Picture, &Picture)) -> Result<Rectifi
 /// See [`rectify`].
 pub async fn rectify_async(backend: &Backend, views: (&Picture, &Picture)) -> Result<RectifiedPair> {
     TakenPair::new_async(backend, views).await?.rectify_async(backend).await
+}
+
+/// Matched points, and the rectification that they show.
+struct Fitted {
+    found: std::result::Result<Uncalibrated, Refusal>,
+    /// In pixels of the views.
+    points: Vec<Correspondence>,
+}
+
+impl Fitted {
+    /// Matches views of `sizes`, reduced by `factor`, from `start` on, a map from pixels of the second reduced view to pixels of one that
+    /// is turned and scaled like the first.
+    async fn new(backend: &Backend, small: &[Seen; 2], sizes: [Size; 2], factor: u32, start: DAffine2) -> Result<Self> {
+        let config = config();
+        let fit = |points: &[Correspondence]| {
+            let points: Vec<Correspondence> = points.iter().map(|point| enlarged(point, factor)).collect();
+            Self { found: Uncalibrated::new(&points, sizes, factor), points }
+        };
+        let mut points = points_between(backend, [&small[0], &small[1]], &config, start).await?;
+        let mut fitted = fit(&points);
+        if fitted.found.is_err() {
+            // Matching turns and scales the second view, which leaves other points than to turn and scale the first one.
+            let exchanged = points_between(backend, [&small[1], &small[0]], &config, start.inverse()).await?;
+            let exchanged = exchanged.iter().map(|point| Correspondence { left: point.right, right: point.left });
+            let both: Vec<Correspondence> = exchanged.chain(points.iter().copied()).collect();
+            let better = fit(&both);
+            if better.found.is_ok() {
+                (points, fitted) = (both, better);
+            }
+        }
+        for round in 0..ROUNDS {
+            if fitted.found.is_err() || round == 0 && fitted.inliers() >= FEW {
+                break;
+            }
+            let more = more_points(backend, small, &points, &config).await?;
+            let better = fit(&more);
+            if better.found.is_err() || more.len() <= points.len() {
+                break;
+            }
+            (points, fitted) = (more, better);
+        }
+        Ok(fitted)
+    }
+
+    /// Whether views that are reduced less should show more: points are few, or surfaces much smaller in one of the views.
+    fn lacks_detail(&self) -> bool {
+        let scale = Similarity::between(&self.points).scale;
+        self.inliers() < FEW || scale.max(1.0 / scale) > ZOOMED
+    }
+
+    /// Number of points that agree on how the cameras stand; 0 if no picture follows from what they agree on.
+    fn inliers(&self) -> usize {
+        match &self.found {
+            Ok(found) => found.evidence.inliers,
+            Err(Refusal::Relation(evidence)) => evidence.inliers,
+            Err(Refusal::Distorted { .. } | Refusal::Rows(_)) => 0,
+        }
+    }
+
+    /// The one that can be rectified, or else the one of more inliers; itself where they are equal.
+    fn better_of(self, other: Self) -> Self {
+        let key = |fitted: &Self| (fitted.found.is_ok(), fitted.inliers());
+        if key(&other) > key(&self) { other } else { self }
+    }
 }
 
 /// Matched points of two views, the second one turned and scaled like the first, from `start` on.

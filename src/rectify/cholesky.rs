@@ -2,7 +2,7 @@
 
 /// Solution of the first `free` of symmetric positive definite equations, given by their lower triangle; zeros for the other
 /// unknowns. `None` if the equations are singular: if `least` or less of a diagonal element remains, as a share.
-pub(super) fn solved<const N: usize>(
+pub(crate) fn solved<const N: usize>(
     mut normal: [[f64; N]; N],
     mut right: [f64; N],
     free: usize,

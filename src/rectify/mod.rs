@@ -9,7 +9,7 @@
 
 mod calibrated;
 mod catmull_rom;
-mod cholesky;
+pub(crate) mod cholesky;
 mod curve;
 pub mod epipolar;
 pub(crate) mod fit;

@@ -49,9 +49,29 @@ pub(crate) async fn glance(
     };
     let seeds: Vec<Seed> = matches.iter().map(as_given).collect();
     let rows = Rectification::new(&seeds, first.luma.size());
-    let enlarge = DAffine2::from_translation(DVec2::splat((f64::from(FACTOR) - 1.0) / 2.0))
-        * DAffine2::from_scale(DVec2::splat(FACTOR.into()));
     let is_certain = rows.is_certain() && rows.agreeing >= LEAST;
-    let map = if is_certain { enlarge * map * enlarge.inverse() } else { DAffine2::IDENTITY };
+    let map = if is_certain { grown(map, FACTOR.into()) } else { DAffine2::IDENTITY };
     Ok(Glance { rows: is_certain.then(|| rows.enlarged(FACTOR)), map })
+}
+
+/// A map between pixels of two views, as one between pixels of the views enlarged by `factor`.
+pub(crate) fn grown(map: DAffine2, factor: f64) -> DAffine2 {
+    let enlarge =
+        DAffine2::from_translation(DVec2::splat((factor - 1.0) / 2.0)) * DAffine2::from_scale(DVec2::splat(factor));
+    enlarge * map * enlarge.inverse()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_grows_about_the_corner_of_the_first_pixel() {
+        let map = DAffine2::from_scale_angle_translation(DVec2::new(0.5, 2.0), 0.3, DVec2::new(3.0, -4.0));
+        let whole = grown(map, 2.0);
+        // Pixel 3 of a view is the middle of pixels 6 and 7 of the view enlarged twice.
+        let place = |pixel: DVec2| 2.0 * pixel + 0.5;
+        let pixel = DVec2::new(3.0, 7.0);
+        assert!(whole.transform_point2(place(pixel)).distance(place(map.transform_point2(pixel))) < 1e-12);
+    }
 }

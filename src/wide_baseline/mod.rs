@@ -12,6 +12,7 @@ mod align;
 mod detector_cache;
 mod glance;
 mod points;
+mod windows;
 
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
@@ -25,7 +26,7 @@ use crate::{
     matching::{self, Match, MatchConfig, Rows, Seed, locate, match_features},
 };
 use detector_cache::DetectorCache;
-pub(crate) use glance::{Glance, glance};
+pub(crate) use glance::{Glance, glance, grown};
 pub(crate) use points::{match_points, match_upright};
 
 /// Parameters of [`match_views`].

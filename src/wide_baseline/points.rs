@@ -1,8 +1,9 @@
 //! Matches at the positions of the interest points themselves, for geometry.
 
 use glam::{DAffine2, DVec2};
+use rayon::prelude::*;
 
-use super::{DetectorCache, NEIGHBOURHOOD, View, WideBaselineConfig, agreement::agreement, align};
+use super::{DetectorCache, NEIGHBOURHOOD, View, WideBaselineConfig, agreement::agreement_of_scales, align, windows};
 use crate::{
     backend::Backend,
     error::Result,
@@ -38,9 +39,11 @@ pub(crate) async fn match_points(
     let align::Aligned { view: second, map, matches, .. } =
         align::align(&mut detectors, &first, second, features, matching, align::Goal::Descriptors, start).await?;
     let back = map.inverse();
-    let found = supported([&first.features, &second.features], &matches, reach);
+    let found: Vec<Correspondence> = supported([&first.features, &second.features], &matches, reach).collect();
+    let views = [&first.luma, &second.luma];
+    let found: Vec<Correspondence> = found.into_par_iter().map(|point| windows::refined(views, point)).collect();
     let place = |Correspondence { left, right }| Correspondence { left, right: back.transform_point2(right) };
-    Ok(found.map(place).collect())
+    Ok(found.into_iter().map(place).collect())
 }
 
 /// Corresponding points of two views that are not turned against each other, in rows that differ by at most `max_dy` pixels, or in
@@ -65,7 +68,8 @@ pub(crate) async fn match_upright(
 /// The matches that enough neighbours within `reach` pixels agree with.
 fn supported([first, second]: [&[Feature]; 2], matches: &[Match], reach: f32) -> impl Iterator<Item = Correspondence> {
     let seeds: Vec<Seed> = matches.iter().map(|found| Seed::from_match(first, second, found)).collect();
-    let shares = agreement(&seeds, reach);
+    let growths: Vec<f32> = matches.iter().map(|found| second[found.right].scale / first[found.left].scale).collect();
+    let shares = agreement_of_scales(&seeds, &growths, reach);
     let kept = seeds.into_iter().zip(shares).filter(|&(_, share)| share >= LEAST_AGREEMENT);
     let place = |x: f32, y: f32| DVec2::new(x.into(), y.into());
     kept.map(move |(seed, _)| Correspondence {

@@ -56,11 +56,6 @@ pub(crate) fn agreeing(points: &[Correspondence], sizes: [Size; 2]) -> Vec<Corre
     if is_related { inliers } else { Vec::new() }
 }
 
-/// Turn of the right points against the left ones, in radians, clockwise on the screen.
-pub(crate) fn turn(points: &[Correspondence]) -> f64 {
-    Similarity::between(points).turn
-}
-
 /// The figures that tell how the cameras stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {

@@ -28,11 +28,12 @@ mod tests;
 
 use glam::{DMat3, DVec2, DVec3};
 
+pub(crate) use evidence::agreeing;
 pub use evidence::{Evidence, without_depth};
-pub(crate) use evidence::{agreeing, turn};
 pub use refusal::Refusal;
 pub use relation::Relation;
 pub use shape::Distortion;
+pub(crate) use similarity::Similarity;
 
 use frame::{AGREEMENT, Frame};
 use fundamental::Fundamental;

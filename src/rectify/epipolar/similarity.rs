@@ -6,7 +6,7 @@ use crate::rectify::Correspondence;
 
 /// Turn of the right view against the left, in radians, clockwise on the screen, and its scale.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Similarity {
+pub(crate) struct Similarity {
     pub turn: f64,
     pub scale: f64,
 }
