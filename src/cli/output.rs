@@ -204,7 +204,20 @@ impl Output {
             Some(set) => set.earlier.without(&self.folder, &self.names).filter(|path| !is_spared(path)).collect(),
             None => Vec::new(),
         };
-        atomic::replace_all(mem::take(&mut self.staged), &stale)
+        let mut staged = mem::take(&mut self.staged);
+        if let Some(set) = &self.set {
+            list_first(&mut staged, &self.names, set.list);
+        }
+        atomic::replace_all(staged, &stale)
+    }
+}
+
+/// Moves what stands for the file `list` to the front of `staged`, which belong to the last of `names`. The list takes its place first:
+/// where a process is killed then, later runs know the other files.
+fn list_first<T>(staged: &mut [T], names: &[&str], list: &str) {
+    let names = &names[names.len() - staged.len()..];
+    if let Some(place) = names.iter().position(|name| *name == list) {
+        staged[..=place].rotate_right(1);
     }
 }
 
@@ -303,6 +316,15 @@ impl Drop for Output {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_list_of_a_set_takes_its_place_first() {
+        let mut staged = [1, 2, 3];
+        list_first(&mut staged, &["there", "map", "list", "mask"], "list");
+        assert_eq!(staged, [2, 1, 3]);
+        list_first(&mut staged, &["list", "a", "b", "c"], "list");
+        assert_eq!(staged, [2, 1, 3], "the list is in its place");
+    }
 
     #[test]
     fn folders_go_again_unless_files_appear() {

@@ -66,6 +66,12 @@ impl Journal {
         if is_known && !path.is_file() {
             return Err(told("it is no file"));
         }
+        // Which is older than every journal of the folder.
+        if is_known && !folder.join(BATCH).exists() {
+            return Err(told(&format!(
+                "there is no {BATCH} beside it, and so it is none of hsad's: name another folder (-o)"
+            )));
+        }
         clear_leftovers(folder);
         check_recipe(folder, recipe)?;
         let file = OpenOptions::new().create(true).append(true).open(&path);
@@ -123,14 +129,14 @@ fn read(path: &Path) -> Result<Earlier> {
     }
     let text = read_whole(path, MOST)?;
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-    if whole < text.len() {
-        OpenOptions::new().write(true).open(path)?.set_len(whole as u64)?;
-    }
     let mut records = HashMap::new();
     for (number, line) in (1..).zip(text[..whole].split(|&byte| byte == b'\n').filter(|line| !line.is_empty())) {
         let value = serde_json::from_slice(line).with_context(|| format!("line {number}"))?;
         let Some(record) = Record::from_json(value) else { bail!("line {number}: no record of hsad batch") };
         records.insert(record.name().to_owned(), record);
+    }
+    if whole < text.len() {
+        OpenOptions::new().write(true).open(path)?.set_len(whole as u64)?;
     }
     Ok(Earlier(records))
 }
@@ -177,5 +183,16 @@ mod tests {
         assert_eq!(text.lines().count(), 3, "{text}");
         let (_, earlier) = open("quickly", true).expect("the same batch");
         assert!(is_finished(&earlier, "c"));
+    }
+    #[test]
+    fn what_is_no_journal_stays_as_it_is() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("report.jsonl");
+        fs::write(&path, "{\"mine\": 1}\n{\"no end\"").expect("a file");
+        let open = || Journal::open(folder.path(), "report.jsonl", "quickly", true).map(|_| ()).expect_err("foreign");
+        assert!(open().to_string().contains("none of hsad's"));
+        check_recipe(folder.path(), "quickly").expect("a new folder");
+        assert!(open().to_string().contains("line 1"));
+        assert_eq!(fs::read(&path).expect("a file"), b"{\"mine\": 1}\n{\"no end\"");
     }
 }

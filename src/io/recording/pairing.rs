@@ -1,6 +1,6 @@
 //! Which frames of two topics belong together: those of the same time, or the nearest ones.
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 
 /// Most bytes of frames that wait for their partners.
 const MOST: usize = 1 << 28;
@@ -13,7 +13,8 @@ struct Waiting<T> {
     bytes: usize,
 }
 
-/// Frames of the left and of the right topic, in the order of their times.
+/// Frames of the left and of the right topic, those that wait in the order of their times. Clocks are set back, and messages overtake
+/// each other.
 ///
 /// Frames of the same time are a pair. Of others the earliest ones are a pair if their times differ by at most half of the least time between
 /// one of them and its neighbours in its topic, so that each is the one nearest to the other.
@@ -21,6 +22,8 @@ pub(super) struct Pairing<T> {
     waiting: [VecDeque<Waiting<T>>; 2],
     /// Times of the last frames that no longer wait.
     last: [Option<u64>; 2],
+    /// Times of the left frames of all pairs, each of which names one pair.
+    paired: HashSet<u64>,
     /// Bytes of all that wait.
     bytes: usize,
     has_ended: bool,
@@ -30,18 +33,25 @@ pub(super) struct Pairing<T> {
 
 impl<T> Pairing<T> {
     pub fn new() -> Self {
-        Self { waiting: [VecDeque::new(), VecDeque::new()], last: [None; 2], bytes: 0, has_ended: false, alone: [0; 2] }
+        Self {
+            waiting: [VecDeque::new(), VecDeque::new()],
+            last: [None; 2],
+            paired: HashSet::new(),
+            bytes: 0,
+            has_ended: false,
+            alone: [0; 2],
+        }
     }
 
-    /// Takes the next frame of a topic, 0 left or 1 right. One that is not later than those before it finds no partner.
+    /// Takes the next frame of a topic, 0 left or 1 right. A second one of a time finds no partner.
     pub fn add(&mut self, side: usize, stamp: u64, frame: T, bytes: usize) {
-        let before = self.waiting[side].back().map(|last| last.stamp).or(self.last[side]);
-        if before.is_some_and(|before| stamp <= before) {
+        let place = self.waiting[side].binary_search_by_key(&stamp, |waiting| waiting.stamp);
+        let (Err(place), false) = (place, side == 0 && self.paired.contains(&stamp)) else {
             self.alone[side] += 1;
             return;
-        }
+        };
         self.bytes += bytes;
-        self.waiting[side].push_back(Waiting { stamp, frame, bytes });
+        self.waiting[side].insert(place, Waiting { stamp, frame, bytes });
         // Frames whose topic is far ahead of the other one wait in vain.
         while self.bytes > MOST {
             let ahead = usize::from(self.waiting[1].len() > self.waiting[0].len());
@@ -73,6 +83,7 @@ impl<T> Pairing<T> {
             }
             if apart == 0 || self.gap().is_some_and(|gap| 2 * u128::from(apart) <= u128::from(gap)) {
                 let stamp = left.stamp;
+                self.paired.insert(stamp);
                 let [left, right] = [0, 1].map(|side| self.take(side));
                 return left.zip(right).map(|(left, right)| (stamp, [left, right]));
             }
@@ -87,7 +98,7 @@ impl<T> Pairing<T> {
             let stamp = |place: usize| frames.get(place).map(|frame| frame.stamp);
             [last.zip(stamp(0)), stamp(0).zip(stamp(1))]
         });
-        gaps.flatten().map(|(earlier, later)| later - earlier).min()
+        gaps.flatten().map(|(one, other)| one.abs_diff(other)).min()
     }
 
     fn take(&mut self, side: usize) -> Option<T> {
@@ -147,7 +158,26 @@ mod tests {
         assert_eq!(paired(&in_turn(&[10, 20, 30], &[30])), (vec![[30, 30]], [2, 0]));
         assert_eq!(paired(&in_turn(&[10], &[11])), (vec![], [1, 1]), "nothing tells what near is");
         assert_eq!(paired(&in_turn(&[10, 20], &[])), (vec![], [2, 0]));
-        assert_eq!(paired(&in_turn(&[10, 20, 15, 20, 30], &[10, 20, 30])).1, [2, 0], "times go back");
+        assert_eq!(
+            paired(&in_turn(&[10, 20, 15, 20, 30], &[10, 20, 30])).1,
+            [2, 0],
+            "one that has no partner, one twice"
+        );
+    }
+
+    #[test]
+    fn times_that_go_back_lose_no_other_frames() {
+        let all = |stamps: &[u64]| (stamps.iter().map(|&stamp| [stamp; 2]).collect::<Vec<_>>(), [0; 2]);
+        assert_eq!(
+            paired(&in_turn(&[40, 50, 60, 10, 20], &[40, 50, 60, 10, 20])),
+            all(&[40, 50, 60, 10, 20]),
+            "a clock set back"
+        );
+        assert_eq!(paired(&in_turn(&[10, 30, 20, 40], &[10, 20, 30, 40])), all(&[10, 20, 30, 40]), "overtaken");
+        let (pairs, alone) = paired(&in_turn(&[10, 999, 30, 40, 50], &[10, 20, 30, 40, 50]));
+        assert_eq!((pairs, alone), (vec![[10; 2], [30; 2], [40; 2], [50; 2]], [1, 1]), "a time in the future");
+        let (pairs, alone) = paired(&in_turn(&[10, 20, 10, 20], &[10, 20, 10, 20]));
+        assert_eq!((pairs, alone), (vec![[10; 2], [20; 2]], [2, 2]), "a recording that begins anew");
     }
 
     #[test]
