@@ -63,7 +63,7 @@ cargo clippy --lib --no-default-features -- -D warnings
 say 'documentation'
 RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --no-default-features
 # With an example, and so with the features of what was built above.
-RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --bins --example registers
+RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --example registers
 
 say 'tests'
 [ -d "${HSAD_CASES:-../shared/cases}" ] || echo 'NOT RUN: the reported cases of ../shared/cases, or of HSAD_CASES, which are not there'
