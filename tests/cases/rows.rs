@@ -55,8 +55,9 @@ fn a_right_view_with_leaning_columns_is_matched() {
     }
     let run = leaning.matched(&[]).ends(0, &[]);
     let lean = run.report()["rectification"]["lean"].as_f64().unwrap();
-    assert!((-0.17..-0.1).contains(&lean), "{lean}");
-    run.holds(&leaning.truth, 90).judges(&leaning.truth).errs_below(level + 0.02, &leaning.truth);
+    assert!((-0.17..-0.13).contains(&lean), "{lean}");
+    // Of the range 38 disparities are the shear of 0.15 over 256 rows.
+    run.holds(&leaning.truth, 96).judges(&leaning.truth).errs_below(level + 0.02, &leaning.truth);
     // A range that is asked for is searched as asked.
     let asked = leaning.matched(&["--min-disparity", "-40", "--disparities", "110"]).ends(0, &[]);
     assert_eq!(asked.range().min, -40);
