@@ -24,13 +24,14 @@ pub fn replace_all(staged: Vec<Staged>, stale: &[PathBuf]) -> Result<()> {
     for target in targets.iter().map(PathBuf::as_path).chain(stale.iter().map(PathBuf::as_path)) {
         earlier.keep(target)?;
     }
-    staged.into_iter().try_for_each(Staged::put)?;
+    // Where the process is killed in between, the earlier list still names what is there.
     for path in stale {
         match fs::remove_file(path) {
             Err(source) if path.exists() => return Err(Error::Io { path: path.into(), source }),
             _ => {}
         }
     }
+    staged.into_iter().try_for_each(Staged::put)?;
     earlier.forget();
     let folders: BTreeSet<PathBuf> = targets.iter().chain(stale).map(|path| folder(path)).collect();
     folders.iter().for_each(|path| sync(path));

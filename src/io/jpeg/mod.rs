@@ -26,6 +26,10 @@ const CUT_OFF: &str = "the JPEG is cut off: copy or export it again";
 /// Why a JPEG is not read that tells its height behind the pixels.
 pub(super) const HEIGHT_BEHIND: &str = "the JPEG tells its height behind its pixels (DNL), which is not read: open it in a viewer and save it as PNG or JPEG";
 
+/// Why a JPEG is not read whose components lie in scans of their own, some with more rows than others: the decoder gives wrong pixels.
+const ROWS_APART: &str = "the colours of the JPEG lie in scans of their own with other numbers of rows, which are not read right: open it in \
+                          a viewer and save it as PNG or JPEG";
+
 /// The bytes of a JPEG with all of its blocks, with an end marker if it has none, and what is odd about them.
 ///
 /// # Errors
@@ -80,6 +84,9 @@ pub(super) fn whole(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<String>), Str
                 (data, rest) = split_entropy_coded(rest);
                 let scan = frame.as_ref().and_then(|frame| read_scan(segment, frame, &tables, interval));
                 if let (Some(frame), Some(scan)) = (&mut frame, scan) {
+                    if frame.has_rows_apart(&scan) {
+                        return Err(ROWS_APART.into());
+                    }
                     let held = frame.read(&scan, intervals(data));
                     if held.lost > 0 {
                         let share = 100.0 * held.lost as f64 / held.units as f64;

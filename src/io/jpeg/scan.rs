@@ -83,6 +83,12 @@ impl Frame {
         Some(Self { components: listed.iter().map(component).collect(), is_progressive, units })
     }
 
+    /// Whether a scan of a sequential frame has some components only, of a frame with several rows of blocks per unit.
+    pub fn has_rows_apart(&self, scan: &Scan) -> bool {
+        let is_part = !self.is_progressive && scan.components.len() < self.components.len();
+        is_part && self.components.iter().any(|component| component.sampling[1] > 1)
+    }
+
     /// Reads the blocks of a scan from its restart intervals, without their markers.
     pub fn read<'a>(&mut self, scan: &Scan, intervals: impl Iterator<Item = &'a [u8]>) -> Held {
         let alone = match scan.components[..] {

@@ -131,3 +131,15 @@ fn a_height_behind_the_pixels_is_named() {
     behind[size..size + 2].fill(0);
     assert!(decode(&behind).unwrap_err().to_string().contains("behind its pixels (DNL), which is not read"));
 }
+
+#[test]
+fn scans_of_single_components_with_other_rows_are_refused() {
+    let refused = |factors: u8, kind: u8| {
+        let frame = [0xff, 0xd8, 0xff, kind, 0, 17, 8, 0, 16, 0, 16, 3, 1, factors, 0, 2, 0x11, 0, 3, 0x11, 0];
+        let scan = [0xff, START_OF_SCAN, 0, 8, 1, 1, 0, 0, 63, 0, 0xff, END_OF_IMAGE];
+        whole(&[&frame[..], &scan].concat()).is_err_and(|error| error == ROWS_APART)
+    };
+    assert!(refused(0x22, 0xc0) && refused(0x12, 0xc1));
+    // The decoder reads these.
+    assert!(!refused(0x21, 0xc0) && !refused(0x11, 0xc0) && !refused(0x22, 0xc2));
+}
