@@ -68,7 +68,7 @@ def test_the_classes_for_clusters_do_the_same():
 
 def test_columns_of_tiles_are_refused_and_groups_are_of_one_pair():
     pair = {"name": "one", "left": str(LEFT), "right": str(RIGHT)}
-    cut, match, merge = hsad.ray.CutTiles(tiles=256, preset="fast"), hsad.ray.TileDisparity(), hsad.ray.MergeTiles()
+    cut, match, merge = hsad.ray.CutTiles(tiles=256, preset="balanced"), hsad.ray.TileDisparity(), hsad.ray.MergeTiles()
     with pytest.raises(hsad.ParameterError, match=r"columns of tiles or of the answer \(options, x, report\): rename them"):
         cut(pair | {"options": "", "x": 1, "note": 2, "report": None})
     tiles = cut(pair)
@@ -88,7 +88,7 @@ def test_columns_of_tiles_are_refused_and_groups_are_of_one_pair():
         ("min_disparity", [0, 1], "ranges"),
         ("disparities", [8, 9], "ranges"),
         ("gain", [gain, gain + 1], "changes of brightness"),
-        ("options", [options, options.replace("fast", "quality")], "options"),
+        ("options", [options, options.replace("balanced", "quality")], "options"),
         ("levels", [levels, levels + 1], "options"),
     ):
         assert error([0, 1], **{name: values}).startswith(f"the list of tiles is of different {told}"), name
