@@ -293,23 +293,36 @@ fn a_frame_follows_its_precedent_as_long_as_it_holds() {
     assert!(leaning.precedent(views).is_none(), "its map is that of upright columns");
 }
 
-/// A right view turned by 4 degrees: a small warp mends its rows, and its columns lean, as a first look tells. In the scene as it is the
-/// look has too few points.
+/// A right view turned by 4 degrees: a small warp mends its rows, and its columns lean, as a first look tells; in the scene as it is the
+/// look has too few points, and those of the seeding tell.
 #[test]
 fn a_pair_whose_columns_lean_is_matched_once() {
     let backend = Backend::open(&DeviceChoice::Best).expect("this test needs a device; lavapipe is one");
     let folder = scene("planes");
-    let [left, right] = ["left.png", "right.png"].map(|name| enlarged(&load::load(&folder.join(name)).unwrap(), 2));
+    for factor in [1, 2] {
+        let views = ["left.png", "right.png"].map(|name| enlarged(&load::load(&folder.join(name)).unwrap(), factor));
+        assert_eq!(times_matched(&backend, &views[0], &turned_by_4_degrees(&views[1])), 1, "enlarged by {factor}");
+    }
+}
+
+/// The picture turned by 4 degrees about its middle.
+fn turned_by_4_degrees(picture: &Picture) -> Picture {
+    let Size { width, height } = picture.size();
+    let [middle, centre] = [width, height].map(|side| f64::from(side) / 2.0);
     let (sin, cos) = 4f64.to_radians().sin_cos();
-    let turned = Picture::from_fn(right.size(), |x, y| {
-        let (x, y) = (f64::from(x) - 340.0, f64::from(y) - 256.0);
-        let [u, v] = [cos * x - sin * y + 340.0, sin * x + cos * y + 256.0].map(|place| place.round() as i64);
-        right.get_clamped(u, v)
-    });
+    Picture::from_fn(picture.size(), |x, y| {
+        let (x, y) = (f64::from(x) - middle, f64::from(y) - centre);
+        let [u, v] = [cos * x - sin * y + middle, sin * x + cos * y + centre].map(|place| place.round() as i64);
+        picture.get_clamped(u, v)
+    })
+}
+
+/// How many times a pair with leaning columns is matched densely.
+fn times_matched(backend: &Backend, left: &Picture, right: &Picture) -> usize {
     let begun = RefCell::new(Vec::new());
     let task = Task {
-        backend: &backend,
-        views: (&left, &turned),
+        backend,
+        views: (left, right),
         config: &Preset::Fast.config(),
         way: &Way::AsNeeded,
         calibration: None,
@@ -320,7 +333,5 @@ fn a_pair_whose_columns_lean_is_matched_once() {
     let matched = task.run().unwrap();
     assert!(matched.outcome.seeding.rectification.lean != 0.0 && matched.rectified.is_none());
     assert!(matched.not_trusted.is_none(), "{:?}", matched.not_trusted);
-    let begun = begun.into_inner();
-    let times = begun.iter().filter(|&&activity| activity == Activity::Step(Step::Dense)).count();
-    assert_eq!(times, 1, "{begun:?}");
+    begun.into_inner().iter().filter(|&&activity| activity == Activity::Step(Step::Dense)).count()
 }

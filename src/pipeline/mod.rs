@@ -105,7 +105,8 @@ pub struct Outcome {
     pub range: DisparityRange,
     /// Origin of the range.
     pub range_source: RangeSource,
-    /// Shares of the map's disparities within 1.5 px of the smallest and of the largest disparity of the range, 0 to 1.
+    /// Shares of the map's disparities within 1.5 px of the smallest and of the largest disparity of the range, 0 to 1, among those whose
+    /// partners the other view shows.
     pub at_ends: [f32; 2],
     /// Change of the right view's brightness before dense matching.
     pub brightness: Brightness,

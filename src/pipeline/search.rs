@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     config::{Config, Method},
-    dense::{Brightness, Dense, DenseConfig},
+    dense::{Brightness, Dense, DenseConfig, View},
     disparity::DisparityRange,
     error::Result,
     io::Picture,
@@ -31,8 +31,17 @@ pub(super) struct Found {
     /// The range, without what the width of the views rules out.
     pub range: DisparityRange,
     pub dense: Dense,
-    /// Shares of the map's disparities at the ends of the range.
+    /// See [`super::Outcome::at_ends`].
     pub at_ends: [f32; 2],
+}
+
+impl Found {
+    /// What a search of `range` found in the `reference` view.
+    pub fn new(views: &Views<'_>, range: DisparityRange, dense: Dense, reference: View) -> Self {
+        let dense = views.confirmed(dense, reference);
+        let at_ends = at_ends(&views.with_partners(&dense, reference), range);
+        Self { range, dense, at_ends }
+    }
 }
 
 impl Search<'_, '_> {
@@ -77,8 +86,7 @@ impl Search<'_, '_> {
                 (range, backend.kamencay(&left, &right, &KamencayConfig { range, ..task }).await?)
             }
         };
-        let dense = views.confirmed(dense, config.reference);
-        Ok(Found { range, at_ends: at_ends(&dense.disparity, range), dense })
+        Ok(Found::new(views, range, dense, config.reference))
     }
 
     /// The map of all tiles, each matched by itself. Calls `progress` with the share of the work that is done, 0 to 1.
@@ -94,5 +102,35 @@ impl Search<'_, '_> {
             merged.put(tile, &found)?;
         }
         Ok(merged.into_dense())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        backend::Backend,
+        config::Preset,
+        disparity::{NONE, SCALE},
+        gpu::block_on,
+        image::{Luma, Plane},
+    };
+
+    #[test]
+    fn partners_that_the_other_view_does_not_show_are_at_no_end() {
+        let size = (64, 32);
+        let shade = |x: u32, y: u32, alpha| [(x * 37 + y * 11) as u8, 90, 40, alpha];
+        let left = Picture::from_fn(size, |x, y| shade(x, y, 255));
+        let right = Picture::from_fn(size, |x, y| shade(x, y, if x < 40 { 255 } else { 0 }));
+        let backend = Backend::Cpu;
+        let views = block_on(Views::new(&backend, [&left, &right], &Preset::Fast.config())).unwrap();
+        // Of the rightmost 24 columns the partners at 2 px are hidden from column 42 on; those of the other columns lie at 8 px.
+        let disparity = Plane::from_fn(size, |x, _| if x < 40 { 8 * SCALE } else { 2 * SCALE });
+        let dense = Dense { disparity, confidence: Luma::filled(size, 200) };
+        let range = DisparityRange::inclusive(2, 20).unwrap();
+        let Found { dense, at_ends, .. } = Found::new(&views, range, dense, View::Left);
+        assert_eq!(at_ends, [2.0 / 42.0, 0.0]);
+        assert_eq!((dense.disparity.get(60, 3), dense.confidence.get(60, 3)), (2 * SCALE, 0), "hidden, and not lost");
+        assert!(!dense.disparity.data().contains(&NONE));
     }
 }

@@ -1,6 +1,6 @@
 //! The map of a pair whose tiles are matched elsewhere: cut here, and put together here.
 
-use super::{Clock, Given, Known, Outcome, range::at_ends, search::Found, seeded, views::Views};
+use super::{Clock, Given, Known, Outcome, search::Found, seeded, views::Views};
 use crate::{
     backend::Backend,
     config::{Config, Method},
@@ -42,8 +42,7 @@ pub fn merge_tiles(
         let (views, known) = prepared(backend, pictures, config).await?;
         let (tiling, task) = task(&views, &known, config)?;
         let dense = merged(views.size(), &tiling.tiles(views.size(), &task), &task, maps)?;
-        let dense = views.confirmed(dense, config.reference);
-        let found = Found { range: task.range, at_ends: at_ends(&dense.disparity, task.range), dense };
+        let found = Found::new(&views, task.range, dense, config.reference);
         Ok(known.outcome(views, &Given { pictures, rectified: None }, config, found))
     })
 }

@@ -8,6 +8,7 @@ use crate::{
     config::{Config, Method},
     cpu::{self, dense::unseen},
     dense::{Dense, DenseConfig, View, kernels::Loss},
+    disparity::DisparityMap,
     error::Result,
     features::{Detected, FeatureConfig},
     image::{self, Luma, Size},
@@ -182,6 +183,14 @@ impl<'b> Views<'b> {
         let beyond = self.within.as_ref().filter(|_| reference == View::Left);
         unseen(&mut dense, reference, None, beyond, Loss::Confidence);
         dense
+    }
+
+    /// The disparities of a map of the `reference` view whose partners the other view shows.
+    pub fn with_partners<'a>(&self, dense: &'a Dense, reference: View) -> Cow<'a, DisparityMap> {
+        let [_, Some(other)] = self.own_and_other(reference) else { return Cow::Borrowed(&dense.disparity) };
+        let mut shown = dense.clone();
+        unseen(&mut shown, reference, None, Some(other), Loss::Disparity);
+        Cow::Owned(shown.disparity)
     }
 
     /// The masks of the `reference` view and of the other one.

@@ -39,6 +39,24 @@ pub(super) struct Found {
     pub warnings: Vec<String>,
 }
 
+/// What came of a pair as it was taken.
+enum AsItIs {
+    Matched(Box<Outcome>),
+    /// Not matched: the lens distorts its rows.
+    Distorted,
+    /// Not matched: its columns lean.
+    Leaning,
+}
+
+impl AsItIs {
+    fn outcome(self) -> Option<Outcome> {
+        match self {
+            Self::Matched(outcome) => Some(*outcome),
+            Self::Distorted | Self::Leaning => None,
+        }
+    }
+}
+
 impl Task<'_> {
     /// Matches the pair on its way.
     pub(super) async fn on_its_way(&self) -> Result<Found> {
@@ -78,13 +96,22 @@ impl Task<'_> {
             .await
     }
 
-    /// As [`Self::as_it_is`]; `None` if the lens distorts the rows, which no warp of the rows of one view mends, and nothing is lost
-    /// by a rectification: without a calibration.
-    async fn as_it_is_unless_distorted(&self) -> Result<Option<Outcome>> {
+    /// Matches the pair as it was taken, unless its rows tell of something that a rectification mends: the lens distorts them, which no
+    /// warp of the rows of one view mends and a calibration tells better; or its columns lean, if `may_lean`.
+    async fn as_it_is_if_fit(&self, may_lean: bool) -> Result<AsItIs> {
         let config = Config { force: false, ..self.config.clone() };
-        let is_unfit = |rows: &Rectification| rows.is_distorted() && self.calibration.is_none();
+        let mut unfit = None;
+        let is_unfit = |rows: &Rectification| {
+            if rows.is_distorted() && self.calibration.is_none() {
+                unfit = Some(AsItIs::Distorted);
+            } else if rows.lean != 0.0 && may_lean {
+                unfit = Some(AsItIs::Leaning);
+            }
+            unfit.is_some()
+        };
         let begin = |step| (self.begin)(Activity::Step(step));
-        run_unless(self.backend, self.views, &config, is_unfit, begin, self.progress).await
+        let matched = run_unless(self.backend, self.views, &config, is_unfit, begin, self.progress).await?;
+        Ok(unfit.or(matched.map(|outcome| AsItIs::Matched(Box::new(outcome)))).expect("an outcome of a fit pair"))
     }
 
     /// Matches a rectified pair.
@@ -115,17 +142,25 @@ impl Task<'_> {
             return Ok(as_taken(self.as_it_is(force).await?));
         }
         let mut looked = self.first_look().await?;
+        let mut leaning = looked.take_if(|pair| leans(pair));
+        // The doubtful outcome, if any, with the columns upright, once that was tried.
         let mut upright = None;
-        if let Some(pair) = looked.take_if(|pair| leans(pair)) {
-            upright = self.with_upright_columns(pair).await?;
-            if let Some(outcome) = upright.take_if(|outcome| outcome.trust >= TRUSTED) {
-                return Ok(as_taken(outcome));
+        let as_is = loop {
+            if let Some(pair) = leaning.take() {
+                match self.with_upright_columns(pair).await? {
+                    Some(outcome) if outcome.trust >= TRUSTED => return Ok(as_taken(outcome)),
+                    doubtful => upright = Some(doubtful),
+                }
             }
-        }
-        let as_is = match looked.as_ref().and_then(TakenPair::rows) {
-            Some(rows) if rows.is_distorted() => Ok(None),
-            Some(rows) => Err(Error::NotRectified { diagnosis: rows.to_string() }),
-            None => self.as_it_is_unless_distorted().await,
+            match looked.as_ref().and_then(TakenPair::rows) {
+                Some(rows) if rows.is_distorted() => break Ok(None),
+                Some(rows) => break Err(Error::NotRectified { diagnosis: rows.to_string() }),
+                None => {}
+            }
+            match self.as_it_is_if_fit(self.can_lean() && upright.is_none()).await {
+                Ok(AsItIs::Leaning) => leaning = Some(TakenPair::new_async(self.backend, self.views).await?),
+                as_is => break as_is.map(AsItIs::outcome),
+            }
         };
         let why = match &as_is {
             Err(error @ Error::SizesDiffer { .. }) => error.to_string(),
@@ -135,15 +170,13 @@ impl Task<'_> {
                 "nothing tells whether the rows of the views correspond".into()
             }
             _ => {
-                return match as_is? {
-                    Some(outcome) if self.can_lean() && has_leaning_columns(&outcome) => {
-                        if upright.is_none() {
-                            let pair = TakenPair::new_async(self.backend, self.views).await?;
-                            upright = self.with_upright_columns(pair).await?;
-                        }
-                        Ok(as_taken(upright.filter(|upright| upright.trust >= outcome.trust).unwrap_or(outcome)))
+                return match (as_is?, upright.flatten()) {
+                    (Some(outcome), Some(upright))
+                        if has_leaning_columns(&outcome) && upright.trust >= outcome.trust =>
+                    {
+                        Ok(as_taken(upright))
                     }
-                    outcome => self.taken_or(outcome).await,
+                    (outcome, _) => self.taken_or(outcome).await,
                 };
             }
         };
@@ -167,7 +200,7 @@ impl Task<'_> {
             Err(Error::NotRectifiable { reason }) => reason,
             Err(error) => return Err(error),
         };
-        let as_is = if was_looked_at { self.as_it_is_unless_distorted().await } else { as_is };
+        let as_is = if was_looked_at { self.as_it_is_if_fit(false).await.map(AsItIs::outcome) } else { as_is };
         let outcome = match as_is {
             Err(Error::NotRectified { .. }) if force => self.as_it_is(true).await?,
             Err(Error::NotRectified { diagnosis }) => {
