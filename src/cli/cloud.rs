@@ -11,7 +11,7 @@ use hsad::{
 };
 
 /// Which pixels of a map become points of the cloud.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Point cloud")]
 pub struct CloudOptions {
     /// Largest depth of a point of the cloud, in metres, above 0, or inf [default: the depth of which half a pixel of disparity is a

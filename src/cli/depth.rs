@@ -16,7 +16,7 @@ use hsad::{
 use super::wording::in_options;
 
 /// Calibration files of a pair.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct CalibrationOptions {
     /// Calibration file of the pair: Middlebury, OpenCV, ROS, Kalibr, KITTI, EuRoC, COLMAP, K.txt or hsad's JSON, see
     /// docs/calibration.md; twice for formats with a file per camera, left first
@@ -33,17 +33,20 @@ impl CalibrationOptions {
     /// # Errors
     /// [`Error::Io`] and [`Error::Format`] for a file that cannot be read, [`Error::Parameter`] for a unit outside its range.
     pub fn read(&self, pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Option<CalibrationFile>> {
-        self.read_from(&self.calib, pictures, sizes)
+        let Some(path) = self.calib.first() else { return Ok(None) };
+        let loaded = calibration::read(&self.calib, &self.hints(pictures, sizes)?)?;
+        Ok(Some(CalibrationFile { path: path.clone(), loaded }))
     }
 
-    /// As [`Self::read`], from these files.
-    fn read_from(&self, files: &[PathBuf], pictures: [&Path; 2], sizes: [Size; 2]) -> Result<Option<CalibrationFile>> {
-        let Some(path) = files.first() else { return Ok(None) };
-        if let Some(unit) = self.calib_unit {
-            check_unit(unit)?;
-        }
-        let hints = Hints { pictures: Some(pictures), sizes: Some(sizes), unit: self.calib_unit };
-        Ok(Some(CalibrationFile { path: path.clone(), loaded: calibration::read(files, &hints)? }))
+    /// As [`Self::read`], from the text of one file.
+    fn parse(&self, file: (&Path, &str), pictures: [&Path; 2], sizes: [Size; 2]) -> Result<CalibrationFile> {
+        let loaded = calibration::parse(&[file], &self.hints(pictures, sizes)?)?;
+        Ok(CalibrationFile { path: file.0.into(), loaded })
+    }
+
+    fn hints<'a>(&self, pictures: [&'a Path; 2], sizes: [Size; 2]) -> Result<Hints<'a>> {
+        self.calib_unit.map_or(Ok(()), check_unit)?;
+        Ok(Hints { pictures: Some(pictures), sizes: Some(sizes), unit: self.calib_unit })
     }
 }
 
@@ -69,7 +72,7 @@ impl CalibrationFile {
 }
 
 /// Geometry that turns disparities into depth.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Depth")]
 pub struct DepthOptions {
     #[command(flatten)]
@@ -89,8 +92,8 @@ pub struct DepthOptions {
 #[derive(Clone, Copy)]
 pub enum Known<'a> {
     Nothing,
-    /// A calibration file of the pair, which takes the place of those that the options name.
-    File(&'a Path),
+    /// A calibration file of the pair and its text, which takes the place of those that the options name.
+    File(&'a Path, &'a str),
     /// The calibration of a recording, unless the options have one.
     Recorded(&'a RecordedCalibration),
 }
@@ -105,6 +108,11 @@ pub enum Cameras {
 }
 
 impl DepthOptions {
+    /// The calibration files.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        self.files.calib.iter_mut()
+    }
+
     /// Whether options tell anything of the cameras.
     pub fn are_given(&self) -> bool {
         !self.files.calib.is_empty() || self.focal.is_some()
@@ -117,7 +125,7 @@ impl DepthOptions {
     /// pictures of other sizes.
     pub fn cameras(&self, pictures: [&Path; 2], sizes: [Size; 2], known: Known<'_>) -> Result<Cameras> {
         let file = match known {
-            Known::File(file) => self.files.read_from(&[file.into()], pictures, sizes)?,
+            Known::File(path, text) => Some(self.files.parse((path, text), pictures, sizes)?),
             _ => self.files.read(pictures, sizes)?,
         };
         if let Some(file) = file {

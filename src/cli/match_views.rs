@@ -71,7 +71,7 @@ impl Match {
 
         let progress = Progress::new(self.run.quiet);
         progress.begin("writing");
-        self.recipe.add_files(&mut completed, &mut output)?;
+        self.recipe.add_files(&mut completed, None, &mut output)?;
         let shortfall = completed.shortfall();
         output.finish_run(shortfall.as_ref().map_or(0, super::exit_code))?;
         drop(progress);

@@ -84,7 +84,7 @@ pub fn with_default(help: &str, value: impl Display) -> String {
 }
 
 /// Options of matching, with those of the interest point detector.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct MatchOptions(Options);
 
 impl MatchOptions {
@@ -109,7 +109,7 @@ impl MatchOptions {
 }
 
 /// What figures show.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Figures")]
 pub struct FigureOptions {
     /// Draw only the N strongest interest points and matches in the figures, at least 1 [default: all,
@@ -208,7 +208,7 @@ fn given(matches: &ArgMatches, groups: &[Group]) -> Parsed<Options> {
 }
 
 /// Pixels that were not seen, besides transparent ones (alpha 0) and floats that are NaN or infinite.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Unseen pixels")]
 pub struct UnseenOptions {
     /// Masks of the left and the right view: pictures of the views' size, 0 for pixels that were not seen and get no
@@ -223,6 +223,11 @@ pub struct UnseenOptions {
 }
 
 impl UnseenOptions {
+    /// The files of the masks.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        self.mask.iter_mut()
+    }
+
     /// The masks and the value for missing data of a pair.
     pub fn unseen(&self) -> Unseen {
         Unseen { masks: [0, 1].map(|view| self.mask.get(view).cloned()), nodata: self.nodata }

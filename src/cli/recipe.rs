@@ -4,9 +4,14 @@ use clap::Args;
 use hsad::{
     Error,
     config::{Config, Method},
-    io::load::LoadedPair,
+    internals::fnv1a,
+    io::{
+        load::{self, LoadedPair},
+        read_whole,
+    },
     pipeline::Geometry,
 };
+use serde_json::Value;
 
 use super::{
     cloud::CloudOptions,
@@ -22,8 +27,11 @@ use super::{
 
 pub use super::depth::Known;
 
+/// Longest calibration file that is read, in bytes: COLMAP lists every point that a picture shows.
+pub const MOST_CALIBRATION: u64 = 1 << 27;
+
 /// How a pair is matched, and which files come out.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Recipe {
     /// Also draw interest points (keypoints.png) and matches (matches.png)
     #[arg(long)]
@@ -87,6 +95,22 @@ impl Recipe {
         if is_calibrated { Ok(()) } else { self.rectify.check_uncalibrated() }
     }
 
+    /// All options as text, each file by the hash of its content: what two runs that match pairs alike have in common.
+    ///
+    /// # Errors
+    /// Those of a file that cannot be read.
+    pub fn described(&self) -> hsad::Result<String> {
+        let mut described = self.clone();
+        let named = |bytes: Vec<u8>| format!("{:016x}", fnv1a(bytes)).into();
+        for file in described.depth.files_mut() {
+            *file = named(read_whole(file, MOST_CALIBRATION)?);
+        }
+        for file in described.unseen.files_mut() {
+            *file = named(load::read(file)?);
+        }
+        Ok(format!("{described:?}"))
+    }
+
     /// Reads the files of a pair, and checks that its results can be written to `output`.
     pub fn prepare(&self, views: &Views, known: Known<'_>, output: &mut Output) -> anyhow::Result<Prepared> {
         let (config, strongest) = self.config()?;
@@ -111,8 +135,13 @@ impl Recipe {
         Ok(Prepared { job, warnings })
     }
 
-    /// Adds all files of a matched pair, the report last.
-    pub fn add_files(&self, completed: &mut CompletedJob, output: &mut Output) -> hsad::Result<()> {
+    /// Adds all files of a matched pair, the report last, with the `inputs` that the pair was made of, if they are known.
+    pub fn add_files(
+        &self,
+        completed: &mut CompletedJob,
+        inputs: Option<&Value>,
+        output: &mut Output,
+    ) -> hsad::Result<()> {
         completed.add_maps(output, &self.cloud)?;
         if let Some(pair) = &completed.rectified {
             rectification::add_files(pair, &names::RECTIFIED_FIRST, output)?;
@@ -123,7 +152,11 @@ impl Recipe {
         if self.matches {
             completed.add_matches(output)?;
         }
-        products::add_report(output, completed.report())
+        let mut report = completed.report();
+        if let Some(inputs) = inputs {
+            report["inputs"] = inputs.clone();
+        }
+        products::add_report(output, report)
     }
 
     /// Checks that each file that is sure to be written may be.

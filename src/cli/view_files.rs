@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use hsad::{
     Result,
-    io::load::{Halves, LoadedPair, Unseen, decode_halves, decode_pair, load_both, load_pair},
+    io::load::{Halves, LoadedPair, Unseen, decode_pair, decode_views, load_both, load_pair},
 };
 
 /// The files of a pair.
@@ -44,7 +44,7 @@ pub struct Views<'a> {
     pub left: &'a Path,
     pub right: Option<&'a Path>,
     pub halves: Option<Halves>,
-    /// The bytes of the picture files, if they do not come from files of these names.
+    /// The bytes of the picture files, if they are read already, or come from no files of these names.
     pub in_memory: Option<InMemory<'a>>,
 }
 
@@ -77,9 +77,7 @@ impl Views<'_> {
     pub fn load(&self, unseen: &Unseen) -> Result<LoadedPair> {
         let [left, right] = self.paths();
         match (self.in_memory, self.right) {
-            (Some(InMemory::Both(bytes)), _) => {
-                decode_halves(bytes, left, self.halves.unwrap_or(Halves::LeftRight), unseen)
-            }
+            (Some(InMemory::Both(bytes)), _) => decode_views(bytes, left, self.halves, unseen),
             (Some(InMemory::Each(bytes)), _) => decode_pair((bytes[0], left), (bytes[1], right), unseen),
             (None, Some(right)) => load_pair(self.left, right, unseen),
             (None, None) => load_both(self.left, self.halves, unseen),

@@ -51,6 +51,15 @@ pub struct LoadedPair {
     pub warnings: Vec<String>,
 }
 
+/// Reads the bytes of a picture file, for those functions here that decode them. Of a file that begins as no picture does, such as a device
+/// without an end, the first few bytes are read.
+///
+/// # Errors
+/// [`crate::Error::Io`] if the file cannot be read; [`crate::Error::Format`] for an empty file and one longer than any picture.
+pub fn read(path: &Path) -> Result<Vec<u8>> {
+    codec::read_bytes(path)
+}
+
 /// Loads a picture file as RGBA of 8 bits.
 ///
 /// # Errors
@@ -115,10 +124,17 @@ pub fn decode_pair(left: (&[u8], &Path), right: (&[u8], &Path), unseen: &Unseen)
 /// # Errors
 /// As [`load_pair`]; also [`crate::Error::Format`] for a picture that is no multi-picture file, and one too small to hold two views.
 pub fn load_both(path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result<LoadedPair> {
-    let bytes = codec::read_bytes(path)?;
+    decode_views(&codec::read_bytes(path)?, path, halves, unseen)
+}
+
+/// Decodes both views from the bytes of one file, as [`load_both`] does from the file; `path` is named in errors.
+///
+/// # Errors
+/// As [`load_both`].
+pub fn decode_views(bytes: &[u8], path: &Path, halves: Option<Halves>, unseen: &Unseen) -> Result<LoadedPair> {
     let loaded = match halves {
-        Some(halves) => Some(decode_halves(&bytes, path, halves, unseen)?),
-        None => decode_both(&bytes, path, unseen)?,
+        Some(halves) => Some(decode_halves(bytes, path, halves, unseen)?),
+        None => decode_both(bytes, path, unseen)?,
     };
     loaded.ok_or_else(|| {
         let reason = "it holds one picture, no list of several as an MPO has, and no word on where its views lie as a JPS may have: \

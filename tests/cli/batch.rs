@@ -6,7 +6,7 @@ use std::{
 };
 
 use assert_cmd::assert::Assert;
-use predicates::str::contains;
+use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::Value;
 
 use crate::common::{folder, grey_png, hsad, names, noise, views};
@@ -133,7 +133,7 @@ fn a_batch_goes_on_where_it_ended() {
     let before = fs::read(out.join("9/disparity.pfm")).unwrap();
     batch(&[list.to_str().unwrap(), "--disparities", "64", "-q", "--resume"], &out)
         .code(1)
-        .stderr(contains("'9' of this folder are of other pictures"));
+        .stderr(contains("'9' of this folder are of other inputs"));
     // Results of `hsad match` of other pictures, which no journal has.
     let [left, right] = ["left", "right"].map(|side| root.join(side).join("11.png"));
     let foreign = root.join("foreign");
@@ -161,6 +161,65 @@ fn a_batch_goes_on_where_it_ended() {
     again(0);
     let last = fs::read_to_string(other.join("report.jsonl")).unwrap();
     assert!(last.lines().last().unwrap().starts_with("{\"name\":\"9\",\"status\":\"done\""), "{last}");
+}
+
+#[test]
+fn results_belong_to_inputs_and_not_to_their_names() {
+    let temporary = folder();
+    let root = temporary.path();
+    let calibration = |focal: u32| {
+        let camera = format!("[{focal} 0 170; 0 {focal} 107; 0 0 1]");
+        format!("cam0={camera}\ncam1={camera}\ndoffs=0\nbaseline=100\nwidth=340\nheight=215\n")
+    };
+    for (place, row) in [("one", 0), ("two", 30)] {
+        small_pair(&root.join(place), "a", row);
+        fs::write(root.join(place).join("calib.txt"), calibration(300)).unwrap();
+        fs::write(root.join(place).join("pairs.csv"), "left,right,calib\nleft/a.png,right/a.png,calib.txt\n").unwrap();
+    }
+    let out = root.join("out");
+    let run = |list: &str, more: &[&str]| {
+        let list = root.join(list);
+        batch(&[&[list.to_str().unwrap(), "--disparities", "64", "--rectify", "never", "-q"], more].concat(), &out)
+    };
+    run("one/pairs.csv", &[]).success();
+    let map = || fs::read(out.join("a/depth.pfm")).unwrap();
+    let first = map();
+    let written = || fs::metadata(out.join("a/report.json")).unwrap().modified().unwrap();
+    let before = written();
+    let record = &records(&out.join("report.jsonl"))[0];
+    assert!(Path::new(record["inputs"]["calib"]["path"].as_str().unwrap()).is_absolute(), "{record}");
+
+    // The same inputs by other paths, and a file that was written again.
+    let spelled =
+        format!("left,right,calib\n./two/../one/left/a.png,{0}/one/right/a.png,one/calib.txt\n", root.display());
+    fs::write(root.join("spelled.csv"), spelled).unwrap();
+    fs::write(root.join("one/calib.txt"), calibration(300)).unwrap();
+    run("spelled.csv", &["--resume"]).success();
+    assert!(written() == before, "nothing is redone");
+    // Other ones by the same words.
+    run("two/pairs.csv", &["--resume"]).code(1).stderr(contains("two/left/a.png has changed or is another one"));
+    fs::write(root.join("one/calib.txt"), calibration(600)).unwrap();
+    run("one/pairs.csv", &["--resume"]).code(1).stderr(contains("one/calib.txt has changed").and(contains("out/a")));
+    assert!(written() == before, "nothing is replaced");
+    fs::remove_dir_all(out.join("a")).unwrap();
+    run("one/pairs.csv", &["--resume"]).success();
+    assert!(map() != first, "depths are those of the other calibration");
+    // Killed before the record was written: the results are those of other inputs.
+    fs::write(root.join("one/calib.txt"), calibration(300)).unwrap();
+    fs::write(out.join("report.jsonl"), "").unwrap();
+    run("one/pairs.csv", &["--resume"]).success();
+    assert!(map() == first);
+
+    // What the options name belongs to the batch.
+    let (list, out) = (root.join("gone.csv"), root.join("gone"));
+    fs::write(&list, "left,right\ngone.png,gone.png\n").unwrap();
+    let run = |more: &[&str]| batch(&[&[list.to_str().unwrap(), "-q", "--device", "cpu"], more].concat(), &out).code(1);
+    let path = root.join("one/calib.txt").display().to_string();
+    run(&["--calib", &path]).stderr(contains("1 of 1 pairs failed"));
+    let other = path.replace("/one/", "/./one/");
+    run(&["--calib", &other, "--resume"]).stderr(contains("1 of 1 pairs failed"));
+    fs::write(&path, calibration(600)).unwrap();
+    run(&["--calib", &path, "--resume"]).stderr(contains("with other options"));
 }
 
 #[test]
@@ -210,10 +269,20 @@ fn what_is_no_batch_is_told() {
     ] {
         fails(&[&[pairs], arguments].concat(), 2, told);
     }
+    for (arguments, told) in
+        [(["--calib", "gone.txt"], "gone.txt: No such file"), (["--mask", "gone.png"], "gone.png: No such file")]
+    {
+        fails(&[&[pairs], &arguments[..]].concat(), 1, told);
+    }
     fs::write(&list, "left,right,name\na.png,b.png,../x\n").unwrap();
     fails(&[list.to_str().unwrap()], 1, "is no folder in the output folder");
     fs::write(&list, "left,right\n").unwrap();
     fails(&[list.to_str().unwrap()], 1, "no pairs");
+    // Names are told as they can be shown, and stand in records as they are.
+    fs::write(&list, "left,right,name\na.png,b.png,\"x\x1b[2J\"\n").unwrap();
+    let told = batch(&[list.to_str().unwrap(), "--device", "cpu"], &out).code(1);
+    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("failed x\\u{1b}[2J: "), "{told:?}");
+    assert_eq!(records(&out.join("report.jsonl"))[0]["name"], "x\x1b[2J");
 }
 
 #[test]
@@ -306,13 +375,13 @@ fn frames_of_a_video_are_pairs() {
     assert!(is_second(&piped));
     let other = video(&[frames[1].clone(), frames[0].clone()]);
     let resumed = hsad().args(options).arg(&piped).args(["-", "--resume"]).write_stdin(other).assert();
-    resumed.failure().stderr(contains("other pictures"));
+    resumed.failure().stderr(contains("other inputs"));
 
     // What was there of a video that is cut off is matched, and goes on when the rest is there.
     let (file, out) = (root.join("video.y4m"), root.join("out"));
     fs::write(&file, &bytes[..bytes.len() - 9]).unwrap();
     let run = |more: &str| hsad().args(options).arg(&out).arg(&file).args((!more.is_empty()).then_some(more)).assert();
-    run("").code(1).stderr(contains("after frame 1: the video is cut off"));
+    run("").code(1).stderr(contains("after frame 1: the video is cut off").and(contains("1 pairs: 1 done")));
     assert_eq!(statuses(&out.join("report.jsonl")), of(&[("000001", "done")]));
     let written = || fs::metadata(out.join("000001/report.json")).unwrap().modified().unwrap();
     let before = written();

@@ -8,7 +8,12 @@ use std::{
 
 use anyhow::{Error, Result};
 
-use super::{journal::Journal, load::Shares, record::Record, tally::Tally};
+use super::{
+    journal::Journal,
+    load::Shares,
+    record::{Finished, Record},
+    tally::Tally,
+};
 
 /// The journal and the tally, shared by the threads of a run, and the error that ends it.
 pub struct Desk(Mutex<State>);
@@ -30,8 +35,8 @@ impl Desk {
     }
 
     /// Counts a pair that an earlier run has finished.
-    pub fn count_earlier(&self, record: &Record) {
-        self.state().tally.count_earlier(record);
+    pub fn count_earlier(&self, name: &str, finished: &Finished) {
+        self.state().tally.count_earlier(name, finished);
     }
 
     /// Records a pair that is done. An error ends the run, and so does a record that cannot be written; pairs that are under way then are
@@ -68,12 +73,9 @@ impl Desk {
         self.state().tally.note_left_out(text);
     }
 
-    /// The tally of a run that was not ended by an error.
-    ///
-    /// # Errors
-    /// The one that ended it.
-    pub fn into_tally(self) -> Result<Tally> {
+    /// The tally of the run, and the error that ended it.
+    pub fn close(self) -> (Tally, Result<()>) {
         let State { tally, result, .. } = self.0.into_inner().expect("no panic while it is held");
-        result.map(|()| tally)
+        (tally, result)
     }
 }

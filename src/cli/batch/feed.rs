@@ -10,7 +10,7 @@ use std::{
 
 use anyhow::{Error, Result};
 
-use super::{frame::Frame, pair::Pair, record::Record, shard::Shard};
+use super::{frame::Frame, pair::Pair, record::Finished, shard::Shard};
 
 /// Most bytes of frames that are read ahead.
 const AHEAD: usize = 1 << 28;
@@ -21,7 +21,7 @@ pub struct Member {
     /// The pictures, if they were read already.
     pub frame: Option<Frame>,
     /// What an earlier run recorded that has finished the pair.
-    pub finished: Option<Record>,
+    pub finished: Option<Finished>,
 }
 
 impl Member {
@@ -34,7 +34,7 @@ impl Member {
 pub type Pairs = Box<dyn Iterator<Item = Result<(Pair, Option<Frame>)>> + Send>;
 
 /// Looks for what an earlier run has recorded.
-type Finished<'a> = Box<dyn Fn(&Pair) -> Result<Option<Record>> + Sync + 'a>;
+type Look<'a> = Box<dyn Fn(&Pair, Option<&Frame>) -> Result<Option<Finished>> + Sync + 'a>;
 
 /// How pairs are grouped.
 #[derive(Clone, Copy)]
@@ -59,7 +59,7 @@ impl Grouping {
 /// read through reads that one on for the other thread, as long as no more than [`AHEAD`] bytes of frames wait.
 pub struct Feed<'a> {
     grouping: Grouping,
-    finished: Finished<'a>,
+    finished: Look<'a>,
     state: Mutex<State>,
     /// Something was read or taken, or all has ended.
     changed: Condvar,
@@ -97,7 +97,7 @@ impl<'a> Feed<'a> {
     pub fn new(
         pairs: Pairs,
         grouping: Grouping,
-        finished: impl Fn(&Pair) -> Result<Option<Record>> + Sync + 'a,
+        finished: impl Fn(&Pair, Option<&Frame>) -> Result<Option<Finished>> + Sync + 'a,
     ) -> Self {
         let state =
             State { source: Source::Open(pairs), count: 0, waiting: BTreeMap::new(), bytes: 0, next: 0, error: None };
@@ -196,7 +196,7 @@ impl<'a> Feed<'a> {
         if !self.grouping.has(group) {
             return Ok(None);
         }
-        let finished = (self.finished)(&pair)?;
+        let finished = (self.finished)(&pair, frame.as_ref())?;
         Ok(Some(Member { pair, frame, finished }))
     }
 }
@@ -229,8 +229,8 @@ impl State {
             !is_passed_over
         });
         let members = self.waiting.entry(group).or_default();
-        if let Some(record) = &member.finished {
-            if record.follows() {
+        if let Some(finished) = &member.finished {
+            if finished.follows {
                 return;
             }
             if members.back().is_some_and(|before| before.finished.is_some()) {
@@ -275,7 +275,9 @@ impl Iterator for Group<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use serde_json::json;
+
+    use super::{super::record::Record, *};
 
     fn pair(number: usize) -> Pair {
         Pair { name: number.to_string(), left: "left.png".into(), right: None, calibration: None }
@@ -285,7 +287,7 @@ mod tests {
         pairs: impl Iterator<Item = Result<(Pair, Option<Frame>)>> + Send + 'static,
         grouping: Grouping,
     ) -> Feed<'static> {
-        Feed::new(Box::new(pairs), grouping, |_| Ok(None))
+        Feed::new(Box::new(pairs), grouping, |_, _| Ok(None))
     }
 
     /// The names of the pairs of all groups, worked on one after the other.
@@ -322,11 +324,13 @@ mod tests {
             Feed::new(
                 Box::new((0..9).map(|number| Ok((pair(number), None)))),
                 Grouping { length: 3, shard: None },
-                move |pair| {
+                move |pair, _| {
                     let number: usize = pair.name.parse()?;
-                    let follows = follow.contains(&number);
-                    let record = serde_json::json!({ "name": pair.name, "status": "done", "follows": follows });
-                    Ok(numbers.contains(&number).then(|| Record::from_json(record).unwrap()))
+                    let (follows, inputs) = (follow.contains(&number), json!({ "left": { "hash": "0" } }));
+                    let record = json!({ "name": pair.name, "status": "done", "follows": follows, "inputs": inputs });
+                    Ok(Record::from_json(record)
+                        .filter(|_| numbers.contains(&number))
+                        .and_then(|record| record.finished().unwrap()))
                 },
             )
         };

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use hsad::{Result, io::recording::Shot};
 
-use super::video;
+use super::{super::view_files::InMemory, video};
 
 /// The pictures of a pair, as they were read.
 pub enum Frame {
@@ -20,6 +20,15 @@ pub enum Files<'a> {
     Each([Cow<'a, [u8]>; 2]),
 }
 
+impl Files<'_> {
+    pub fn in_memory(&self) -> InMemory<'_> {
+        match self {
+            Self::Both(both) => InMemory::Both(both),
+            Self::Each(each) => InMemory::Each(each.each_ref().map(|bytes| &**bytes)),
+        }
+    }
+}
+
 impl Frame {
     /// The pictures as picture files.
     ///
@@ -32,12 +41,17 @@ impl Frame {
         })
     }
 
+    /// What was read: of one picture with both views, or of the left and of the right view.
+    pub fn contents(&self) -> Vec<&[u8]> {
+        match self {
+            Self::Both(frame) => vec![frame.samples()],
+            Self::Each(shots) => shots.iter().map(Shot::message).collect(),
+        }
+    }
+
     /// Bytes of memory.
     pub fn bytes(&self) -> usize {
-        match self {
-            Self::Both(frame) => frame.bytes(),
-            Self::Each(shots) => shots.iter().map(Shot::bytes).sum(),
-        }
+        self.contents().iter().map(|content| content.len()).sum()
     }
 
     /// A frame of as many bytes.

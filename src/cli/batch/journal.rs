@@ -3,27 +3,33 @@
 use std::{
     collections::HashMap,
     fs::{File, OpenOptions},
-    io::{self, Write},
+    io::{self, BufRead, BufReader, Read, Write},
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use hsad::{
     Error,
     io::{
         atomic::{clear_leftovers, try_lock, write_whole},
         read_whole,
     },
+    shown,
 };
 use serde_json::{Value, json};
 
-use super::{pair::Pair, record::Record};
+use super::{
+    frame::Frame,
+    pair::Pair,
+    record::{Finished, Record},
+    results::Results,
+};
 
 /// The file that tells later runs how the pairs of a folder are matched.
 const BATCH: &str = "batch.json";
 
-/// Longest journal, and longest description of options, that are read, in bytes.
-const MOST: u64 = 1 << 32;
+/// Longest line of a journal, and longest description of options, that are read, in bytes.
+const LONGEST_LINE: u64 = 1 << 24;
 const MOST_OPTIONS: u64 = 1 << 20;
 
 /// The journal of this run, or of this shard.
@@ -32,24 +38,28 @@ pub struct Journal {
     file: File,
 }
 
-/// What an earlier run has recorded.
+/// The pairs that an earlier run has finished, by their names.
 #[derive(Default)]
-pub struct Earlier(HashMap<String, Record>);
+pub struct Earlier(HashMap<Box<str>, Finished>);
 
 impl Earlier {
-    /// The record of a pair, unless its work failed: it is tried again.
+    /// What was recorded of a pair that is finished, if its results are still there: what was removed since is made again.
     ///
     /// # Errors
-    /// A record of other pictures by the same name.
-    pub fn finished(&self, pair: &Pair) -> Result<Option<&Record>> {
-        match self.0.get(&pair.name).filter(|record| !record.has_failed()) {
-            Some(record) if !record.is_of(pair) => bail!(
-                "the results '{}' of this folder are of other pictures than {}: name another folder (-o)",
-                pair.name,
-                hsad::shown(&pair.left)
-            ),
-            found => Ok(found),
+    /// Results of other inputs than the pair has now, which are not replaced: they may be those of another batch.
+    pub fn finished(&self, pair: &Pair, frame: Option<&Frame>, results: &Results<'_>) -> Result<Option<&Finished>> {
+        let found =
+            self.0.get(&*pair.name).filter(|found| results.inputs_of(&pair.name).as_ref() == Some(&found.inputs));
+        if let Some(other) = found.and_then(|found| found.inputs.other_input(pair, frame)) {
+            bail!(
+                "the results '{}' of this folder are of other inputs: {} has changed or is another one. Remove the folder {} to match the \
+                 pair again, or name another folder (-o)",
+                shown(Path::new(&pair.name)),
+                shown(&other),
+                shown(&results.folder.join(&pair.name))
+            );
         }
+        Ok(found)
     }
 }
 
@@ -61,7 +71,7 @@ impl Journal {
     /// A folder of another batch, a journal that is there without `resume` or that another run writes, and the errors of files.
     pub fn open(folder: &Path, name: &str, recipe: &str, resume: bool) -> Result<(Self, Earlier)> {
         let path = folder.join(name);
-        let told = |what: &str| anyhow!("{}: {what}", hsad::shown(&path));
+        let told = |what: &str| anyhow!("{}: {what}", shown(&path));
         let is_known = path.exists();
         if is_known && !path.is_file() {
             return Err(told("it is no file"));
@@ -84,11 +94,7 @@ impl Journal {
                 "an earlier run has recorded pairs there: go on with it (--resume), or name another folder (-o)",
             ));
         }
-        let earlier = read(&path).map_err(|error| {
-            told(&format!(
-                "{error:#}; remove the line, or the journal: pairs whose files are there are not matched again"
-            ))
-        })?;
+        let earlier = read(&path).map_err(|error| told(&format!("{error:#}")))?;
         Ok((Self { path, file }, earlier))
     }
 
@@ -116,29 +122,50 @@ fn check_recipe(folder: &Path, recipe: &str) -> Result<()> {
     if serde_json::from_slice::<Value>(&known).ok().as_ref() != Some(&here) {
         bail!(
             "{}: the pairs of this folder are matched with other options or by another version of hsad: name another folder (-o)",
-            hsad::shown(&path)
+            shown(&path)
         );
     }
     Ok(())
 }
 
-/// Reads the records of a journal, and cuts off a line that was not written whole.
+/// Reads the records of a journal line by line, and cuts off a line that was not written whole.
 fn read(path: &Path) -> Result<Earlier> {
-    if path.metadata()?.len() == 0 {
-        return Ok(Earlier::default());
+    let mut file = BufReader::new(File::open(path)?);
+    let (mut finished, mut line, mut whole) = (HashMap::new(), Vec::new(), 0);
+    for number in 1.. {
+        line.clear();
+        let length = file.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? as u64;
+        let foreign = |what: &str| {
+            anyhow!(
+                "line {number}: {what}; remove the line, or the journal: pairs whose files are there are not matched again"
+            )
+        };
+        let Some(text) = line.strip_suffix(b"\n") else {
+            if length == LONGEST_LINE {
+                return Err(foreign("no record of hsad batch"));
+            }
+            break;
+        };
+        whole += length;
+        if text.is_empty() {
+            continue;
+        }
+        let value = serde_json::from_slice(text).map_err(|error| foreign(&error.to_string()))?;
+        let record = Record::from_json(value).ok_or_else(|| foreign("no record of hsad batch"))?;
+        let found = record.finished().map_err(|name| {
+            let name = shown(Path::new(name));
+            anyhow!("line {number}: '{name}' was recorded without its inputs, by an earlier version of hsad: name another folder (-o)")
+        })?;
+        match found {
+            Some(found) => finished.insert(record.name().into(), found),
+            None => finished.remove(record.name()),
+        };
     }
-    let text = read_whole(path, MOST)?;
-    let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-    let mut records = HashMap::new();
-    for (number, line) in (1..).zip(text[..whole].split(|&byte| byte == b'\n').filter(|line| !line.is_empty())) {
-        let value = serde_json::from_slice(line).with_context(|| format!("line {number}"))?;
-        let Some(record) = Record::from_json(value) else { bail!("line {number}: no record of hsad batch") };
-        records.insert(record.name().to_owned(), record);
+    if whole < path.metadata()?.len() {
+        OpenOptions::new().write(true).open(path)?.set_len(whole)?;
     }
-    if whole < text.len() {
-        OpenOptions::new().write(true).open(path)?.set_len(whole as u64)?;
-    }
-    Ok(Earlier(records))
+    finished.shrink_to_fit();
+    Ok(Earlier(finished))
 }
 
 #[cfg(test)]
@@ -147,21 +174,16 @@ mod tests {
 
     use super::*;
 
-    fn pair(name: &str) -> Pair {
-        Pair { name: name.into(), left: "left.png".into(), right: Some("right.png".into()), calibration: None }
-    }
-
     fn record(name: &str, status: &str) -> Record {
-        let value = json!({ "name": name, "status": status, "left": "left.png", "right": "right.png" });
-        Record::from_json(value).expect("a record")
+        let inputs = json!({ "left": { "path": "/left.png", "bytes": 1, "modified_ns": 2, "hash": "3" } });
+        Record::from_json(json!({ "name": name, "status": status, "inputs": inputs })).expect("a record")
     }
 
     #[test]
     fn a_journal_goes_on_after_a_line_that_was_not_written_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let open = |recipe: &str, resume| Journal::open(folder.path(), "report.jsonl", recipe, resume);
-        let is_finished =
-            |earlier: &Earlier, name: &str| earlier.finished(&pair(name)).expect("the same pictures").is_some();
+        let is_finished = |earlier: &Earlier, name: &str| earlier.0.contains_key(name);
         let (mut journal, earlier) = open("quickly", false).expect("a new journal");
         assert!(!is_finished(&earlier, "a"));
         let second = open("quickly", true).map(|_| ()).expect_err("two at once").to_string();
@@ -175,15 +197,25 @@ mod tests {
         assert!(open("slowly", true).is_err(), "other options");
         let (mut journal, earlier) = open("quickly", true).expect("the same batch");
         assert_eq!(["a", "b", "c"].map(|name| is_finished(&earlier, name)), [true, false, false]);
-        let other = Pair { left: "other.png".into(), ..pair("a") };
-        assert!(earlier.finished(&other).is_err(), "other pictures");
         journal.add(&record("c", "done")).expect("a file");
+        journal.add(&record("a", "failed")).expect("a file");
         drop(journal);
         let text = fs::read_to_string(folder.path().join("report.jsonl")).expect("a file");
-        assert_eq!(text.lines().count(), 3, "{text}");
+        assert_eq!(text.lines().count(), 4, "{text}");
         let (_, earlier) = open("quickly", true).expect("the same batch");
-        assert!(is_finished(&earlier, "c"));
+        assert_eq!(["a", "b", "c"].map(|name| is_finished(&earlier, name)), [false, false, true], "later lines count");
     }
+
+    #[test]
+    fn records_without_inputs_are_those_of_an_earlier_version() {
+        let folder = tempfile::tempdir().expect("a folder");
+        check_recipe(folder.path(), "quickly").expect("a new folder");
+        let line = json!({ "name": "a", "status": "done", "left": "left.png" });
+        fs::write(folder.path().join("report.jsonl"), format!("{line}\n")).expect("a file");
+        let error = Journal::open(folder.path(), "report.jsonl", "quickly", true).map(|_| ()).expect_err("no inputs");
+        assert!(error.to_string().contains("line 1: 'a' was recorded without its inputs"), "{error}");
+    }
+
     #[test]
     fn what_is_no_journal_stays_as_it_is() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -3,6 +3,7 @@
 mod desk;
 mod feed;
 mod frame;
+mod inputs;
 mod journal;
 mod list;
 mod load;
@@ -22,6 +23,7 @@ use std::{fs, num::NonZero, path::PathBuf, thread};
 
 use anyhow::Result;
 use clap::Args;
+use hsad::internals::fnv1a;
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
 use desk::Desk;
@@ -130,16 +132,20 @@ impl Batch {
         self.recipe.check_common(source.has_calibrations)?;
         let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
-        fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
         let temporal = self.temporal.map(|length| format!(" temporal {length}")).unwrap_or_default();
-        let recipe = format!("{:?} {:?}{temporal}", self.recipe, self.halves);
+        let recorded = source.recorded.as_ref().and_then(|recorded| recorded.calibration.as_ref());
+        let recorded = recorded.map(|recorded| fnv1a(format!("{:?}", recorded.loaded).into_bytes()));
+        let recorded = recorded.map(|hash| format!(" camera_info {hash:016x}")).unwrap_or_default();
+        let recipe = format!("{} {:?}{temporal}{recorded}", self.recipe.described()?, self.halves);
+        fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
         let (journal, earlier) = Journal::open(&self.output, &name, &recipe, self.resume)?;
         let results = Results { folder: &self.output, resumes: self.resume, parameters };
         let tally = Tally::new(source.count.map(|count| grouping.count(count)), self.run.quiet);
         let desk = Desk::new(journal, tally);
         self.work_on(source, grouping, &earlier, &results, &desk)?;
-        let tally = desk.into_tally()?;
+        let (tally, result) = desk.close();
         tally.finish(&self.output.join(name))?;
+        result?;
         match tally.shortfall() {
             None => Ok(()),
             Some((reason, code)) => Err(Shortfall(reason, code).into()),
@@ -156,11 +162,10 @@ impl Batch {
         results: &Results<'_>,
         desk: &Desk,
     ) -> Result<()> {
-        let feed = Feed::new(source.pairs, grouping, |pair| {
-            // Results that were removed since are made again.
-            let record = earlier.finished(pair)?.filter(|_| results.report_of(pair).is_some());
-            record.iter().for_each(|record| desk.count_earlier(record));
-            Ok(record.cloned())
+        let feed = Feed::new(source.pairs, grouping, |pair, frame| {
+            let finished = earlier.finished(pair, frame, results)?;
+            finished.iter().for_each(|finished| desk.count_earlier(&pair.name, finished));
+            Ok(finished.cloned())
         });
         if feed.has_work() {
             let cached = self.run.open()?.keeping(KEPT);

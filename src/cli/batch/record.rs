@@ -5,7 +5,7 @@ use std::{fmt, time::Duration};
 use hsad::{pipeline::Step, report::number};
 use serde_json::{Value, json};
 
-use super::{super::job::CompletedJob, pair::Pair};
+use super::{super::job::CompletedJob, inputs::Recorded, pair::Pair};
 
 /// What became of a pair, as JSON: its `name` and `status`, and what the status asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,18 @@ impl Status {
             Self::Failed => "failed",
         }
     }
+}
+
+/// What is kept of the record of a pair that is done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    pub status: Status,
+    /// Whether the pair was matched by the precedent of an earlier frame.
+    pub follows: bool,
+    /// Why the pair is doubtful.
+    pub reason: Option<Box<str>>,
+    /// What the pair was made of.
+    pub inputs: Recorded,
 }
 
 /// Times of the parts of the work on a pair.
@@ -91,12 +103,6 @@ impl Stages {
     }
 }
 
-/// Whether a record, or a report of `hsad match`, names the pictures of `pair`.
-pub fn is_of(value: &Value, pair: &Pair) -> bool {
-    let [left, right] = pair.files().map(|path| path.display().to_string());
-    value["left"] == left && value["right"] == right
-}
-
 impl Record {
     fn new(pair: &Pair, status: Status, exit_code: i32, reason: Option<&str>) -> Self {
         let [left, right] = pair.files().map(|path| path.display().to_string());
@@ -113,6 +119,7 @@ impl Record {
     /// The record of a pair whose files are written. `exit_code` and `reason` are those of `hsad match`.
     pub fn written(
         pair: &Pair,
+        inputs: Value,
         completed: &CompletedJob,
         (exit_code, reason): (i32, Option<&str>),
         times: Times,
@@ -120,6 +127,7 @@ impl Record {
         let status = if exit_code == 0 { Status::Done } else { Status::Doubtful };
         let Self(mut value) = Self::new(pair, status, exit_code, reason);
         let outcome = &completed.outcome;
+        value["inputs"] = inputs;
         value["width"] = completed.job.left.width().into();
         value["height"] = completed.job.left.height().into();
         value["trust"] = number(outcome.trust);
@@ -146,7 +154,7 @@ impl Record {
         };
         let status = if code == 0 { Status::Done } else { Status::Doubtful };
         let Self(mut value) = Self::new(pair, status, code, reason);
-        for field in ["width", "height", "trust", "warnings"] {
+        for field in ["inputs", "width", "height", "trust", "warnings"] {
             value[field] = report[field].clone();
         }
         value["follows"] = (report["follows"] == true).into();
@@ -169,17 +177,21 @@ impl Record {
         self.0["name"].as_str().unwrap_or_default()
     }
 
+    /// What later runs need of the record; `None` of a pair that has failed and is tried again.
+    ///
+    /// # Errors
+    /// Of a pair that is done and has no inputs, its name.
+    pub fn finished(&self) -> Result<Option<Finished>, &str> {
+        let status = self.status();
+        if status == Status::Failed {
+            return Ok(None);
+        }
+        let inputs = Recorded::of(&self.0).ok_or(self.name())?;
+        Ok(Some(Finished { status, follows: self.follows(), reason: self.reason().map(Box::from), inputs }))
+    }
+
     pub fn status(&self) -> Status {
         Status::ALL.into_iter().find(|status| self.0["status"] == status.name()).unwrap_or(Status::Failed)
-    }
-
-    /// Whether the record is of the pictures of `pair`.
-    pub fn is_of(&self, pair: &Pair) -> bool {
-        is_of(&self.0, pair)
-    }
-
-    pub fn has_failed(&self) -> bool {
-        self.status() == Status::Failed
     }
 
     /// Whether the pair was matched by the precedent of an earlier frame.

@@ -5,7 +5,7 @@ use std::path::Path;
 use hsad::io::read_whole;
 use serde_json::Value;
 
-use super::{super::names::REPORT, pair::Pair, record::is_of};
+use super::{super::names::REPORT, frame::Frame, inputs::Recorded, pair::Pair};
 
 /// Longest report that is read, in bytes.
 const MOST: u64 = 1 << 26;
@@ -21,9 +21,20 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// The report of the results of `pair`, if all of its files are there, and are those of this batch.
-    pub fn report_of(&self, pair: &Pair) -> Option<Value> {
-        let folder = self.folder.join(&pair.name);
+    /// The report of the results of `pair`, if all of its files are there, and were made as this batch makes them of the inputs that the
+    /// pair has now.
+    pub fn report_of(&self, pair: &Pair, frame: Option<&Frame>) -> Option<Value> {
+        let report = self.report(&pair.name)?;
+        Recorded::of(&report)?.other_input(pair, frame).is_none().then_some(report)
+    }
+
+    /// What the results of this name were made of, if all of their files are there, and were made as this batch makes them.
+    pub fn inputs_of(&self, name: &str) -> Option<Recorded> {
+        Recorded::of(&self.report(name)?)
+    }
+
+    fn report(&self, name: &str) -> Option<Value> {
+        let folder = self.folder.join(name);
         let path = folder.join(REPORT);
         if !self.resumes || !path.is_file() {
             return None;
@@ -31,6 +42,6 @@ impl Results<'_> {
         let report: Value = serde_json::from_slice(&read_whole(&path, MOST).ok()?).ok()?;
         let files = report["files"].as_array()?;
         let are_there = files.iter().all(|file| file.as_str().is_some_and(|name| folder.join(name).is_file()));
-        (are_there && is_of(&report, pair) && report["parameters"] == self.parameters).then_some(report)
+        (are_there && report["parameters"] == self.parameters).then_some(report)
     }
 }

@@ -6,12 +6,13 @@ use std::{
     time::Duration,
 };
 
+use hsad::shown;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{
     super::terminal,
     load::Shares,
-    record::{Record, Stages, Status},
+    record::{Finished, Record, Stages, Status},
 };
 
 /// Names of pairs that the summary lists at most per status.
@@ -23,8 +24,10 @@ pub struct Tally {
     expected: Option<usize>,
     /// Pairs that earlier runs have finished.
     earlier: usize,
-    /// Names and reasons, by the number of [`Status::ALL`].
-    found: [Vec<(String, Option<String>)>; 3],
+    /// Pairs by the number of [`Status::ALL`].
+    counts: [usize; 3],
+    /// The first names and reasons of those that are not simply done, by the number of [`Status::ALL`].
+    listed: [Vec<(String, String)>; 3],
     /// Times of the stages of all pairs together.
     stages: Stages,
     /// What the summary says of the run's time.
@@ -52,7 +55,8 @@ impl Tally {
         Self {
             expected,
             earlier: 0,
-            found: Default::default(),
+            counts: [0; 3],
+            listed: Default::default(),
             stages: Stages::default(),
             load: String::new(),
             left_out: String::new(),
@@ -64,18 +68,21 @@ impl Tally {
 
     /// Pairs so far.
     fn all(&self) -> usize {
-        self.found.iter().map(Vec::len).sum()
+        self.counts.iter().sum()
     }
 
-    fn note(&mut self, record: &Record) {
-        let place = Status::ALL.iter().position(|status| *status == record.status()).unwrap_or(0);
-        self.found[place].push((record.name().into(), record.reason().map(String::from)));
+    fn note(&mut self, status: Status, name: &str, reason: Option<&str>) {
+        let place = Status::ALL.iter().position(|known| *known == status).unwrap_or(0);
+        self.counts[place] += 1;
+        if status != Status::Done && self.listed[place].len() < LISTED {
+            self.listed[place].push((name.into(), reason.unwrap_or("unknown").into()));
+        }
     }
 
     /// Counts a pair that an earlier run has finished.
-    pub fn count_earlier(&mut self, record: &Record) {
+    pub fn count_earlier(&mut self, name: &str, finished: &Finished) {
         self.earlier += 1;
-        self.note(record);
+        self.note(finished.status, name, finished.reason.as_deref());
         if let Some(all) = self.expected {
             self.bar.set_length((all - self.earlier) as u64);
         }
@@ -86,10 +93,10 @@ impl Tally {
     /// # Errors
     /// [`hsad::Error::Io`] if standard output cannot be written.
     pub fn count(&mut self, record: &Record) -> hsad::Result<()> {
-        self.note(record);
+        self.note(record.status(), record.name(), record.reason());
         self.stages.add(record);
         self.bar.inc(1);
-        let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        let [_, doubtful, failed] = self.counts;
         if doubtful + failed > 0 {
             self.bar.set_message(format!("({failed} failed, {doubtful} doubtful)"));
         }
@@ -130,22 +137,22 @@ impl Tally {
         if self.quiet {
             return Ok(());
         }
-        let [done, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        let [done, doubtful, failed] = self.counts;
         let mut text = format!("{} pairs: {done} done, {doubtful} doubtful, {failed} failed", self.all());
         if self.earlier > 0 {
             text += &format!("; {} by earlier runs", self.earlier);
         }
         text += &self.load;
         text += &self.left_out;
-        for (status, pairs) in Status::ALL.iter().zip(&self.found).skip(1) {
-            for (name, reason) in pairs.iter().take(LISTED) {
-                text += &format!("\n  {} {name}: {}", status.name(), reason.as_deref().unwrap_or("unknown"));
+        for ((status, count), listed) in Status::ALL.iter().zip(self.counts).zip(&self.listed).skip(1) {
+            for (name, reason) in listed {
+                text += &format!("\n  {} {}: {}", status.name(), shown(Path::new(name)), shown(Path::new(reason)));
             }
-            if pairs.len() > LISTED {
-                text += &format!("\n  and {} more {}", pairs.len() - LISTED, status.name());
+            if count > listed.len() {
+                text += &format!("\n  and {} more {}", count - listed.len(), status.name());
             }
         }
-        text += &format!("\n{} has all\n", hsad::shown(journal));
+        text += &format!("\n{} has all\n", shown(journal));
         // Standard output has the records, where they are printed.
         if self.prints {
             terminal::note(text.trim_end());
@@ -156,7 +163,7 @@ impl Tally {
 
     /// What falls short, and the exit code that says so.
     pub fn shortfall(&self) -> Option<(String, i32)> {
-        let [_, doubtful, failed] = self.found.each_ref().map(Vec::len);
+        let [_, doubtful, failed] = self.counts;
         match (failed, doubtful) {
             (0, 0) => None,
             (0, _) => Some((format!("{doubtful} of {} maps are doubtful; their files were written", self.all()), 4)),

@@ -7,7 +7,7 @@ use std::{
 };
 
 use anyhow::{Result, anyhow, bail};
-use hsad::{internals::fnv1a, io::MAX_PIXELS};
+use hsad::io::MAX_PIXELS;
 
 use super::{super::output::is_stdout, pair::Pair};
 
@@ -83,8 +83,7 @@ impl Video {
         })?;
         self.number += 1;
         let name = format!("{:06}", self.number);
-        // A pipe has no name by which a frame of another video could be told.
-        let left = PathBuf::from(format!("{}#{name}-{:016x}", self.path.display(), fnv1a(planes.iter().copied())));
+        let left = PathBuf::from(format!("{}#{name}", self.path.display()));
         let pair = Pair { name, left, right: None, calibration: None };
         Ok(Some((pair, Frame { head: self.head, planes })))
     }
@@ -145,9 +144,9 @@ impl Head {
 }
 
 impl Frame {
-    /// Bytes of memory.
-    pub fn bytes(&self) -> usize {
-        self.planes.len()
+    /// The samples, as they were read.
+    pub fn samples(&self) -> &[u8] {
+        &self.planes
     }
 
     /// A frame of as many bytes.
@@ -224,7 +223,7 @@ mod tests {
             .collect();
         let names: Vec<_> =
             frames.iter().map(|(pair, _)| (pair.name.as_str(), pair.left.display().to_string())).collect();
-        let expected = ["v.y4m#000001-0869bd07b51b0c6c", "v.y4m#000002-08324a07b4eb0693"].map(str::to_owned);
+        let expected = ["v.y4m#000001", "v.y4m#000002"].map(str::to_owned);
         assert_eq!(names, ["000001", "000002"].into_iter().zip(expected).collect::<Vec<_>>());
         assert_eq!(frames[0].1.to_pnm(), b"P5 2 1 255\n\x00\xff");
         assert_eq!(frames[1].1.to_pnm(), b"P5 2 1 255\n\x00\x80", "what is darker than black is black");

@@ -12,6 +12,7 @@ use hsad::{
     io::{load::Halves, recording::RecordedCalibration},
     pipeline::Precedent,
 };
+use serde_json::Value;
 
 use super::{
     super::{
@@ -20,10 +21,11 @@ use super::{
         output::Output,
         recipe::{Known, Prepared, Recipe},
         terminal::{Progress, described},
-        view_files::{InMemory, Views},
+        view_files::Views,
     },
     feed::Member,
-    frame::{Files, Frame},
+    frame::Frame,
+    inputs::Contents,
     pair::Pair,
     record::{Record, Times},
     results::Results,
@@ -67,7 +69,7 @@ impl Work<'_> {
         let mut before = Before::Nothing;
         for Member { pair, frame, finished } in members {
             let told = match finished {
-                Some(record) => (!record.follows()).then_some(Before::Finished(pair, frame)),
+                Some(finished) => (!finished.follows).then_some(Before::Finished(pair, frame)),
                 None => match self.known(&mut before).and_then(|precedent| self.on(pair, frame, precedent)) {
                     Ok(Done { record, told }) => {
                         then(Ok(record))?;
@@ -95,7 +97,7 @@ impl Work<'_> {
 
     /// Matches a pair and writes its files, unless they are there.
     fn on(&self, pair: Pair, frame: Option<Frame>, precedent: Option<&Precedent>) -> hsad::Result<Done> {
-        if let Some(report) = self.results.report_of(&pair) {
+        if let Some(report) = self.results.report_of(&pair, frame.as_ref()) {
             let record = Record::found(&pair, &report);
             let told = (!record.follows()).then_some(Before::Finished(pair, frame));
             return Ok(Done { record, told });
@@ -115,14 +117,11 @@ impl Work<'_> {
             fs::create_dir_all(above).map_err(|source| Error::Io { path: above.into(), source })?;
         }
         let mut output = Output::open_set(&folder)?;
-        let files = frame.map(Frame::to_files).transpose()?;
-        let in_memory = files.as_ref().map(|files| match files {
-            Files::Both(both) => InMemory::Both(both),
-            Files::Each(each) => InMemory::Each(each.each_ref().map(|bytes| &**bytes)),
-        });
+        let Contents { pictures, calibration, inputs } = Contents::read(pair, frame)?;
+        let in_memory = Some(pictures.in_memory());
         let views = Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, in_memory };
-        let known = match (&pair.calibration, self.recorded) {
-            (Some(file), _) => Known::File(file),
+        let known = match (pair.calibration.as_ref().zip(calibration.as_ref()), self.recorded) {
+            (Some((file, text)), _) => Known::File(file, text),
             (None, Some(recorded)) => Known::Recorded(recorded),
             (None, None) => Known::Nothing,
         };
@@ -130,17 +129,18 @@ impl Work<'_> {
         let read = start.elapsed();
         let mut completed = job.run_on(self.backend, precedent, &Progress::new(true), Instant::now())?;
         completed.warnings.splice(0..0, warnings);
-        Ok(Matched { output, completed, read, matched: start.elapsed() - read })
+        Ok(Matched { output, inputs, completed, read, matched: start.elapsed() - read })
     }
 
-    fn written(&self, pair: &Pair, Matched { mut output, mut completed, read, matched }: Matched) -> Result<Done> {
+    fn written(&self, pair: &Pair, matched: Matched) -> Result<Done> {
+        let Matched { mut output, inputs, mut completed, read, matched } = matched;
         let start = Instant::now();
-        self.recipe.add_files(&mut completed, &mut output)?;
+        self.recipe.add_files(&mut completed, Some(&inputs), &mut output)?;
         output.finish()?;
         let times = Times { read, matched, written: start.elapsed() };
         let shortfall = completed.shortfall().map(|error| (exit_code(&error), described(&error)));
         let (code, reason) = shortfall.as_ref().map_or((0, None), |(code, reason)| (*code, Some(reason.as_str())));
-        let record = Record::written(pair, &completed, (code, reason), times);
+        let record = Record::written(pair, inputs, &completed, (code, reason), times);
         let told = (!completed.follows).then(|| Before::of(completed.precedent));
         Ok(Done { record, told })
     }
@@ -149,6 +149,8 @@ impl Work<'_> {
 /// A matched pair, whose files are not written.
 struct Matched {
     output: Output,
+    /// What the pair was made of.
+    inputs: Value,
     completed: CompletedJob,
     read: Duration,
     matched: Duration,

@@ -41,9 +41,9 @@ impl Shot {
         picture.map_err(|reason| malformed(&self.path, reason))
     }
 
-    /// Bytes of memory.
-    pub fn bytes(&self) -> usize {
-        self.message.len()
+    /// The message, as it was recorded.
+    pub fn message(&self) -> &[u8] {
+        &self.message
     }
 }
 
