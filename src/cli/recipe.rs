@@ -92,7 +92,7 @@ impl Recipe {
     pub fn check_common(&self, have_calibrations: bool) -> hsad::Result<()> {
         let is_calibrated = have_calibrations || self.depth.are_given();
         self.cloud.check(is_calibrated)?;
-        if is_calibrated { Ok(()) } else { self.rectify.check_uncalibrated() }
+        self.rectify.check_known(is_calibrated, self.depth.are_given())
     }
 
     /// All options as text, each file by the hash of its content: what two runs that match pairs alike have in common.

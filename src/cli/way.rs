@@ -24,12 +24,16 @@ pub enum Rectify {
 }
 
 impl Rectify {
-    /// Checks that a pair without any calibration can be brought to correspond so.
+    /// Checks that pairs can be brought to correspond so: whether any may have a calibration, and whether all have that of the options.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if it cannot.
-    pub fn check_uncalibrated(self) -> Result<()> {
-        if self == Self::Calibrated { Err(needs_files()) } else { Ok(()) }
+    /// [`Error::Parameter`] if none can.
+    pub fn check_known(self, may_be_calibrated: bool, is_given: bool) -> Result<()> {
+        match self {
+            Self::Calibrated if !may_be_calibrated => Err(needs_files()),
+            Self::Uncalibrated if is_given => Err(needs_none()),
+            _ => Ok(()),
+        }
     }
 
     /// The geometry of a pair with views of these sizes, in pixels.

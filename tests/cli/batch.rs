@@ -266,12 +266,15 @@ fn what_is_no_batch_is_told() {
         (&["--max-depth", "9"], "--max-depth is 9, but without a calibration"),
         (&["--rectify", "calibrated"], "--rectify is calibrated, but it needs the calibration"),
         (&["--max-depth", "0", "--focal", "300", "--baseline", "0.1"], "the largest depth is 0, but"),
+        (&["--rectify", "uncalibrated", "--focal", "300", "--baseline", "0.1"], "leave the calibration out"),
     ] {
         fails(&[&[pairs], arguments].concat(), 2, told);
     }
-    for (arguments, told) in
-        [(["--calib", "gone.txt"], "gone.txt: No such file"), (["--mask", "gone.png"], "gone.png: No such file")]
-    {
+    for (arguments, told) in [
+        (["--calib", "gone.txt"], "gone.txt: No such file"),
+        (["--mask", "gone.png"], "gone.png: No such file"),
+        (["--side-by-side", "left-right"], "every pair has a right view of its own"),
+    ] {
         fails(&[&[pairs], &arguments[..]].concat(), 1, told);
     }
     fs::write(&list, "left,right,name\na.png,b.png,../x\n").unwrap();

@@ -51,6 +51,9 @@ fn csv_rows(text: &str) -> Result<Vec<(u64, Row)>> {
     if let Some(unknown) = head.iter().find(|field| !FIELDS.contains(field)) {
         bail!("the first line names the columns, of {}: '{unknown}' is none of them", FIELDS.join(", "));
     }
+    if let Some(twice) = FIELDS.iter().find(|&field| head.iter().filter(|named| named == field).count() > 1) {
+        bail!("the first line names the column {twice} twice");
+    }
     let row = |record: csv::StringRecord| {
         let line = record.position().map_or(0, csv::Position::line);
         (line, head.iter().zip(&record).map(|(field, text)| (field.to_owned(), text.to_owned())).collect())
@@ -128,6 +131,7 @@ mod tests {
     fn mistakes_are_told_with_their_line() {
         for (name, text, told) in [
             ("a.csv", "left,rigth\na,b\n", "'rigth' is none of them"),
+            ("a.csv", "left,right,left\na,b,c\n", "the column left twice"),
             ("a.csv", "left,right\na,b\n,c\n", "line 3: there is no left view"),
             ("a.csv", "left,right\na,b\na\n", "line: 3"),
             ("a.jsonl", "{\"left\": 3}\n", "line 1: left must be a text"),

@@ -6,6 +6,7 @@ mod frame;
 mod inputs;
 mod journal;
 mod list;
+mod listing;
 mod load;
 mod pair;
 mod patterns;
@@ -133,8 +134,7 @@ impl Batch {
         let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         let temporal = self.temporal.map(|length| format!(" temporal {length}")).unwrap_or_default();
-        let recorded = source.recorded.as_ref().and_then(|recorded| recorded.calibration.as_ref());
-        let recorded = recorded.map(|recorded| fnv1a(format!("{:?}", recorded.loaded).into_bytes()));
+        let recorded = source.recorded.as_ref().map(|recorded| fnv1a(format!("{:?}", recorded.loaded).into_bytes()));
         let recorded = recorded.map(|hash| format!(" camera_info {hash:016x}")).unwrap_or_default();
         let recipe = format!("{} {:?}{temporal}{recorded}", self.recipe.described()?, self.halves);
         fs::create_dir_all(&self.output).map_err(|source| hsad::Error::Io { path: self.output.clone(), source })?;
@@ -171,7 +171,7 @@ impl Batch {
             let cached = self.run.open()?.keeping(KEPT);
             let load = Load::begin(&cached.backend);
             let halves = self.halves.halves();
-            let recorded = source.recorded.as_ref().and_then(|recorded| recorded.calibration.as_ref());
+            let recorded = source.recorded.as_ref();
             let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, recorded, results };
             side_by_side(source.count.unwrap_or(usize::MAX).min(self.jobs()), || {
                 while let Some(group) = feed.group() {
@@ -186,7 +186,7 @@ impl Batch {
         if let Some(error) = feed.into_error() {
             desk.end(error);
         }
-        desk.note_left_out(source.recorded.and_then(|recorded| recorded.left_out()));
+        desk.note_left_out((source.left_out)());
         Ok(())
     }
 

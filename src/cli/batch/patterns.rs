@@ -7,30 +7,35 @@ use std::{
 };
 
 use anyhow::{Context, Result, bail};
+use hsad::shown;
 
-use super::pair::Pair;
+use super::{
+    listing::{Listing, is_hidden},
+    pair::Pair,
+};
 
 /// The pairs of the files that both patterns match with the same text in place of `*`, which is the pair's name; sorted by it, whole
 /// numbers by their value.
 ///
 /// # Errors
-/// A pattern without exactly one `*`, a folder that cannot be read, files without a partner, and no file at all.
-pub fn pairs(left: &str, right: &str) -> Result<Vec<Pair>> {
+/// A pattern without exactly one `*`, a folder that cannot be read, and no pair at all.
+pub fn pairs(left: &str, right: &str) -> Result<Listing> {
     let (lefts, mut rights) = (matches(left)?, matches(right)?);
-    if lefts.is_empty() {
-        bail!("no file matches {left}");
+    for (pattern, files) in [(left, &lefts), (right, &rights)] {
+        check_any(pattern, files)?;
     }
-    let mut pairs = Vec::new();
-    for (name, file) in lefts {
-        let Some(partner) = rights.remove(&name) else {
-            bail!("{} has no partner: no file matches {right} with '{}' in place of *", file.display(), name.1);
-        };
-        pairs.push(Pair { name: name.1, left: file, right: Some(partner), calibration: None });
+    let mut listing = Listing::default();
+    for (name, left) in lefts {
+        match rights.remove(&name) {
+            Some(right) => listing.pairs.push(Pair { name: name.1, left, right: Some(right), calibration: None }),
+            None => listing.alone[0].push(left),
+        }
     }
-    if let Some((name, file)) = rights.pop_first() {
-        bail!("{} has no partner: no file matches {left} with '{}' in place of *", file.display(), name.1);
+    listing.alone[1].extend(rights.into_values());
+    if let (true, Some(alone)) = (listing.pairs.is_empty(), listing.left_out()) {
+        bail!("no pairs: no text in place of * gives files of both patterns; {alone}");
     }
-    Ok(pairs)
+    Ok(listing)
 }
 
 /// The pairs of the pictures that the pattern matches, each of which has both views; sorted as [`pairs`] are.
@@ -39,31 +44,36 @@ pub fn pairs(left: &str, right: &str) -> Result<Vec<Pair>> {
 /// A pattern without exactly one `*`, a folder that cannot be read, and no file at all.
 pub fn pictures_of_both(pattern: &str) -> Result<Vec<Pair>> {
     let pictures = matches(pattern)?;
-    if pictures.is_empty() {
-        bail!("no file matches {pattern}");
-    }
+    check_any(pattern, &pictures)?;
     let pair = |((_, name), file)| Pair { name, left: file, right: None, calibration: None };
     Ok(pictures.into_iter().map(pair).collect())
+}
+
+fn check_any(pattern: &str, files: &BTreeMap<Name, PathBuf>) -> Result<()> {
+    if files.is_empty() { bail!("no file matches {}", shown(Path::new(pattern))) } else { Ok(()) }
 }
 
 /// What `*` stands for, behind its digits as a number: texts with numbers are sorted by them.
 type Name = (u128, String);
 
-/// The files that match a pattern.
+/// The files that match a pattern; hidden ones only if the pattern names them so.
 fn matches(pattern: &str) -> Result<BTreeMap<Name, PathBuf>> {
     let [before, after] = pattern.split('*').collect::<Vec<_>>()[..] else {
-        bail!("a pattern has one * in it: '{pattern}' has not");
+        bail!("a pattern has one * in it: '{}' has not", shown(Path::new(pattern)));
     };
     let (folder, prefix) = before.rsplit_once('/').map_or(("", before), |(folder, prefix)| (folder, prefix));
     let folder = if before.starts_with('/') && folder.is_empty() { "/" } else { folder };
     let (suffix, below) = after.split_once('/').map_or((after, None), |(suffix, below)| (suffix, Some(below)));
     let read = if folder.is_empty() { Path::new(".") } else { Path::new(folder) };
     let mut found = BTreeMap::new();
-    for entry in fs::read_dir(read).with_context(|| read.display().to_string())? {
-        let entry = entry.with_context(|| read.display().to_string())?.file_name();
+    for entry in fs::read_dir(read).with_context(|| shown(read))? {
+        let entry = entry.with_context(|| shown(read))?.file_name();
         let Some(name) = entry.to_str().and_then(|name| name.strip_prefix(prefix)?.strip_suffix(suffix)) else {
             continue;
         };
+        if is_hidden(&entry) && !prefix.starts_with('.') {
+            continue;
+        }
         let file = Path::new(folder).join(&entry);
         let file = below.map_or(file.clone(), |below| file.join(below));
         if !name.is_empty() && file.is_file() {
@@ -100,7 +110,7 @@ mod tests {
                 right.display()
             )
         };
-        Ok(pairs(&at(left), &at(right))?.iter().map(name).collect())
+        Ok(pairs(&at(left), &at(right))?.pairs.iter().map(name).collect())
     }
 
     #[test]
@@ -116,6 +126,16 @@ mod tests {
     }
 
     #[test]
+    fn files_without_a_partner_are_counted_and_hidden_ones_passed_over() {
+        let folder = folder(&["l/1.png", "l/2.png", "l/._1.png", "r/1.png", "r/._1.png", "r/3.png"]);
+        let at = |pattern: &str| format!("{}/{pattern}", folder.path().display());
+        let Listing { pairs: found, alone } = pairs(&at("l/*.png"), &at("r/*.png")).expect("a pair");
+        assert_eq!((found.len(), &*found[0].name), (1, "1"));
+        assert!(alone[0][0].ends_with("l/2.png") && alone[1][0].ends_with("r/3.png"), "{alone:?}");
+        assert_eq!(pairs(&at("l/._*.png"), &at("r/._*.png")).expect("a pair that is asked for").pairs.len(), 1);
+    }
+
+    #[test]
     fn pictures_of_both_views_need_no_partner() {
         let folder = folder(&["f/10.png", "f/9.png", "f/9.txt"]);
         let pairs = pictures_of_both(&format!("{}/f/*.png", folder.path().display())).expect("pairs");
@@ -127,14 +147,16 @@ mod tests {
     #[test]
     fn what_cannot_be_paired_is_told() {
         for (left, right, told) in [
-            ("l/*.png", "r/*.jpg", "has no partner"),
+            ("l/*.png", "r/*.jpg", "no file matches"),
+            ("l/1*.png", "r/9*.png", "no pairs: no text in place of *"),
             ("l/*.png", "l/9.png", "a pattern has one *"),
             ("l/*.tif", "r/*.png", "no file matches"),
             ("m/*.png", "r/*.png", "/m"),
-            ("l/1*.png", "r/*.png", "no partner"),
         ] {
-            let error =
-                format!("{:#}", paired(&["l/10.png", "l/9.png", "r/9.png", "r/10.png"], left, right).expect_err(told));
+            let error = format!(
+                "{:#}",
+                paired(&["l/10.png", "l/9.png", "r/9.png", "r/10.png", "r/99.png"], left, right).expect_err(told)
+            );
             assert!(error.contains(told), "{told}: {error}");
         }
     }

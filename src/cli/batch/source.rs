@@ -1,9 +1,6 @@
 //! Where the pairs of a batch come from.
 
-use std::{
-    path::Path,
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::{path::Path, sync::PoisonError};
 
 use anyhow::{Result, bail};
 use hsad::io::recording::{LeftOut, RecordedCalibration, Recording};
@@ -14,6 +11,7 @@ use super::{
     feed::Pairs,
     frame::Frame,
     list,
+    listing::Listing,
     pair::{self, Pair},
     patterns, tree,
     video::{Video, is_video},
@@ -26,15 +24,10 @@ pub struct Source {
     pub count: Option<usize>,
     /// Whether a pair may have a calibration of its own.
     pub has_calibrations: bool,
-    /// What a recording tells besides its pairs.
-    pub recorded: Option<Recorded>,
-}
-
-/// What a recording tells besides its pairs.
-pub struct Recorded {
-    topics: [String; 2],
-    pub calibration: Option<RecordedCalibration>,
-    left_out: Arc<Mutex<LeftOut>>,
+    /// The calibration of a recording.
+    pub recorded: Option<RecordedCalibration>,
+    /// What the summary says of views that are in no pair, once all pairs were read; `None` if there are none.
+    pub left_out: Box<dyn FnOnce() -> Option<String>>,
 }
 
 impl Source {
@@ -47,27 +40,32 @@ impl Source {
         if batch.topics.is_some() && !is_recording {
             bail!("--topics names topics of a recording (.mcap)");
         }
-        let pairs = match (&batch.source, &batch.left, &batch.right) {
+        let listing = match (&batch.source, &batch.left, &batch.right) {
             (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
-            (None, Some(both), None) => patterns::pictures_of_both(both)?,
+            (None, Some(both), None) => Listing::of(patterns::pictures_of_both(both)?),
             (Some(source), ..) if is_recording => return Self::of_recording(source, batch),
             (Some(source), ..) if is_video(source) => return Self::of_video(source, batch),
             (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
-            (Some(source), ..) if list::is_list(source) => list::read(source)?,
+            (Some(source), ..) if list::is_list(source) => Listing::of(list::read(source)?),
             (Some(source), ..) => bail!(
                 "{}: neither a folder nor a list of pairs (.csv, .jsonl) nor a video (.y4m) nor a recording (.mcap); hsad match matches a pair",
                 hsad::shown(source)
             ),
             _ => bail!("name a list or a folder, or --left and --right"),
         };
+        let left_out = listing.left_out();
+        let pairs = listing.pairs;
         if pairs.is_empty() {
             bail!("{}: no pairs", hsad::shown(batch.source.as_deref().unwrap_or(Path::new("the list"))));
         }
-        pair::check_names(&pairs)?;
+        if batch.halves.halves().is_some() && pairs.iter().all(|pair| pair.right.is_some()) {
+            bail!("every pair has a right view of its own: leave out --side-by-side and --top-bottom");
+        }
+        pair::check_names(&pairs, &batch.output)?;
         let count = Some(pairs.len());
         let has_calibrations = pairs.iter().any(|pair| pair.calibration.is_some());
         let pairs = Box::new(pairs.into_iter().map(|pair| Ok((pair, None))));
-        Ok(Self { pairs, count, has_calibrations, recorded: None })
+        Ok(Self { pairs, count, has_calibrations, recorded: None, left_out: Box::new(|| left_out) })
     }
 
     fn of_video(path: &Path, batch: &Batch) -> Result<Self> {
@@ -76,7 +74,8 @@ impl Source {
         }
         let frames = Video::open(path)?;
         let pairs = frames.map(|frame| frame.map(|(pair, frame)| (pair, Some(Frame::Both(frame)))));
-        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations: false, recorded: None })
+        let left_out = Box::new(|| None);
+        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations: false, recorded: None, left_out })
     }
 
     fn of_recording(path: &Path, batch: &Batch) -> Result<Self> {
@@ -89,38 +88,40 @@ impl Source {
             Some(_) => error.into(),
             None => anyhow::anyhow!("{error}: name two with --topics LEFT RIGHT"),
         })?;
+        let topics = views.map(|topic| topic.name.clone());
+        let frames = recording.pairs(views)?;
+        let left_out = frames.left_out();
         let calibration = recording.calibration(views).unwrap_or_else(|error| {
             if !batch.run.quiet {
                 terminal::warning(format_args!("the calibration of the recording is not used: {error}"));
             }
             None
         });
-        let has_calibrations = calibration.is_some();
-        let frames = recording.pairs(views)?;
-        let recorded =
-            Recorded { topics: views.map(|topic| topic.name.clone()), calibration, left_out: frames.left_out() };
         let pairs = frames.map(|read| {
             let (stamp, shots) = read?;
             let [left, right] = shots.each_ref().map(|shot| shot.path.clone());
             let pair = Pair { name: stamp.to_string(), left, right: Some(right), calibration: None };
             Ok((pair, Some(Frame::Each(Box::new(shots)))))
         });
-        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations, recorded: Some(recorded) })
+        Ok(Self {
+            pairs: Box::new(pairs),
+            count: None,
+            has_calibrations: calibration.is_some(),
+            recorded: calibration,
+            left_out: Box::new(move || told(&left_out.lock().unwrap_or_else(PoisonError::into_inner), &topics)),
+        })
     }
 }
 
-impl Recorded {
-    /// Frames that are in no pair, for the summary; `None` if there are none.
-    pub fn left_out(&self) -> Option<String> {
-        let LeftOut { alone, damaged, reason } = self.left_out.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let count = |kind: &str, counts: [u64; 2]| {
-            let [left, right] = &self.topics;
-            let text = format!("{kind}: {} of {left}, {} of {right}", counts[0], counts[1]);
-            (counts != [0, 0]).then_some(text)
-        };
-        let damaged = count("frames whose time cannot be read", damaged)
-            .map(|text| format!("{text} ({})", reason.unwrap_or_default()));
-        let all: Vec<String> = count("frames without a partner", alone).into_iter().chain(damaged).collect();
-        (!all.is_empty()).then(|| all.join("\n"))
-    }
+/// Frames of two topics that are in no pair, for the summary; `None` if there are none.
+fn told(left_out: &LeftOut, [left, right]: &[String; 2]) -> Option<String> {
+    let count = |kind: &str, counts: [u64; 2]| {
+        let text = format!("{kind}: {} of {left}, {} of {right}", counts[0], counts[1]);
+        (counts != [0, 0]).then_some(text)
+    };
+    let LeftOut { alone, damaged, reason } = left_out;
+    let damaged = count("frames whose time cannot be read", *damaged)
+        .map(|text| format!("{text} ({})", reason.as_deref().unwrap_or_default()));
+    let all: Vec<String> = count("frames without a partner", *alone).into_iter().chain(damaged).collect();
+    (!all.is_empty()).then(|| all.join("\n"))
 }

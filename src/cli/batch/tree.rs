@@ -1,14 +1,18 @@
 //! Pairs from the folders of the benchmarks and of recordings.
 
 use std::{
-    ffi::OsStr,
+    collections::BTreeMap,
+    ffi::{OsStr, OsString},
     fs,
     path::{Path, PathBuf},
 };
 
 use anyhow::{Context, Result, bail};
 
-use super::pair::Pair;
+use super::{
+    listing::{Listing, is_hidden},
+    pair::Pair,
+};
 
 /// Folders of the left and the right view whose files have the same names: KITTI 2015, KITTI 2012 and odometry, EuRoC, and plain ones.
 const FOLDERS: [[&str; 2]; 6] = [
@@ -21,17 +25,23 @@ const FOLDERS: [[&str; 2]; 6] = [
 ];
 
 /// Files of the left and the right view in a folder per pair: Middlebury, ETH3D, and hsad's own; then their calibration.
-const FILES: [[&str; 2]; 6] = [
+const FILES: [[&str; 2]; 9] = [
     ["im0.png", "im1.png"],
     ["left.png", "right.png"],
     ["left.jpg", "right.jpg"],
     ["left.ppm", "right.ppm"],
     ["left.pgm", "right.pgm"],
     ["view1.png", "view5.png"],
+    ["left.heic", "right.heic"],
+    ["left.heif", "right.heif"],
+    ["left.avif", "right.avif"],
 ];
 
-/// Extensions of pictures: other files lie among them.
-const PICTURES: [&str; 12] = ["png", "jpg", "jpeg", "ppm", "pgm", "pnm", "pfm", "bmp", "tif", "tiff", "webp", "jps"];
+/// Extensions of pictures: other files lie among them. Those of phones are not read, which each pair's record says.
+const PICTURES: [&str; 16] = [
+    "png", "jpg", "jpeg", "ppm", "pgm", "pnm", "pfm", "bmp", "tif", "tiff", "webp", "jps", "heic", "heif", "hif",
+    "avif",
+];
 
 /// Calibration in the folder of a pair.
 const CALIBRATION: &str = "calib.txt";
@@ -40,42 +50,42 @@ const CALIBRATION: &str = "calib.txt";
 const EXPECTED: &str = "expected folders image_2 and image_3 (KITTI), cam0/data and cam1/data (EuRoC) or left and right with files of the \
                         same names, or a folder per pair with im0.png and im1.png (Middlebury, ETH3D) or left.png and right.png";
 
-/// The pairs in `folder`, in the order of their names.
+/// What is in `folder`, in the order of the names. Hidden files are passed over.
 ///
 /// # Errors
-/// A folder that cannot be read or has no pairs, a view without the other one, and a name that is no text.
-pub fn pairs(folder: &Path) -> Result<Vec<Pair>> {
-    if let Some([left, right]) = FOLDERS
-        .map(|both| both.map(|one| folder.join(one)))
-        .into_iter()
-        .find(|both| both.iter().all(|one| one.is_dir()))
-    {
-        return same_names(&left, &right);
+/// A folder that cannot be read or has no pairs, and a name that is no text.
+pub fn pairs(folder: &Path) -> Result<Listing> {
+    let both = FOLDERS.map(|both| both.map(|one| folder.join(one)));
+    let listing = match both.into_iter().find(|both| both.iter().all(|one| one.is_dir())) {
+        Some(both) => same_names(both)?,
+        None => folder_per_pair(folder)?,
+    };
+    if listing.pairs.is_empty() {
+        let alone = listing.left_out().map(|alone| format!("{alone}; ")).unwrap_or_default();
+        bail!("{}: no pairs: {alone}{EXPECTED}", hsad::shown(folder));
     }
-    let mut pairs = Vec::new();
-    for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
-        let both = FILES.map(|both| both.map(|file| scene.join(file)));
-        let Some([left, right]) = both.into_iter().find(|both| both.iter().any(|file| file.is_file())) else {
-            continue;
-        };
-        for (file, partner) in [(&left, &right), (&right, &left)] {
-            check_partner(file, partner)?;
-        }
-        let calibration = Some(scene.join(CALIBRATION)).filter(|file| file.is_file());
-        pairs.push(Pair { name: text(scene.file_name(), &scene)?, left, right: Some(right), calibration });
-    }
-    if pairs.is_empty() {
-        bail!("{}: no pairs: {EXPECTED}", hsad::shown(folder));
-    }
-    Ok(pairs)
+    Ok(listing)
 }
 
-/// Checks that a file that is there has its partner.
-fn check_partner(file: &Path, partner: &Path) -> Result<()> {
-    if file.is_file() && !partner.is_file() {
-        bail!("{} has no partner {}", hsad::shown(file), hsad::shown(partner));
+/// The pairs of folders in `folder`, one each.
+fn folder_per_pair(folder: &Path) -> Result<Listing> {
+    let mut listing = Listing::default();
+    for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
+        let both = FILES.map(|both| both.map(|file| scene.join(file)));
+        let Some(both) = both.into_iter().find(|both| both.iter().any(|file| file.is_file())) else { continue };
+        let are_there = both.each_ref().map(|file| file.is_file());
+        let [left, right] = both;
+        match are_there {
+            [true, true] => {
+                let calibration = Some(scene.join(CALIBRATION)).filter(|file| file.is_file());
+                let name = text(scene.file_name(), &scene)?;
+                listing.pairs.push(Pair { name, left, right: Some(right), calibration });
+            }
+            [true, false] => listing.alone[0].push(left),
+            _ => listing.alone[1].push(right),
+        }
     }
-    Ok(())
+    Ok(listing)
 }
 
 /// A name as text, which lists and reports are.
@@ -84,33 +94,39 @@ fn text(name: Option<&OsStr>, path: &Path) -> Result<String> {
     name.with_context(|| format!("{}: the name is no text in UTF-8: rename it", hsad::shown(path)))
 }
 
-/// The pairs of files with the same name in two folders.
-fn same_names(left: &Path, right: &Path) -> Result<Vec<Pair>> {
+/// The pairs of pictures with the same name in a left and a right folder.
+fn same_names([left, right]: [PathBuf; 2]) -> Result<Listing> {
+    let mut listing = Listing::default();
+    let mut rights = pictures(&right)?;
+    for (name, left) in pictures(&left)? {
+        match rights.remove(&name) {
+            Some(right) => {
+                let name = text(left.file_stem(), &left)?;
+                listing.pairs.push(Pair { name, left, right: Some(right), calibration: None });
+            }
+            None => listing.alone[0].push(left),
+        }
+    }
+    listing.alone[1].extend(rights.into_values());
+    Ok(listing)
+}
+
+/// The pictures in a folder, by their names.
+fn pictures(folder: &Path) -> Result<BTreeMap<OsString, PathBuf>> {
     let is_picture = |file: &PathBuf| {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         file.is_file() && PICTURES.contains(&extension.as_str())
     };
-    let partner = |file: &Path, folder: &Path| folder.join(file.file_name().unwrap_or_default());
-    for file in entries(right)?.iter().filter(|&file| is_picture(file)) {
-        check_partner(file, &partner(file, left))?;
-    }
-    let mut pairs = Vec::new();
-    for file in entries(left)?.into_iter().filter(is_picture) {
-        let right = partner(&file, right);
-        check_partner(&file, &right)?;
-        pairs.push(Pair { name: text(file.file_stem(), &file)?, left: file, right: Some(right), calibration: None });
-    }
-    if pairs.is_empty() {
-        bail!("{}: no pictures", hsad::shown(left));
-    }
-    Ok(pairs)
+    let files = entries(folder)?.into_iter().filter(is_picture);
+    Ok(files.filter_map(|file| Some((file.file_name()?.to_owned(), file))).collect())
 }
 
-/// What is in a folder, sorted by name.
+/// What is in a folder and not hidden, sorted by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let read =
         fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>());
     let mut entries = read.with_context(|| hsad::shown(folder).to_string())?;
+    entries.retain(|entry| !entry.file_name().is_some_and(is_hidden));
     entries.sort();
     Ok(entries)
 }
@@ -119,7 +135,8 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
 mod tests {
     use super::*;
 
-    fn names(files: &[&str]) -> Result<Vec<String>> {
+    /// The names of the pairs in a folder of these files, and what is told of the others.
+    fn found(files: &[&str]) -> Result<(Vec<String>, Option<String>)> {
         let folder = tempfile::tempdir().expect("a folder");
         for file in files {
             let file = folder.path().join(file);
@@ -127,7 +144,13 @@ mod tests {
             fs::write(file, "").expect("a file");
         }
         let name = |pair: Pair| pair.name + if pair.calibration.is_some() { " calibrated" } else { "" };
-        Ok(pairs(folder.path())?.into_iter().map(name).collect())
+        let listing = pairs(folder.path())?;
+        let told = listing.left_out().map(|told| told.replace(&format!("{}/", folder.path().display()), ""));
+        Ok((listing.pairs.into_iter().map(name).collect(), told))
+    }
+
+    fn names(files: &[&str]) -> Result<Vec<String>> {
+        found(files).map(|(names, _)| names)
     }
 
     #[test]
@@ -143,18 +166,24 @@ mod tests {
     }
 
     #[test]
+    fn views_without_a_partner_are_told_and_hidden_files_are_passed_over() {
+        let files =
+            ["left/1.png", "left/2.png", "left/._1.png", "left/3.png", "right/1.png", "right/4.png", "right/5.png"];
+        let told = "views without a partner: 2 left, 2 right (left/2.png, left/3.png, right/4.png, ...)";
+        assert_eq!(found(&files).expect("a pair"), (vec!["1".into()], Some(told.into())));
+        let files = ["a/im0.png", "a/im1.png", "b/im0.png", "c/right.png", ".d/im0.png", ".d/im1.png"];
+        let told = "views without a partner: 1 left, 1 right (b/im0.png, c/right.png)";
+        assert_eq!(found(&files).expect("a pair"), (vec!["a".into()], Some(told.into())));
+        let files = ["left/1.HEIC", "right/1.HEIC", "left/2.avif", "right/2.avif"];
+        assert_eq!(found(&files).expect("pairs that fail"), (vec!["1".into(), "2".into()], None));
+    }
+
+    #[test]
     fn what_is_no_tree_is_told() {
         assert!(names(&["a.png"]).expect_err("no pairs").to_string().contains("no pairs: expected folders image_2"));
-        let error = names(&["left/1.png", "left/2.png", "right/1.png"]).expect_err("no partner").to_string();
-        assert!(error.contains("2.png has no partner"), "{error}");
-        for views in [
-            ["left/1.png", "right/1.png", "right/2.png"],
-            ["a/im0.png", "a/im1.png", "b/im0.png"],
-            ["a/left.png", "a/right.png", "b/right.png"],
-        ] {
-            assert!(names(&views).expect_err("no partner").to_string().contains("has no partner"), "{views:?}");
-        }
-        assert_eq!(names(&["left/1.png", "right/1.png", "left/.DS_Store", "left/Thumbs.db"]).expect("pairs"), ["1"]);
+        let error = names(&["left/1.png", "left/2.png", "right/3.png"]).expect_err("no pairs").to_string();
+        assert!(error.contains("no pairs: views without a partner: 2 left, 1 right"), "{error}");
+        assert_eq!(names(&["left/1.png", "right/1.png", "left/Thumbs.db"]).expect("pairs"), ["1"]);
         assert!(pairs(Path::new("/nonexistent")).is_err());
     }
 }
