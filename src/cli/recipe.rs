@@ -85,6 +85,11 @@ impl Recipe {
         Ok((config, self.figure.strongest(&self.matching)?))
     }
 
+    /// Whether the options have a calibration of all pairs.
+    pub fn has_calibration(&self) -> bool {
+        self.depth.are_given()
+    }
+
     /// Checks, before any pair is read, what all pairs have in common; `have_calibrations`: whether a pair may have a calibration of its own.
     ///
     /// # Errors

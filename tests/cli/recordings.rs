@@ -10,7 +10,7 @@ use std::{
 use assert_cmd::assert::Assert;
 use hsad::image::Plane;
 use mcap::{WriteOptions, records::MessageHeader};
-use predicates::str::contains;
+use predicates::{prelude::PredicateBooleanExt, str::contains};
 
 use crate::{
     batch::{of, records, statuses},
@@ -68,6 +68,8 @@ fn camera_info(picture: &Plane<u8>, shift: f64) -> Vec<u8> {
     message.floats(&[300.0, 0.0, x, 0.0, 300.0, y, 0.0, 0.0, 1.0]);
     message.floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     message.floats(&[300.0, 0.0, x, shift, 0.0, 300.0, y, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    message.numbers(&[0; 6]);
+    message.0.push(0);
     message.whole()
 }
 
@@ -126,14 +128,22 @@ fn frames_of_a_recording_are_pairs() {
     pictures.iter().zip(&frames[1]).for_each(|(path, view)| grey_png(path, view));
     let single = root.join("single");
     hsad().arg("match").args(&pictures).args(["-q", "--disparities", "64", "-o"]).arg(&single).assert().success();
-    let bytes = recording(&ride(&frames));
+    // A calibration of larger pictures.
+    let larger = Plane::from_fn((680, 430), |_, _| 0);
+    let infos = [("/stereo/left/camera_info", 0.0), ("/stereo/right/camera_info", -30.0)]
+        .map(|(topic, shift)| (topic, "CameraInfo", camera_info(&larger, shift)));
+    let bytes = recording(&[&infos[..], &ride(&frames)].concat());
     let (file, out) = (root.join("ride.mcap"), root.join("out"));
     let names = ["1000000500", "2000000500"];
 
     // Cut off in the second pair's right frame, and whole afterwards.
     let second = bytes.windows(8).position(|part| part == [0, 1, 0, 0, 2, 0, 0, 0]).unwrap();
     fs::write(&file, &bytes[..second + 100]).unwrap();
-    batch(&file, &[], &out).code(1).stderr(contains("ride.mcap: the recording is cut off"));
+    batch(&file, &[], &out).code(1).stderr(
+        contains("ride.mcap: the recording is cut off: mcap recover")
+            .and(contains("calibration of the recording is not used"))
+            .and(contains("for pictures of 680x430")),
+    );
     assert_eq!(statuses(&out.join("report.jsonl")), of(&[(names[0], "done")]));
     let written = || fs::metadata(out.join(names[0]).join("report.json")).unwrap().modified().unwrap();
     let before = written();
@@ -170,6 +180,8 @@ fn frames_of_a_recording_follow_one_another_and_have_its_calibration() {
     let follows: Vec<bool> = all.iter().map(|record| record["follows"] == true).collect();
     assert_eq!(follows, [false, true, true, false, true]);
     assert!(out.join("1000000500/depth.pfm").exists(), "depth in metres by the calibration");
+    let without = [&options[..], &["--resume", "--no-camera-info"]].concat();
+    batch(&file, &without, &out).code(1).stderr(contains("with other options"));
 
     // The same frames as files.
     for (number, both) in (1..).zip(&frames) {
@@ -208,7 +220,7 @@ fn what_is_no_pair_of_topics_is_told() {
     fails(&file, &["--topics", "/front", "/scan"], "the topic /scan has sensor_msgs/msg/LaserScan");
     fails(&file, &["--topics", "/front", "/left"], "there is no topic /left");
     fails(&file, &["--topics", "/front", "/rear", "--side-by-side", "left-right"], "a recording has a topic per view");
-    fails(&root.to_path_buf(), &["--topics", "/front", "/rear"], "--topics names topics of a recording");
+    fails(&root.join("pairs"), &["--topics", "/front", "/rear"], "--topics names topics of a recording");
     let bag = root.join("ride.bag");
     fs::write(&bag, "#ROSBAG V2.0\n").unwrap();
     fails(&bag, &[], "mcap convert IN.bag OUT.mcap");

@@ -80,6 +80,9 @@ pub struct Batch {
     /// infra1 and infra2]
     #[arg(long, num_args = 2, value_names = ["LEFT", "RIGHT"], conflicts_with = "left")]
     topics: Option<Vec<String>>,
+    /// Leave out the calibration that a recording has (camera_info)
+    #[arg(long, conflicts_with = "left")]
+    no_camera_info: bool,
     /// Output folder, created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,

@@ -3,7 +3,13 @@
 use std::{path::Path, sync::PoisonError};
 
 use anyhow::{Result, bail};
-use hsad::io::recording::{LeftOut, RecordedCalibration, Recording};
+use hsad::{
+    image::Size,
+    io::{
+        load,
+        recording::{LeftOut, RecordedCalibration, Recording, Shot},
+    },
+};
 
 use super::{
     super::terminal,
@@ -89,15 +95,28 @@ impl Source {
             None => anyhow::anyhow!("{error}: name two with --topics LEFT RIGHT"),
         })?;
         let topics = views.map(|topic| topic.name.clone());
-        let frames = recording.pairs(views)?;
+        let mut frames = recording.pairs(views);
         let left_out = frames.left_out();
-        let calibration = recording.calibration(views).unwrap_or_else(|error| {
+        let calibration = match batch.no_camera_info || batch.recipe.has_calibration() {
+            true => Ok(None),
+            false => recording.calibration(views).map_err(anyhow::Error::from),
+        };
+        let mut first = None;
+        let fits = |calibration: Option<RecordedCalibration>| -> Result<_> {
+            if let Some(calibration) = &calibration {
+                first = frames.next();
+                let sizes = first.iter().flatten().find_map(|(_, shots)| sizes(shots));
+                sizes.map_or(Ok(()), |sizes| calibration.check_sizes(sizes))?;
+            }
+            Ok(calibration)
+        };
+        let calibration = calibration.and_then(fits).unwrap_or_else(|error| {
             if !batch.run.quiet {
-                terminal::warning(format_args!("the calibration of the recording is not used: {error}"));
+                terminal::warning(format_args!("the calibration of the recording is not used: {error:#}"));
             }
             None
         });
-        let pairs = frames.map(|read| {
+        let pairs = first.into_iter().chain(frames).map(|read| {
             let (stamp, shots) = read?;
             let [left, right] = shots.each_ref().map(|shot| shot.path.clone());
             let pair = Pair { name: stamp.to_string(), left, right: Some(right), calibration: None };
@@ -113,15 +132,44 @@ impl Source {
     }
 }
 
+/// The sizes of two frames; `None` if they cannot be read.
+fn sizes(shots: &[Shot; 2]) -> Option<[Size; 2]> {
+    let size = |shot: &Shot| Some(load::decode(&shot.to_file().ok()?, &shot.path).ok()?.size());
+    let [left, right] = shots.each_ref().map(size);
+    Some([left?, right?])
+}
+
 /// Frames of two topics that are in no pair, for the summary; `None` if there are none.
 fn told(left_out: &LeftOut, [left, right]: &[String; 2]) -> Option<String> {
     let count = |kind: &str, counts: [u64; 2]| {
         let text = format!("{kind}: {} of {left}, {} of {right}", counts[0], counts[1]);
         (counts != [0, 0]).then_some(text)
     };
-    let LeftOut { alone, damaged, reason } = left_out;
+    let LeftOut { alone, given_up, damaged, reason } = left_out;
+    let given_up = count("given up, recorded more than 256 MiB ahead of the other topic", *given_up)
+        .map(|text| format!("{text} (mcap sort IN.mcap -o OUT.mcap brings both in the order of their times)"));
     let damaged = count("frames whose time cannot be read", *damaged)
         .map(|text| format!("{text} ({})", reason.as_deref().unwrap_or_default()));
-    let all: Vec<String> = count("frames without a partner", *alone).into_iter().chain(damaged).collect();
+    let all: Vec<String> =
+        count("frames without a partner", *alone).into_iter().chain(given_up).chain(damaged).collect();
     (!all.is_empty()).then(|| all.join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_are_left_out_are_told_with_the_reason() {
+        let topics = ["/left", "/right"].map(str::to_owned);
+        assert_eq!(told(&LeftOut::default(), &topics), None);
+        let damaged = LeftOut { damaged: [0, 1], reason: Some("cut off".into()), ..LeftOut::default() };
+        let expected = "frames whose time cannot be read: 0 of /left, 1 of /right (cut off)";
+        assert_eq!(told(&damaged, &topics).unwrap(), expected);
+        let in_turn = LeftOut { alone: [9, 8], given_up: [7, 0], ..LeftOut::default() };
+        let text = told(&in_turn, &topics).unwrap();
+        let [alone, given_up] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+        assert_eq!(alone, "frames without a partner: 9 of /left, 8 of /right");
+        assert!(given_up.contains("7 of /left, 0 of /right (mcap sort"), "{given_up}");
+    }
 }

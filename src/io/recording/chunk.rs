@@ -4,7 +4,10 @@ use std::io::Read;
 
 use mcap::records::ChunkHeader;
 
-use super::{Told, records::MOST};
+use super::{
+    Told,
+    records::{MOST, RECOVER},
+};
 
 /// Appends the records of a chunk to `records`.
 ///
@@ -15,7 +18,7 @@ pub(super) fn decompress(header: &ChunkHeader, data: &[u8], records: &mut Vec<u8
     if length > MOST as u64 {
         return Err(format!("a chunk has {length} bytes: at most {MOST} are read. mcap recover writes smaller ones"));
     }
-    let damaged = |error: &dyn std::fmt::Display| format!("a chunk is damaged ({error})");
+    let damaged = |error: &dyn std::fmt::Display| format!("a chunk is damaged ({error}): {RECOVER}");
     match header.compression.as_str() {
         "" => records.extend(data),
         "lz4" => {

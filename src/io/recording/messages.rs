@@ -140,7 +140,8 @@ pub(super) fn raw_picture(message: &[u8], encoding: Encoding) -> Told<Cow<'_, [u
     Ok(pnm.into())
 }
 
-/// `sensor_msgs/CameraInfo`: the calibration of a camera, as it is written.
+/// `sensor_msgs/CameraInfo`: the calibration of a camera, for the pictures that it sends. The message has that of all of the sensor's pixels; the
+/// pictures are a part of these (`roi`), of which several make one (`binning`).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CameraInfo {
     pub size: Size,
@@ -156,14 +157,42 @@ impl CameraInfo {
         let mut fields = Fields::of(message, encoding)?;
         stamp(&mut fields)?;
         let (height, width) = (fields.u32()?, fields.u32()?);
-        Ok(Self {
+        let whole = Self {
             size: Size::new(width, height),
             distortion_model: fields.text()?,
             distortion: fields.list_of_floats(MOST_COEFFICIENTS)?,
             camera: fields.floats()?,
             rectification: fields.floats()?,
             projection: fields.floats()?,
-        })
+        };
+        let binning = [fields.u32()?, fields.u32()?];
+        let (x, y, height, width) = (fields.u32()?, fields.u32()?, fields.u32()?, fields.u32()?);
+        Ok(whole.of_part([x, y], Size::new(width, height)).binned(binning.map(|count| count.max(1))))
+    }
+
+    /// The calibration of a part of the picture, in pixels; a part of no size goes to the picture's end.
+    fn of_part(mut self, from: [u32; 2], part: Size) -> Self {
+        let side = |side: u32, whole: u32, from: u32| if side == 0 { whole.saturating_sub(from) } else { side };
+        let size = Size::new(side(part.width, self.size.width, from[0]), side(part.height, self.size.height, from[1]));
+        self.map_pixels([1.0; 2], from.map(|from| -f64::from(from)));
+        Self { size, ..self }
+    }
+
+    /// The calibration of a picture whose pixels are as many of this one's: the centre of a pixel is that of those that it is made of.
+    fn binned(mut self, [columns, rows]: [u32; 2]) -> Self {
+        let scale = [columns, rows].map(|count| 1.0 / f64::from(count));
+        self.map_pixels(scale, scale.map(|scale| (scale - 1.0) / 2.0));
+        Self { size: Size::new(self.size.width / columns, self.size.height / rows), ..self }
+    }
+
+    /// Multiplies coordinates of pixels by `scale`, and adds `shift`, for columns and rows.
+    fn map_pixels(&mut self, scale: [f64; 2], shift: [f64; 2]) {
+        for (matrix, columns) in [(&mut self.camera[..], 3), (&mut self.projection[..], 4)] {
+            let (pixels, last) = matrix.split_at_mut(2 * columns);
+            for ((row, scale), shift) in pixels.chunks_mut(columns).zip(scale).zip(shift) {
+                row.iter_mut().zip(&*last).for_each(|(value, last)| *value = *value * scale + shift * last);
+            }
+        }
     }
 
     /// Whether the camera was calibrated: drivers send zeros if not.

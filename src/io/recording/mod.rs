@@ -21,7 +21,10 @@ use std::{
 };
 
 use super::{calibration::Loaded, malformed};
-use crate::error::{Error, Result, shown};
+use crate::{
+    error::{Error, Result, shown},
+    image::Size,
+};
 use messages::Kind;
 use stream::Stream;
 
@@ -58,16 +61,31 @@ fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
-/// Files in a folder with an extension, those with numbers in their order.
+/// Files in a folder with an extension and not hidden, those with numbers in their order.
 fn files_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = entries.filter(|file| has_extension(file, extension)).collect();
+    let is_hidden = |file: &PathBuf| file.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    let mut files: Vec<PathBuf> = entries.filter(|file| has_extension(file, extension) && !is_hidden(file)).collect();
     files.sort_by_cached_key(|file| {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let number = name.rsplit('_').next().and_then(|number| number.parse::<u64>().ok());
         (number, name)
     });
     files
+}
+
+impl RecordedCalibration {
+    /// Checks that the calibration is of pictures of these sizes, left and right, in pixels.
+    ///
+    /// # Errors
+    /// [`Error::Format`] with the topic, if it is not.
+    pub fn check_sizes(&self, sizes: [Size; 2]) -> Result<()> {
+        let checked = match self.is_rectified {
+            true => self.loaded.for_rectified(sizes[0]).map(|_| ()),
+            false => self.loaded.stereo.check_sizes(sizes),
+        };
+        checked.map_err(|error| malformed(&self.path, error.to_string()))
+    }
 }
 
 impl Recording {
@@ -79,13 +97,16 @@ impl Recording {
         let inner = Path::new(path.file_stem().unwrap_or_default());
         let is_compressed =
             has_extension(path, "zstd") && ["mcap", "db3"].iter().any(|known| has_extension(inner, known));
-        is_file || is_compressed || path.join("metadata.yaml").is_file()
+        let has_parts = || ["mcap", "db3"].iter().any(|known| !files_in(path, known).is_empty());
+        is_file || is_compressed || path.join("metadata.yaml").is_file() || has_parts()
     }
 
-    /// Opens a recording, and looks for its topics: in its summary, or, without one, in all of it.
+    /// Opens a recording, and looks for its topics: in its summary, or, without one, in all of it. A file among several may be broken, which
+    /// the pairs end with.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Format`] for bags of other formats, with the command that converts them, and for a file that is no MCAP.
+    /// [`Error::Io`]; [`Error::Format`] for bags of other formats, with the command that converts them, and where no file is an MCAP with
+    /// messages.
     pub fn open(path: &Path) -> Result<Self> {
         let files = if path.is_dir() { files_in(path, "mcap") } else { vec![path.to_path_buf()] };
         let bags = if path.is_dir() { files_in(path, "db3") } else { Vec::new() };
@@ -98,14 +119,21 @@ impl Recording {
         if files.is_empty() {
             return Err(malformed(path, "there is no recording (.mcap) in the folder"));
         }
-        let mut topics: Vec<Topic> = Vec::new();
+        let (mut topics, mut broken): (Vec<Topic>, _) = (Vec::new(), None);
         for file in &files {
-            for topic in summary::topics(file)? {
+            let found = summary::topics(file).unwrap_or_else(|error| {
+                broken.get_or_insert(error);
+                Vec::new()
+            });
+            for topic in found {
                 match topics.iter_mut().find(|known| known.name == topic.name) {
                     Some(known) => known.messages = known.messages.zip(topic.messages).map(|(more, few)| more + few),
                     None => topics.push(topic),
                 }
             }
+        }
+        if topics.is_empty() {
+            return Err(broken.unwrap_or_else(|| malformed(path, "the recording has no messages")));
         }
         topics.sort_by(|one, other| one.name.cmp(&other.name));
         Ok(Self { path: path.into(), files, topics })
@@ -165,16 +193,9 @@ impl Recording {
     }
 
     /// The pairs of frames of two topics, in the order of their times.
-    ///
-    /// # Errors
-    /// [`Error::Io`] if the first file cannot be opened.
-    pub fn pairs(&self, topics: [&Topic; 2]) -> Result<Pairs> {
+    pub fn pairs(&self, topics: [&Topic; 2]) -> Pairs {
         let names = topics.map(|topic| topic.name.as_str());
-        Ok(Pairs::new(self.path.clone(), self.stream()?, names))
-    }
-
-    fn stream(&self) -> Result<Stream> {
-        Stream::new(self.files.clone())
+        Pairs::new(self.path.clone(), Stream::new(self.files.clone()), names)
     }
 
     /// The calibration of the cameras of two topics: the first `sensor_msgs/CameraInfo` of each, of the topics `camera_info` beside them.
@@ -191,7 +212,7 @@ impl Recording {
         if names[0] == names[1] || !names.iter().all(is_there) {
             return Ok(None);
         }
-        let Some(infos) = self.first_infos(&names)? else { return Ok(None) };
+        let Some(infos) = self.first_infos(&names) else { return Ok(None) };
         if !infos.iter().all(CameraInfo::is_calibrated) {
             return Ok(None);
         }
@@ -203,18 +224,17 @@ impl Recording {
     }
 
     /// The first message of each of both topics; `None` if one of them has none that can be read.
-    fn first_infos(&self, names: &[String; 2]) -> Result<Option<[CameraInfo; 2]>> {
-        let mut stream = self.stream()?;
-        let mut found = [None, None];
-        // A recording that breaks off says so when its pictures are read.
-        while let Ok(Some(message)) = stream.next(|topic| names.iter().any(|name| name == topic)) {
+    fn first_infos(&self, names: &[String; 2]) -> Option<[CameraInfo; 2]> {
+        let mut stream = Stream::new(self.files.clone());
+        let mut found: [Option<CameraInfo>; 2] = [None, None];
+        loop {
+            if let [Some(left), Some(right)] = &found {
+                return Some([left.clone(), right.clone()]);
+            }
+            let message = stream.next(|topic| names.iter().any(|name| name == topic))?;
             let Some(side) = names.iter().position(|name| *name == message.topic) else { continue };
             found[side] = found[side].take().or_else(|| CameraInfo::of(&message.data, message.encoding).ok());
-            if let [Some(left), Some(right)] = &found {
-                return Ok(Some([left.clone(), right.clone()]));
-            }
         }
-        Ok(None)
     }
 }
 

@@ -29,6 +29,8 @@ pub(super) struct Pairing<T> {
     has_ended: bool,
     /// Frames without a partner.
     pub alone: [u64; 2],
+    /// Those of them that were given up since they were too many to wait.
+    pub given_up: [u64; 2],
 }
 
 impl<T> Pairing<T> {
@@ -40,6 +42,7 @@ impl<T> Pairing<T> {
             bytes: 0,
             has_ended: false,
             alone: [0; 2],
+            given_up: [0; 2],
         }
     }
 
@@ -58,7 +61,7 @@ impl<T> Pairing<T> {
             if self.waiting[ahead].len() <= 2 {
                 break;
             }
-            self.drop_first(ahead);
+            self.given_up[ahead] += u64::from(self.drop_first(ahead));
         }
     }
 
@@ -195,6 +198,7 @@ mod tests {
         (0..8).for_each(|stamp| pairing.add(0, stamp, (), MOST / 4));
         pairing.add(1, 7, (), MOST / 4);
         assert!(pairing.bytes <= MOST && pairing.alone[0] >= 3, "{:?}", pairing.alone);
+        assert_eq!(pairing.given_up, pairing.alone);
         assert_eq!(pairing.next(), None);
         pairing.end();
         assert_eq!(pairing.next(), Some((7, [(), ()])));

@@ -18,6 +18,10 @@ use crate::{
     io::malformed,
 };
 
+/// The way out where one topic was recorded before the other one.
+const IN_ORDER: &str =
+    "one topic was recorded more than 256 MiB ahead of the other: mcap sort IN.mcap -o OUT.mcap brings both in order";
+
 /// A frame as it was recorded.
 #[derive(Clone, Debug)]
 pub struct Shot {
@@ -52,6 +56,8 @@ impl Shot {
 pub struct LeftOut {
     /// Of the left and of the right topic, those without a partner of the same time, or near it.
     pub alone: [u64; 2],
+    /// Those of them that were given up since too many waited: their topic was recorded more than 256 MiB ahead of the other one.
+    pub given_up: [u64; 2],
     /// Of the left and of the right topic, those whose time cannot be read.
     pub damaged: [u64; 2],
     /// What is wrong with the first of these.
@@ -61,7 +67,7 @@ pub struct LeftOut {
 /// The pairs of a recording, in the order of their times: frames of the same time, or else, of those whose times differ by at most half of the
 /// time to the next frame of the same topic, the nearest ones.
 ///
-/// A frame without a time (0) has that at which it was recorded. A recording that breaks off gives its pairs, and then the error.
+/// A frame without a time (0) has that at which it was recorded. A recording that breaks off, or a part of it, gives its pairs, and then the error.
 pub struct Pairs {
     path: PathBuf,
     /// `None` after the end.
@@ -120,19 +126,18 @@ impl Pairs {
     fn read_on(&mut self) {
         let Some(stream) = &mut self.stream else { return };
         let topics = &self.topics;
-        match stream.next(|topic| topics.iter().any(|name| name == topic)) {
-            Ok(Some(message)) => return self.add(message),
-            Ok(None) => {}
-            Err(reason) => self.error = Some(malformed(&self.path, reason)),
+        if let Some(message) = stream.next(|topic| topics.iter().any(|name| name == topic)) {
+            return self.add(message);
         }
-        self.stream = None;
+        self.error = self.stream.take().and_then(|stream| stream.into_error(&self.path));
         self.pairing.end();
     }
 
     /// The error of a recording without any pair.
     fn nothing(&self) -> Error {
         let [left, right] = self.pairing.alone;
-        let LeftOut { reason, .. } = self.left_out.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let LeftOut { reason, given_up, .. } = self.left_out.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let reason = if given_up == [0, 0] { reason } else { Some(IN_ORDER.into()) };
         let reason = format!(
             "no frame of {} has a partner of {} at the same time, or near it: there are {left} and {right} that can be read{}",
             self.topics[0],
@@ -150,8 +155,8 @@ impl Iterator for Pairs {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let pair = self.pairing.next();
-            let alone = self.pairing.alone;
-            self.note(|left_out| left_out.alone = alone);
+            let Pairing { alone, given_up, .. } = self.pairing;
+            self.note(|left_out| (left_out.alone, left_out.given_up) = (alone, given_up));
             if let Some(pair) = pair {
                 self.has_pairs = true;
                 return Some(Ok(pair));

@@ -12,6 +12,8 @@ use super::{Told, chunk};
 
 /// Longest record, and longest chunk before and after its decompression, in bytes.
 pub(super) const MOST: usize = 1 << 30;
+/// The way out of damage.
+pub(super) const RECOVER: &str = "mcap recover IN.mcap -o OUT.mcap writes what is whole";
 /// Bytes that are read at once, at least and at most: lengths in a file are not believed.
 const AT_ONCE: [usize; 2] = [1 << 16, 1 << 20];
 /// Bytes of the operation code and the length in front of a record.
@@ -115,13 +117,13 @@ fn cut_off() -> String {
 /// What is wrong with a file, in words.
 pub(super) fn told(error: &McapError) -> String {
     match error {
-        McapError::UnexpectedEof => "the recording is cut off".into(),
+        McapError::UnexpectedEof => format!("the recording is cut off: {RECOVER}"),
         McapError::BadMagic => "no MCAP recording begins there".into(),
         McapError::RecordTooLarge { len, .. } => {
             format!(
                 "a record of {len} bytes: at most {MOST} are read. mcap recover writes smaller chunks; else the file is damaged"
             )
         }
-        error => format!("the recording is damaged ({error})"),
+        error => format!("the recording is damaged ({error}): {RECOVER}"),
     }
 }

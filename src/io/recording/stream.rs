@@ -1,6 +1,12 @@
 //! The messages of a recording, file by file.
 
-use std::{borrow::Cow, fs::File, io::Read, path::PathBuf, vec::IntoIter};
+use std::{
+    borrow::Cow,
+    fs::File,
+    io::Read,
+    path::{Path, PathBuf},
+    vec::IntoIter,
+};
 
 use mcap::{
     read::ChannelAccumulator,
@@ -8,13 +14,13 @@ use mcap::{
 };
 
 use super::{
-    Told,
+    LISTED, Told,
     fields::Encoding,
     io_error,
     messages::Kind,
     records::{Records, told},
 };
-use crate::error::Result;
+use crate::{error::Error, io::malformed};
 
 /// A message.
 pub(super) struct Message {
@@ -29,37 +35,44 @@ pub(super) struct Message {
 /// The messages of several files, one file after the other.
 pub(super) struct Stream {
     files: IntoIter<PathBuf>,
-    /// The file that is read; `None` after the last one.
-    messages: Option<Messages<File>>,
+    /// The file that is read.
+    open: Option<(PathBuf, Messages<File>)>,
+    /// What is wrong with files so far; of each what came before was read.
+    broken: Vec<Error>,
 }
 
 impl Stream {
-    pub fn new(files: Vec<PathBuf>) -> Result<Self> {
-        let mut stream = Self { files: files.into_iter(), messages: None };
-        stream.open_next()?;
-        Ok(stream)
+    pub fn new(files: Vec<PathBuf>) -> Self {
+        Self { files: files.into_iter(), open: None, broken: Vec::new() }
     }
 
-    fn open_next(&mut self) -> Result<()> {
-        self.messages = None;
-        if let Some(path) = self.files.next() {
-            self.messages = Some(Messages::new(File::open(&path).map_err(io_error(&path))?));
-        }
-        Ok(())
-    }
-
-    /// The next message of a topic that is `wanted`.
-    ///
-    /// # Errors
-    /// What is wrong with the recording.
-    pub fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Told<Option<Message>> {
-        while let Some(messages) = &mut self.messages {
-            if let Some(message) = messages.next(&wanted)? {
-                return Ok(Some(message));
+    /// The next message of a topic that is `wanted`. After a file that breaks off comes the next one.
+    pub fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Option<Message> {
+        loop {
+            let Some((path, messages)) = &mut self.open else {
+                let path = self.files.next()?;
+                match File::open(&path) {
+                    Ok(file) => self.open = Some((path, Messages::new(file))),
+                    Err(error) => self.broken.push(io_error(&path)(error)),
+                }
+                continue;
+            };
+            match messages.next(&wanted) {
+                Ok(Some(message)) => return Some(message),
+                Ok(None) => {}
+                Err(reason) => self.broken.push(malformed(path, reason)),
             }
-            self.open_next().map_err(|error| error.to_string())?;
+            self.open = None;
         }
-        Ok(None)
+    }
+
+    /// What is wrong with the files of the `recording`.
+    pub fn into_error(mut self, recording: &Path) -> Option<Error> {
+        if self.broken.len() < 2 {
+            return self.broken.pop();
+        }
+        let all: Vec<String> = self.broken.iter().take(LISTED).map(Error::to_string).collect();
+        Some(malformed(recording, format!("{} of its files are broken: {}", self.broken.len(), all.join("; "))))
     }
 }
 

@@ -24,7 +24,7 @@ const END: usize = FOOTER + 8;
 /// The topics of a file, each once.
 ///
 /// # Errors
-/// [`crate::Error::Io`]; [`crate::Error::Format`] for a file without any topic that can be read.
+/// [`crate::Error::Io`]; [`crate::Error::Format`] for a file that breaks off before any topic.
 pub(super) fn topics(path: &Path) -> Result<Vec<Topic>> {
     let mut file = File::open(path).map_err(io_error(path))?;
     let mut topics = match summary_start(&mut file) {
@@ -42,9 +42,6 @@ pub(super) fn topics(path: &Path) -> Result<Vec<Topic>> {
         if let (true, Some(reason)) = (topics.is_empty(), found.error) {
             return Err(malformed(path, reason));
         }
-    }
-    if topics.is_empty() {
-        return Err(malformed(path, "the recording has no messages"));
     }
     Ok(topics)
 }

@@ -91,15 +91,22 @@ fn compressed(stamp: u64, file: &[u8]) -> Vec<u8> {
 
 /// The camera at the right if `shift` is below 0.
 fn camera_info(focal: f64, shift: f64) -> Vec<u8> {
+    part_info((4, 2), focal, shift, [0; 6])
+}
+
+/// As [`camera_info`], of a picture of another size; `part` is what follows the matrices: binning, and x, y, height and width of the part.
+pub(super) fn part_info((width, height): (u32, u32), focal: f64, shift: f64, part: [u32; 6]) -> Vec<u8> {
     let mut message = Bytes::with_header(Encoding::Cdr, 1);
-    message.number(2_u32.to_le_bytes());
-    message.number(4_u32.to_le_bytes());
+    message.number(height.to_le_bytes());
+    message.number(width.to_le_bytes());
     message.text("plumb_bob");
     message.number(5_u32.to_le_bytes());
     message.floats(&[0.0; 5]);
     message.floats(&[focal, 0.0, 2.0, 0.0, focal, 1.0, 0.0, 0.0, 1.0]);
     message.floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     message.floats(&[focal, 0.0, 2.0, shift, 0.0, focal, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    part.iter().for_each(|number| message.number(number.to_le_bytes()));
+    message.number([1]);
     message.whole()
 }
 
@@ -140,7 +147,7 @@ type Found = (u64, [u8; 2]);
 /// What comes of a recording: its pairs, what is left out, and the error that ends it.
 fn read(file: &Path) -> Result<(Vec<Found>, LeftOut, Option<String>)> {
     let recording = Recording::open(file)?;
-    let mut pairs = recording.pairs(recording.both_views(None)?)?;
+    let mut pairs = recording.pairs(recording.both_views(None)?);
     let (mut found, mut error) = (Vec::new(), None);
     for pair in pairs.by_ref() {
         match pair {
@@ -261,7 +268,10 @@ fn a_recording_that_breaks_off_gives_its_pairs_first() {
         assert_eq!(found, PAIRS[..found.len()]);
         // What follows the data may be missing.
         if found.len() < 3 {
-            assert!(error.is_some_and(|error| error.ends_with("the recording is cut off")), "{length}");
+            assert!(
+                error.is_some_and(|error| error.contains("the recording is cut off: mcap recover IN.mcap -o OUT.mcap")),
+                "{length}"
+            );
         }
         most = most.max(found.len());
     }
@@ -341,6 +351,53 @@ fn files_of_one_recording_follow_one_another() {
 }
 
 #[test]
+fn the_whole_files_of_a_recording_are_read_beside_broken_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = |sent: &[Sent<'_>]| recorded(plain(), sent);
+    let ride = ride();
+    let file = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    file("ride_0.mcap", &part(&ride[..3]));
+    file("ride_1.mcap", b"");
+    let cut = part(&ride[3..4]);
+    file("ride_2.mcap", &cut[..100]);
+    file("ride_3.mcap", &part(&[]));
+    file("ride_4.mcap", &part(&ride[4..]));
+    file("._ride_0.mcap", b"of a Mac");
+    assert!(Recording::is_one(folder.path()), "without metadata.yaml");
+    let (found, left_out, error) = read(folder.path()).unwrap();
+    assert_eq!((found, left_out.alone), (PAIRS.to_vec(), [0, 0]));
+    let error = error.unwrap();
+    assert!(
+        error.contains("2 of its files are broken") && error.contains("ride_1.mcap: the recording is cut"),
+        "{error}"
+    );
+    fs::remove_file(folder.path().join("ride_1.mcap")).unwrap();
+    let error = read(folder.path()).unwrap().2.unwrap();
+    assert!(error.contains("ride_2.mcap: the recording is cut off: mcap recover"), "{error}");
+    for name in ["ride_0.mcap", "ride_3.mcap", "ride_4.mcap"] {
+        fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    assert!(read(folder.path()).unwrap_err().to_string().contains("ride_2.mcap: the recording is cut off"));
+}
+
+#[test]
+fn calibrations_are_those_of_the_part_of_the_sensor_that_is_sent() {
+    let info = |part| CameraInfo::of(&part_info((40, 20), 100.0, -12.0, part), Encoding::Cdr).unwrap();
+    let whole = info([0; 6]);
+    assert_eq!(whole, info([1, 1, 0, 0, 20, 40]));
+    assert_eq!((whole.size, whole.camera[2], whole.projection[3]), (Size::new(40, 20), 2.0, -12.0));
+    let part = info([0, 0, 1, 3, 10, 30]);
+    assert_eq!((part.size, part.camera[0], part.camera[2], part.camera[5]), (Size::new(30, 10), 100.0, 1.0, -2.0));
+    assert_eq!((part.projection[2], part.projection[3], part.projection[6]), (1.0, -12.0, -2.0));
+    // The first pixel is the first two of the part, whose centre is 0.5 there.
+    let binned = info([2, 5, 1, 0, 20, 30]);
+    assert_eq!((binned.size, binned.camera[0], binned.camera[4]), (Size::new(15, 4), 50.0, 20.0));
+    assert_eq!((binned.camera[2], binned.camera[5]), (0.25, -0.2));
+    assert_eq!(binned.projection, [50.0, 0.0, 0.25, -6.0, 0.0, 20.0, -0.2, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!(info([0, 0, 4, 0, 0, 0]).size, (36, 20));
+}
+
+#[test]
 fn the_calibration_lies_beside_the_pictures() {
     let calibration = |infos: [Vec<u8>; 2]| {
         let [left, right] = infos;
@@ -354,6 +411,9 @@ fn the_calibration_lies_beside_the_pictures() {
     let rectified = found.loaded.for_rectified((4, 2).into()).unwrap();
     assert_eq!((rectified.focal, rectified.baseline, found.is_rectified), (100.0, 0.12, false));
     assert!(found.path.ends_with("ride.mcap#/right/camera_info"));
+    assert!(found.check_sizes([(4, 2).into(); 2]).is_ok());
+    let error = found.check_sizes([(8, 4).into(); 2]).unwrap_err().to_string();
+    assert!(error.contains("camera_info: the calibration is for pictures of 4x2"), "{error}");
     assert!(calibration([camera_info(0.0, 0.0), camera_info(0.0, 0.0)]).unwrap().is_none(), "not calibrated");
     let error = calibration([camera_info(100.0, 0.0), camera_info(100.0, 0.0)]).unwrap_err().to_string();
     assert!(error.contains("minus focal length times baseline"), "{error}");
