@@ -67,7 +67,7 @@ Exit codes: 0 all pairs done, 1 some failed, 4 all files are written and some ma
 pub struct Batch {
     /// A list of pairs (.csv, .jsonl), or a folder of KITTI, Middlebury, ETH3D or EuRoC, or one with left and right, or with a folder per pair;
     /// or a video with both views in each frame, as ffmpeg -f yuv4mpegpipe writes it (.y4m, or - for standard input); or a recording of ROS (.mcap,
-    /// or the folder that ros2 bag record -s mcap writes)
+    /// or a folder of them, as ros2 bag record -s mcap writes)
     #[arg(required_unless_present = "left")]
     source: Option<PathBuf>,
     /// Left views: a path with one *, whose text names the pair; or pictures with both views, with --side-by-side or --top-bottom
