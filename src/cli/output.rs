@@ -187,6 +187,7 @@ impl Output {
     /// # Errors
     /// [`Error::Io`] with the path of the first file that cannot be moved; all files are as they were before, then.
     pub fn finish(&mut self) -> Result<()> {
+        atomic::sync_all(&mut self.staged)?;
         interruption::uninterrupted(None, || self.replace())
     }
 
@@ -195,6 +196,7 @@ impl Output {
     /// # Errors
     /// As [`Self::finish`].
     pub fn finish_run(&mut self, code: i32) -> Result<()> {
+        atomic::sync_all(&mut self.staged)?;
         interruption::uninterrupted(Some(code), || self.replace())
     }
 

@@ -7,6 +7,7 @@ use std::{
     fs::{self, File, OpenOptions},
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
+    thread,
 };
 
 pub use set::replace_all;
@@ -41,6 +42,8 @@ pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> 
 pub struct Staged {
     path: PathBuf,
     file: Temporary,
+    /// Whether the content is on the disk, and not only in the system's memory.
+    is_synced: bool,
 }
 
 impl Staged {
@@ -51,7 +54,15 @@ impl Staged {
     pub fn write<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<(Self, T)> {
         let failed = |source| Error::Io { path: path.into(), source };
         let (file, written) = stage(path, write).map_err(failed)?;
-        Ok((Self { path: path.into(), file }, written))
+        Ok((Self { path: path.into(), file, is_synced: false }, written))
+    }
+
+    fn sync(&mut self) -> Result<()> {
+        if let Some((temporary, _)) = self.file.as_ref().filter(|_| !self.is_synced) {
+            temporary.as_file().sync_all().map_err(|source| Error::Io { path: self.path.clone(), source })?;
+            self.is_synced = true;
+        }
+        Ok(())
     }
 
     /// The place that the file will take; `None` if it was written to directly.
@@ -64,12 +75,13 @@ impl Staged {
         self.file.as_ref().map_or(&self.path, |(temporary, _)| temporary.path())
     }
 
-    /// Moves the file to its place.
+    /// Moves the file to its place, once it is on the disk.
     ///
     /// # Errors
     /// As [`write_whole`].
-    pub fn put(self) -> Result<()> {
-        let Self { path, file } = self;
+    pub fn put(mut self) -> Result<()> {
+        self.sync()?;
+        let Self { path, file, .. } = self;
         match file {
             None => Ok(()),
             Some((temporary, target)) => match temporary.persist(target) {
@@ -78,6 +90,20 @@ impl Staged {
             },
         }
     }
+}
+
+/// Brings the files to the disk at once, each in a thread of its own, as far as the system allows threads: most of the time is a disk's wait.
+/// [`Staged::put`] does it for the others.
+///
+/// # Errors
+/// [`Error::Io`] with the path of a file that cannot be written to the disk.
+pub fn sync_all(staged: &mut [Staged]) -> Result<()> {
+    thread::scope(|scope| {
+        let spawn =
+            |file| thread::Builder::new().name("sync".into()).spawn_scoped(scope, move || Staged::sync(file)).ok();
+        let threads: Vec<_> = staged.iter_mut().filter_map(spawn).collect();
+        threads.into_iter().try_for_each(|thread| thread.join().expect("a sync does not panic"))
+    })
 }
 
 /// The temporary file and its target path; `None` if the target was written to directly.
@@ -101,7 +127,6 @@ fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     if let Some(old) = old {
         temporary.as_file().set_permissions(permissions_of(&old))?;
     }
-    temporary.as_file().sync_all()?;
     Ok((Some((temporary, target)), written))
 }
 
@@ -173,9 +198,11 @@ mod tests {
         let staged = |text: &'static str| Staged::write(&path, |out| out.write_all(text.as_bytes())).unwrap().0;
         drop(staged("dropped"));
         assert_eq!(names(folder.path()), ["map"]);
-        let new = staged("new");
+        let mut new = [staged("new")];
+        sync_all(&mut new).unwrap();
+        assert!(new[0].is_synced);
         assert_eq!(fs::read(&path).unwrap(), b"old");
-        new.put().unwrap();
+        new.into_iter().for_each(|new| new.put().unwrap());
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["map"]);
     }
@@ -238,7 +265,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("pipe");
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        let reader = std::thread::spawn({
+        let reader = thread::spawn({
             let pipe = pipe.clone();
             move || fs::read(pipe).unwrap()
         });
