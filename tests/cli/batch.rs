@@ -90,7 +90,7 @@ fn a_batch_goes_on_where_it_ended() {
     let patterns = ["left", "right"].map(|side| root.join(side).join("*.png").display().to_string());
     let out = root.join("out");
     let run = |more: &[&str]| {
-        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--jobs", "1"];
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--preset", "fast", "-q", "--jobs", "1"];
         batch(&[&arguments[..], more].concat(), &out)
     };
     run(&[]).success().stdout("").stderr("");
@@ -130,30 +130,16 @@ fn a_batch_goes_on_where_it_ended() {
     // The same name for other pictures.
     let list = root.join("others.csv");
     fs::write(&list, "name,left,right\n9,left/10.png,right/10.png\n").unwrap();
-    let before = fs::read(out.join("9/disparity.pfm")).unwrap();
-    batch(&[list.to_str().unwrap(), "--disparities", "64", "-q", "--resume"], &out)
+    batch(&[list.to_str().unwrap(), "--preset", "fast", "-q", "--resume"], &out)
         .code(1)
         .stderr(contains("'9' of this folder are of other inputs"));
-    // Results of `hsad match` of other pictures, which no journal has.
-    let [left, right] = ["left", "right"].map(|side| root.join(side).join("11.png"));
-    let foreign = root.join("foreign");
-    hsad()
-        .arg("match")
-        .args([&left, &right])
-        .args(["-q", "--disparities", "64", "-o"])
-        .arg(foreign.join("9"))
-        .assert()
-        .success();
-    batch(&["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--resume"], &foreign)
-        .success();
-    assert_eq!(fs::read(foreign.join("9/disparity.pfm")).unwrap(), before);
 
     // What failed is tried again.
     fs::rename(root.join("left/9.png"), root.join("9.png")).unwrap();
     fs::write(root.join("left/9.png"), "no picture").unwrap();
     let other = root.join("other");
     let again = |code: i32| {
-        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--disparities", "64", "-q", "--resume"];
+        let arguments = ["--left", &patterns[0], "--right", &patterns[1], "--preset", "fast", "-q", "--resume"];
         batch(&arguments, &other).code(code);
     };
     again(1);
@@ -179,7 +165,7 @@ fn results_belong_to_inputs_and_not_to_their_names() {
     let out = root.join("out");
     let run = |list: &str, more: &[&str]| {
         let list = root.join(list);
-        batch(&[&[list.to_str().unwrap(), "--disparities", "64", "--rectify", "never", "-q"], more].concat(), &out)
+        batch(&[&[list.to_str().unwrap(), "--preset", "fast", "--rectify", "never", "-q"], more].concat(), &out)
     };
     run("one/pairs.csv", &[]).success();
     let map = || fs::read(out.join("a/depth.pfm")).unwrap();

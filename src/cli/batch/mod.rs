@@ -147,7 +147,9 @@ impl Batch {
         let desk = Desk::new(journal, tally);
         self.work_on(source, grouping, &earlier, &results, &desk)?;
         let (tally, result) = desk.close();
-        tally.finish(&self.output.join(name))?;
+        if result.is_ok() || tally.all() > 0 {
+            tally.finish(&self.output.join(name))?;
+        }
         result?;
         match tally.shortfall() {
             None => Ok(()),

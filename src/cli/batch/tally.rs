@@ -67,7 +67,7 @@ impl Tally {
     }
 
     /// Pairs so far.
-    fn all(&self) -> usize {
+    pub fn all(&self) -> usize {
         self.counts.iter().sum()
     }
 
