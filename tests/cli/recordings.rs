@@ -191,6 +191,7 @@ fn frames_of_a_recording_follow_one_another_and_have_its_calibration() {
             grey_png(&picture, view);
         }
     }
+    // Beside which the recording itself lies.
     let again = root.join("again");
     batch(root, &options, &again).success();
     for number in 1..=5 {

@@ -42,7 +42,9 @@ impl Source {
     /// # Errors
     /// What is wrong with the options, or with the list, folder, video or recording.
     pub fn of(batch: &Batch) -> Result<Self> {
-        let is_recording = batch.source.as_deref().is_some_and(Recording::is_one);
+        // Where the pictures of a recording lie beside it, they are what is matched.
+        let is_recording = |source: &Path| Recording::is_one(source) && tree::folders_of_views(source).is_none();
+        let is_recording = batch.source.as_deref().is_some_and(is_recording);
         if batch.topics.is_some() && !is_recording {
             bail!("--topics names topics of a recording (.mcap)");
         }

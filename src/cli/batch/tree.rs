@@ -55,8 +55,7 @@ const EXPECTED: &str = "expected folders image_2 and image_3 (KITTI), cam0/data 
 /// # Errors
 /// A folder that cannot be read or has no pairs, and a name that is no text.
 pub fn pairs(folder: &Path) -> Result<Listing> {
-    let both = FOLDERS.map(|both| both.map(|one| folder.join(one)));
-    let listing = match both.into_iter().find(|both| both.iter().all(|one| one.is_dir())) {
+    let listing = match folders_of_views(folder) {
         Some(both) => same_names(both)?,
         None => folder_per_pair(folder)?,
     };
@@ -65,6 +64,12 @@ pub fn pairs(folder: &Path) -> Result<Listing> {
         bail!("{}: no pairs: {alone}{EXPECTED}", hsad::shown(folder));
     }
     Ok(listing)
+}
+
+/// The folders of the left and of the right views in `folder`, if it has any that are known.
+pub fn folders_of_views(folder: &Path) -> Option<[PathBuf; 2]> {
+    let both = FOLDERS.map(|both| both.map(|one| folder.join(one)));
+    both.into_iter().find(|both| both.iter().all(|one| one.is_dir()))
 }
 
 /// The pairs of folders in `folder`, one each.
