@@ -2,7 +2,7 @@
 
 use glam::{DAffine2, DVec2};
 
-use super::grey;
+use super::{grey, in_parallel};
 use crate::image::{Plane, Size};
 
 /// Similarity about the centre of a picture of `size` (width and height in pixels): rotates by `angle` degrees,
@@ -42,14 +42,9 @@ pub fn resample<const N: usize>(
     let samples = ((1.0 / map.matrix2.determinant().abs().sqrt() - 1e-9).ceil() as u32).clamp(1, 8);
     let offsets: Vec<f64> = (0..samples).map(|i| (f64::from(i) + 0.5) / f64::from(samples) - 0.5).collect();
     let inside = |p: DVec2| p.x >= -0.5 && p.y >= -0.5 && p.x < f64::from(width) - 0.5 && p.y < f64::from(height) - 0.5;
-    let visible =
-        Plane::from_fn(
-            size,
-            |x, y| {
-                if inside(back.transform_point2(DVec2::new(x.into(), y.into()))) { 255 } else { 0 }
-            },
-        );
-    let changed = Plane::from_fn(size, |x, y| {
+    let is_visible = |x: u32, y: u32| inside(back.transform_point2(DVec2::new(x.into(), y.into())));
+    let visible = in_parallel(size, |x, y| if is_visible(x, y) { 255 } else { 0 });
+    let changed = in_parallel(size, |x, y| {
         if visible.get(x, y) == 0 {
             return fill;
         }

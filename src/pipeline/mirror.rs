@@ -51,7 +51,7 @@ pub fn mirrored(backend: &Backend, views: (&Picture, &Picture)) -> Result<Option
 /// See [`mirrored`].
 pub async fn mirrored_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<Option<Mirrored>> {
     let factor = geometry_reduction(larger([left.size(), right.size()]));
-    let [left, right] = [TakenView::new(left)?, TakenView::new(right)?].map(|view| view.seen.reduced(factor).luma);
+    let [left, right] = TakenView::both(left, right)?.map(|view| view.seen.reduced(factor).luma);
     let back = flipped(&right);
     let as_given = points(backend, [&left, &right]).await?.len();
     let found = points(backend, [&left, &back]).await?;

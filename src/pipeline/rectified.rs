@@ -115,7 +115,7 @@ pub async fn rectify_by_async(
     (left, right): (&Picture, &Picture),
     stereo: &StereoCalibration,
 ) -> Result<RectifiedPair> {
-    let views = [TakenView::new(left)?, TakenView::new(right)?];
+    let views = TakenView::both(left, right)?;
     let found = CalibratedRectification::new(stereo, [left.size(), right.size()])?;
     let rectification = StereoRectification::Calibrated(found.into());
     let (pictures, luma) = warped(backend, &views, &rectification).await?;

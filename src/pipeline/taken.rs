@@ -6,6 +6,7 @@ use crate::{
     backend::Backend,
     cpu,
     error::Result,
+    filter::in_parallel,
     image::{Luma, reduced},
     io::Picture,
     luma::{check_size, upload},
@@ -36,7 +37,7 @@ impl TakenView {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for sides beyond [`crate::luma::MAX_SIDE`].
-    pub fn new(picture: &Picture) -> Result<Self> {
+    fn new(picture: &Picture) -> Result<Self> {
         check_size(picture.size())?;
         let luma = picture.luma();
         // Before demosaicking, which mixes the edge of a border with the scene.
@@ -49,11 +50,20 @@ impl TakenView {
         };
         let continued = |plane: Luma| mask.as_ref().map(|mask| mask::extended(&plane, mask)).unwrap_or(plane);
         let [red, green, blue] = colors.map(continued);
-        let picture = Picture::from_fn(picture.size(), |x, y| {
+        let picture = in_parallel(picture.size(), |x, y| {
             let alpha = mask.as_ref().map_or(mask::SEEN, |mask| mask.get(x, y));
             [red.get(x, y), green.get(x, y), blue.get(x, y), alpha]
         });
         Ok(Self { picture, seen: Seen { luma: continued(luma), mask }, is_mosaic })
+    }
+
+    /// Both views, as [`Self::new`] makes each.
+    ///
+    /// # Errors
+    /// See [`Self::new`].
+    pub fn both(left: &Picture, right: &Picture) -> Result<[Self; 2]> {
+        let (left, right) = rayon::join(|| Self::new(left), || Self::new(right));
+        Ok([left?, right?])
     }
 
     /// The view resampled by `map`, the same bytes on every backend: in colour, alpha 0 where it shows nothing of the scene, and its
@@ -75,7 +85,7 @@ impl TakenView {
             (Some(picture), None) => picture,
             (colours, _) => {
                 let visible = self.visible(map)?;
-                Picture::from_fn(map.size(), |x, y| match (visible.get(x, y), &colours) {
+                in_parallel(map.size(), |x, y| match (visible.get(x, y), &colours) {
                     (0, _) => [0; 4],
                     (_, Some(picture)) => picture.get(x, y),
                     (_, None) => [luma.get(x, y), luma.get(x, y), luma.get(x, y), mask::SEEN],

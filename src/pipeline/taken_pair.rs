@@ -59,7 +59,7 @@ impl TakenPair {
     /// # Errors
     /// See [`Self::new`].
     pub async fn new_async(backend: &Backend, (left, right): (&Picture, &Picture)) -> Result<Self> {
-        let views = [TakenView::new(left)?, TakenView::new(right)?];
+        let views = TakenView::both(left, right)?;
         let factor = geometry_reduction(larger([left.size(), right.size()]));
         let small = views.each_ref().map(|view| view.seen.reduced(factor));
         let glance = glance(backend, [&small[0].luma, &small[1].luma], &config()).await?;

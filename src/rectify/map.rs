@@ -7,6 +7,7 @@ use glam::{DVec2, IVec2};
 use super::catmull_rom::{SUBPIXEL_BITS, weights};
 use crate::{
     error::{Result, check},
+    filter::in_parallel,
     image::{Plane, Size},
     luma::{MAX_SIDE, check_size},
 };
@@ -164,7 +165,7 @@ impl WarpMap {
 
     /// Which pixels show the source: 255 where the position lies inside, -0.5 <= p < side - 0.5 along x and y; otherwise 0.
     pub fn visible(&self) -> Plane<u8> {
-        Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some()))
+        in_parallel(self.size, |x, y| mask(self.inside_at(x, y).is_some()))
     }
 
     /// [`Self::visible`], and 0 also where a pixel that takes part in the interpolation, with any weight but 0, is 0 in
@@ -176,7 +177,7 @@ impl WarpMap {
         self.check_mask(source_mask)?;
         let is_valid =
             |position: IVec2| taps(position.x).all(|x| taps(position.y).all(|y| source_mask.get_clamped(x, y) != 0));
-        Ok(Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
+        Ok(in_parallel(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
     }
 
     /// [`Self::visible`], and 0 also where the nearest pixel of the source is 0 in `source_mask`: for a source that is continued
@@ -190,7 +191,7 @@ impl WarpMap {
             let [x, y] = position.to_array().map(|coordinate| i64::from((coordinate + ONE / 2) >> SUBPIXEL_BITS));
             source_mask.get_clamped(x, y) != 0
         };
-        Ok(Plane::from_fn(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
+        Ok(in_parallel(self.size, |x, y| mask(self.inside_at(x, y).is_some_and(is_valid))))
     }
 
     fn check_mask(&self, source_mask: &Plane<u8>) -> Result<()> {

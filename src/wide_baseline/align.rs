@@ -39,6 +39,9 @@ pub(super) struct Aligned {
     pub(super) view: View,
     /// Map from pixels of the second view to pixels of `view`.
     pub(super) map: DAffine2,
+    /// The same map without the turn and scale that `view` is left with; that of `view` where it is left with none, or is the second
+    /// view itself, which is best as it is.
+    pub(super) exact: DAffine2,
     /// Whether rows correspond after the alignment; false for a plane seen obliquely or a scene seen from elsewhere.
     pub(super) rectified: bool,
     /// Matches of the first view with `view`, in any rows.
@@ -75,7 +78,7 @@ pub(super) async fn align(
 ) -> Result<Aligned> {
     let mut aligned = if start == DAffine2::IDENTITY {
         let view = View::new(detectors, second.clone(), features).await?;
-        Aligned { view, map: start, rectified: false, matches: Vec::new() }
+        Aligned { view, map: start, exact: start, rectified: false, matches: Vec::new() }
     } else {
         turned(detectors, &first.luma, second, start, features).await?
     };
@@ -100,10 +103,14 @@ pub(super) async fn align(
                 scale: rows.scale.into(),
                 dy: rows.offset.into(),
             };
+            let exact = similarity.undone(centre(&first.luma), centre(&first.luma)) * aligned.map;
             if goal == Goal::Descriptors && similarity.is_small() {
+                if aligned.map != DAffine2::IDENTITY {
+                    aligned.exact = exact;
+                }
                 break;
             }
-            similarity.undone(centre(&first.luma), centre(&first.luma)) * aligned.map
+            exact
         } else if tried_orientations {
             break;
         } else {
@@ -157,7 +164,8 @@ async fn turned(
     let size = Size::new((right - left) as u32 + 1, first.height());
     let fill = mean(second);
     let luma = resample(&second.map(|&grey| [grey]), map, size, [fill]).0.map(|&[grey]| grey);
-    Ok(Aligned { view: View::new(detectors, luma, features).await?, map, rectified: false, matches: Vec::new() })
+    let view = View::new(detectors, luma, features).await?;
+    Ok(Aligned { view, map, exact: map, rectified: false, matches: Vec::new() })
 }
 
 fn mean(luma: &Luma) -> u8 {

@@ -39,7 +39,7 @@ pub(crate) async fn glance(
     let [first, second] = views.map(|view| reduced(view, FACTOR));
     let first = View::new(&mut detectors, first, features).await?;
     let (goal, start) = (align::Goal::Descriptors, DAffine2::IDENTITY);
-    let align::Aligned { view: second, map, matches, .. } =
+    let align::Aligned { view: second, map, exact, matches, .. } =
         align::align(&mut detectors, &first, &second, features, matching, goal, start).await?;
     let back = map.inverse();
     let as_given = |found: &Match| {
@@ -50,7 +50,7 @@ pub(crate) async fn glance(
     let seeds: Vec<Seed> = matches.iter().map(as_given).collect();
     let rows = Rectification::new(&seeds, first.luma.size());
     let is_certain = rows.is_certain() && rows.agreeing >= LEAST;
-    let map = if is_certain { grown(map, FACTOR.into()) } else { DAffine2::IDENTITY };
+    let map = if is_certain { grown(exact, FACTOR.into()) } else { DAffine2::IDENTITY };
     Ok(Glance { rows: is_certain.then(|| rows.enlarged(FACTOR)), map })
 }
 
