@@ -1,11 +1,11 @@
-//! The files of a scene, found and read.
+//! The files of a scene, and how they are read.
 
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-use super::{Scene, layouts, scene_flow};
+use super::Scene;
 use crate::{
     dense::View,
     error::{Error, Result},
@@ -45,7 +45,7 @@ impl TruthFiles {
         };
         let (disparities, told) = match disparities::read_stored(path)? {
             Stored::Pixels(disparities) => (disparities, Some(1.0)),
-            Stored::Grey8(values) => (values, layouts::scale_of_grey(views)),
+            Stored::Grey8(values) => (values, scale_of_grey(views)),
         };
         let scale = self.scale.or(told).ok_or_else(unknown)?;
         Ok(disparities.map(|&disparity| if disparity.is_finite() { disparity * scale } else { f32::INFINITY }))
@@ -68,37 +68,6 @@ impl Mask {
 }
 
 impl SceneFiles {
-    /// The scenes at `path`, sorted by name: the folder of a scene, a folder of KITTI with `image_2` or `colored_0` in it, one of
-    /// SceneFlow with `disparity` in it or below its `frames_cleanpass`, one frame's picture, or a folder of such folders.
-    ///
-    /// # Errors
-    /// [`Error::Io`] if `path` cannot be read, [`Error::Format`] if it holds no scene.
-    pub fn find(path: &Path) -> Result<Vec<Self>> {
-        let failed = |source| Error::Io { path: path.into(), source };
-        // The canonical path gives '.' and '..' a name.
-        let whole = path.canonicalize().map_err(failed)?;
-        if whole.is_file() {
-            return layouts::frame(&whole).map(|frame| vec![frame]).ok_or_else(|| no_scene(path, "a file"));
-        }
-        if let Some(scenes) = Self::in_folder(&whole) {
-            return Ok(scenes);
-        }
-        let mut scenes = Vec::new();
-        for folder in sorted_entries(&whole).map_err(failed)? {
-            scenes.extend(Self::in_folder(&folder).into_iter().flatten());
-        }
-        if scenes.is_empty() { Err(no_scene(path, "a folder without a scene")) } else { Ok(scenes) }
-    }
-
-    /// The scenes of a folder itself, not of its subfolders; `None` if it is no scene. A scene with a missing file is
-    /// found, too, so that reading it names the file.
-    fn in_folder(folder: &Path) -> Option<Vec<Self>> {
-        let scene = layouts::shipped(folder)
-            .or_else(|| layouts::middlebury(folder))
-            .or_else(|| layouts::middlebury_to_2006(folder));
-        scene.map(|scene| vec![scene]).or_else(|| layouts::kitti(folder)).or_else(|| scene_flow::frames(folder))
-    }
-
     /// The scene whose truth has to be multiplied by `scale`, to be in pixels and positive where the right view's pixel lies further to
     /// the left.
     #[must_use]
@@ -160,21 +129,25 @@ impl SceneFiles {
     }
 }
 
+/// By what Middlebury's data sets up to 2006 divide their grey values, by the height of the pictures: thirds, halves and full size of 2005
+/// and 2006, quarters, halves and full size of 2003, and the scenes of 2001, of 216 and 379 to 383 rows.
+fn scale_of_grey(size: Size) -> Option<f32> {
+    let divisor = match size.height {
+        370 => 3.0,
+        375 => 4.0,
+        555 | 750 => 2.0,
+        1110 | 1500 => 1.0,
+        216 | 379..=383 => 8.0,
+        _ => return None,
+    };
+    Some(1.0 / divisor)
+}
+
+/// What is in a folder, sorted by name.
 pub(super) fn sorted_entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = folder.read_dir()?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
     paths.sort();
     Ok(paths)
-}
-
-fn no_scene(path: &Path, what: &str) -> Error {
-    Error::Format {
-        path: path.into(),
-        reason: format!(
-            "{what}: a scene is a folder with left.png, right.png and disp_left.pfm, one of Middlebury or ETH3D (im0.png, im1.png and \
-             disp0.pfm; im2, im6 and disp2; view1, view5 and disp1), of KITTI (image_2, image_3 and disp_occ_0; colored_0, colored_1 \
-             and disp_occ), of SceneFlow (frames_cleanpass and disparity), or a picture of KITTI"
-        ),
-    }
 }
 
 fn same_size(path: &Path, size: Size, views: Size) -> Result<()> {

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use super::files::{Mask, SceneFiles, TruthFiles, sorted_entries};
-use crate::image::Size;
 
 /// File extensions of pictures, in the order in which they are tried.
 const VIEW_EXTENSIONS: [&str; 4] = ["png", "jpg", "ppm", "pgm"];
@@ -21,20 +20,6 @@ const KITTI: [[&str; 4]; 3] = [
 /// Two-Frame Stereo Correspondence Algorithms', IJCV 2002; 'High-Accuracy Stereo Depth Maps Using Structured Light', CVPR 2003), and of
 /// those of 2005 and 2006 (H. Hirschmueller and D. Scharstein, 'Evaluation of Cost Functions for Stereo Matching', CVPR 2007).
 const MIDDLEBURY_TO_2006: [[&str; 4]; 2] = [["im2", "im6", "disp2", "disp6"], ["view1", "view5", "disp1", "disp5"]];
-
-/// By what Middlebury's data sets up to 2006 divide their grey values, by the height of the pictures: thirds, halves and full size of 2005
-/// and 2006, quarters, halves and full size of 2003, and the scenes of 2001, of 216 and 379 to 383 rows.
-pub(super) fn scale_of_grey(size: Size) -> Option<f32> {
-    let divisor = match size.height {
-        370 => 3.0,
-        375 => 4.0,
-        555 | 750 => 2.0,
-        1110 | 1500 => 1.0,
-        216 | 379..=383 => 8.0,
-        _ => return None,
-    };
-    Some(1.0 / divisor)
-}
 
 /// The layout of `data/`.
 pub(super) fn shipped(folder: &Path) -> Option<SceneFiles> {

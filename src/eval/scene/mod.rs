@@ -14,6 +14,7 @@
 //! sets up to 2006 scaled their disparities, from 1 for the full size to 8 for 2001's.
 
 mod files;
+mod find;
 mod layouts;
 mod scene_flow;
 #[cfg(test)]
