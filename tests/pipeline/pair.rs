@@ -1,5 +1,4 @@
 //! A pair of views on a device and on the CPU.
-#![cfg(feature = "cli")]
 
 use std::path::Path;
 

@@ -1,5 +1,4 @@
 //! Wide-baseline matching of a rotated, blurred, noisy or occluded second view, on a real pair with ground truth.
-#![cfg(feature = "cli")]
 
 use std::path::Path;
 

@@ -1,5 +1,4 @@
 //! The pipeline from two pictures to a map: behaviour beyond that of its steps.
-#![cfg(feature = "cli")]
 
 use std::{
     cell::RefCell,

@@ -1,7 +1,6 @@
 //! Seeding: range, rectification, brightness relation and trust, on rendered pairs, and on real ones if present.
 
-#![cfg(feature = "cli")]
-
+#[path = "../texture/mod.rs"]
 mod texture;
 
 use std::path::Path;

@@ -1,12 +1,10 @@
 //! The shipped scenes in `data/` have exact ground truth for both views, and equal the renderer's output.
-#![cfg(feature = "cli")]
-
-#[path = "../examples/render_scenes/renderer/mod.rs"]
-mod renderer;
 
 use std::path::{Path, PathBuf};
 
 use hsad::{dense, eval::scene::SceneFiles, image::Plane, io::Picture};
+
+use crate::renderer;
 
 const SCENES: [&str; 3] = ["planes", "curved", "weak"];
 const FILES: [&str; 7] =

@@ -1,7 +1,6 @@
 //! Loading of pairs: deep samples, unseen pixels, orientations.
 
-#![cfg(feature = "cli")]
-
+#[path = "../exif/mod.rs"]
 mod exif;
 
 use std::{
