@@ -108,8 +108,12 @@ impl Job {
                 [self.left, self.right] = pair.pictures.clone();
             }
         }
-        if calibration.is_none() && self.calibration.is_some() {
+        let by_calibration = rectified.as_ref().filter(|pair| pair.rectification.calibration().is_some());
+        if calibration.is_none() && (self.calibration.is_some() || by_calibration.is_some()) {
             let reason = match &rectified {
+                Some(_) if by_calibration.is_some() => {
+                    "no depth and no point cloud: the calibration does not fit the pictures, as the rows of the rectified pair tell"
+                }
                 Some(_) => {
                     "no depth and no point cloud: the pair was rectified from its matches, which tell no baseline; the calibration is that \
                      of a rectified pair, and this one is not"

@@ -56,9 +56,11 @@ pub fn words(pair: &RectifiedPair) -> String {
         StereoRectification::Uncalibrated(found) => by_matches(found),
     };
     let Residual { points, right, mean, most } = pair.residual;
-    format!(
-        "{what}; rows of {right} of {points} matches that had no part in it agree to {mean:.2} px in the mean, 95 % to {most:.1} px"
-    )
+    let of_points = format!("rows of {right} of {points} matches that had no part in it agree");
+    match right {
+        0 => format!("{what}; {of_points}"),
+        _ => format!("{what}; {of_points} to {mean:.2} px in the mean, 95 % to {most:.1} px"),
+    }
 }
 
 fn by_calibration(found: &CalibratedRectification) -> String {

@@ -108,6 +108,10 @@ impl Task<'_> {
             warnings.push(doubt);
             calibration = None;
         }
+        if let Some(doubt) = rectified.as_ref().and_then(|pair| doubts::misfit(&outcome, pair)) {
+            warnings.push(doubt);
+            calibration = calibration.filter(|_| self.config.force);
+        }
         Ok(Matched { outcome, rectified, calibration, warnings, not_trusted, follows })
     }
 

@@ -12,9 +12,14 @@ use crate::{
     calibration::StereoCalibration,
     config::Config,
     dense::View,
+    disparity,
     error::{Error, Result},
     seeding::{Rectification, Verdict},
 };
+
+/// Share of the pixels with a disparity from which a map with the columns upright needs no comparison, 0 to 1. Scenes whose columns lean
+/// have at least 0.8; of those of two planes that lean in two ways, where one plane loses what the other gains, the worst have 0.2 to 0.7.
+const WHOLE: f64 = 0.8;
 
 /// How the rows of a pair come to correspond.
 #[derive(Clone, Debug)]
@@ -148,7 +153,9 @@ impl Task<'_> {
         let as_is = loop {
             if let Some(pair) = leaning.take() {
                 match self.with_upright_columns(pair).await? {
-                    Some(outcome) if outcome.trust >= TRUSTED => return Ok(as_taken(outcome)),
+                    Some(outcome) if outcome.trust >= TRUSTED && coverage(&outcome) >= WHOLE => {
+                        return Ok(as_taken(outcome));
+                    }
                     doubtful => upright = Some(doubtful),
                 }
             }
@@ -172,7 +179,7 @@ impl Task<'_> {
             _ => {
                 return match (as_is?, upright.flatten()) {
                     (Some(outcome), Some(upright))
-                        if has_leaning_columns(&outcome) && upright.trust >= outcome.trust =>
+                        if has_leaning_columns(&outcome) && is_as_good(worth(&upright), worth(&outcome)) =>
                     {
                         Ok(as_taken(upright))
                     }
@@ -267,6 +274,25 @@ fn has_leaning_columns(outcome: &Outcome) -> bool {
     outcome.seeding.rectification.lean != 0.0 && outcome.no_depth.is_none()
 }
 
+/// Share of the pixels that have a disparity, 0 to 1.
+fn coverage(outcome: &Outcome) -> f64 {
+    disparity::coverage(&outcome.dense.disparity)
+}
+
+/// Trust and coverage of a map.
+fn worth(outcome: &Outcome) -> (f32, f64) {
+    (outcome.trust, coverage(outcome))
+}
+
+/// Whether a map is at least as good as another one of the same pair, by what they are worth: it shows as much where both are to be trusted,
+/// or is to be trusted more.
+fn is_as_good((trust, coverage): (f32, f64), (other_trust, other_coverage): (f32, f64)) -> bool {
+    match trust.min(other_trust) >= TRUSTED {
+        true => coverage >= other_coverage,
+        false => trust >= other_trust,
+    }
+}
+
 /// The outcome of a pair that was matched as it was taken.
 fn as_taken(outcome: Outcome) -> Found {
     Found { outcome, rectified: None, warnings: Vec::new() }
@@ -275,4 +301,17 @@ fn as_taken(outcome: Outcome) -> Found {
 /// Whether a map is not to be trusted since nothing tells whether rows correspond.
 fn has_unknown_rows(outcome: &Outcome) -> bool {
     outcome.seeding.rectification.verdict == Verdict::Unknown && outcome.trust < TRUSTED
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_trusted_maps_the_one_that_shows_more_is_better() {
+        assert!(!is_as_good((1.0, 0.2), (0.74, 0.85)));
+        assert!(is_as_good((0.74, 0.85), (1.0, 0.2)));
+        assert!(is_as_good((0.6, 0.3), (0.4, 0.9)) && !is_as_good((0.4, 0.9), (0.6, 0.3)));
+        assert!(is_as_good((0.3, 0.5), (0.3, 0.9)));
+    }
 }

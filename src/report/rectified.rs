@@ -25,6 +25,7 @@ pub fn rectified(pair: &RectifiedPair) -> Value {
     value["height"] = json!(height);
     value["sources"] =
         pair.rectification.source_sizes().iter().map(|Size { width, height }| json!([width, height])).collect();
+    let [mean, most] = [mean, most].map(|error| (right > 0).then_some(error));
     value["residual"] = json!({ "points": points, "right": right, "mean_px": mean, "95_percent_px": most });
     value
 }

@@ -149,6 +149,23 @@ fn points_behind_the_cameras_are_told() {
 }
 
 #[test]
+fn a_calibration_of_other_cameras_gives_no_depth() {
+    let taken = Taken::new();
+    let options = ["--preset", "fast", "-q"];
+    // The right camera turned to the side, and then up, by 1.7 degrees: rows are aligned all the same.
+    for (turn, told) in [
+        (DMat3::from_rotation_y(0.03), "the right camera looks 1."),
+        (DMat3::from_rotation_x(0.03), "matches correspond, and rows differ by up to"),
+    ] {
+        fs::write(&taken.calibration, to_json(&stereo(turn * turns()[1]))).unwrap();
+        taken.run_calibrated("match", &options[..2]).code(5).stderr(contains(told).and(contains("does not fit")));
+        assert!(!taken.out().join("depth.pfm").exists() && taken.out().join("disparity.pfm").exists());
+    }
+    taken.run_calibrated("match", &[&options[..], &["--force"]].concat()).success();
+    assert!(taken.out().join("depth.pfm").exists());
+}
+
+#[test]
 fn a_pair_is_rectified_by_its_calibration() {
     let taken = Taken::new();
     taken.run_calibrated("rectify", &[]).success().stdout(contains("by the calibration, the left view turned by"));
