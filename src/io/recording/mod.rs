@@ -202,19 +202,29 @@ impl Recording {
     /// `None` if there are none, or they say that the cameras are not calibrated.
     ///
     /// # Errors
-    /// [`Error::Format`] for a calibration that is not one of a pair.
+    /// [`Error::Format`] for a calibration that is not one of a pair, is of one camera alone, or cannot be read.
     pub fn calibration(&self, views: [&Topic; 2]) -> Result<Option<RecordedCalibration>> {
         let names = views.map(topics::camera_info_of);
         let is_there = |name: &String| {
             let is_it = |topic: &Topic| topic.name == *name && topic.kind() == Some(Kind::CameraInfo);
             self.topics.iter().any(|topic| is_it(topic) && topic.messages != Some(0))
         };
-        if names[0] == names[1] || !names.iter().all(is_there) {
+        let of_one = |side: usize| {
+            let [has, lacks] = [&names[side], &shown(Path::new(&names[1 - side]))];
+            malformed(&place_in(&self.path, has), format!("the calibration is of one camera alone: {lacks} has none"))
+        };
+        let are_there = names.each_ref().map(is_there);
+        if names[0] == names[1] || are_there == [false, false] {
             return Ok(None);
         }
-        let Some(infos) = self.first_infos(&names) else { return Ok(None) };
-        if !infos.iter().all(CameraInfo::is_calibrated) {
-            return Ok(None);
+        if let Some(lacking) = are_there.iter().position(|is_there| !is_there) {
+            return Err(of_one(1 - lacking));
+        }
+        let Some(infos) = self.first_infos(&names)? else { return Ok(None) };
+        match infos.each_ref().map(CameraInfo::is_calibrated) {
+            [true, true] => {}
+            [false, false] => return Ok(None),
+            [is_left, _] => return Err(of_one(usize::from(!is_left))),
         }
         let is_rectified = views.iter().all(|topic| topics::is_rectified(&topic.name));
         let paths = names.map(|name| place_in(&self.path, &name));
@@ -223,18 +233,29 @@ impl Recording {
         Ok(Some(RecordedCalibration { loaded, is_rectified, path }))
     }
 
-    /// The first message of each of both topics; `None` if one of them has none that can be read.
-    fn first_infos(&self, names: &[String; 2]) -> Option<[CameraInfo; 2]> {
+    /// The first message of each of both topics that can be read; `None` if neither has a message.
+    fn first_infos(&self, names: &[String; 2]) -> Result<Option<[CameraInfo; 2]>> {
         let mut stream = Stream::new(self.files.clone());
-        let mut found: [Option<CameraInfo>; 2] = [None, None];
+        let mut found: [Option<Told<CameraInfo>>; 2] = [None, None];
         loop {
-            if let [Some(left), Some(right)] = &found {
-                return Some([left.clone(), right.clone()]);
+            if let [Some(Ok(left)), Some(Ok(right))] = &found {
+                return Ok(Some([left.clone(), right.clone()]));
             }
-            let message = stream.next(|topic| names.iter().any(|name| name == topic))?;
+            let Some(message) = stream.next(|topic| names.iter().any(|name| name == topic)) else { break };
             let Some(side) = names.iter().position(|name| *name == message.topic) else { continue };
-            found[side] = found[side].take().or_else(|| CameraInfo::of(&message.data, message.encoding).ok());
+            if !matches!(found[side], Some(Ok(_))) {
+                found[side] = Some(CameraInfo::of(&message.data, message.encoding));
+            }
         }
+        if found.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        let failed = names.iter().zip(found).find_map(|(name, found)| match found {
+            Some(Ok(_)) => None,
+            Some(Err(reason)) => Some((name, reason)),
+            None => Some((name, "there is no calibration in the topic".into())),
+        });
+        failed.map_or(Ok(None), |(name, reason)| Err(malformed(&place_in(&self.path, name), reason)))
     }
 }
 

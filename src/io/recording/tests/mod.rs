@@ -331,5 +331,15 @@ fn the_calibration_lies_beside_the_pictures() {
     assert!(calibration([camera_info(0.0, 0.0), camera_info(0.0, 0.0)]).unwrap().is_none(), "not calibrated");
     let error = calibration([camera_info(100.0, 0.0), camera_info(100.0, 0.0)]).unwrap_err().to_string();
     assert!(error.contains("minus focal length times baseline"), "{error}");
-    assert!(calibration([vec![0, 1, 0, 0, 5], camera_info(100.0, -12.0)]).unwrap().is_none(), "damaged");
+    let one_alone = "left/camera_info: the calibration is of one camera alone: /right/camera_info has none";
+    let error = calibration([camera_info(100.0, 0.0), camera_info(0.0, 0.0)]).unwrap_err().to_string();
+    assert!(error.contains(one_alone), "{error}");
+    let error = calibration([vec![0, 1, 0, 0, 5], camera_info(100.0, -12.0)]).unwrap_err().to_string();
+    assert!(error.contains("ride.mcap#/left/camera_info: "), "damaged: {error}");
+
+    let sent = [&[("/left/camera_info", INFO, camera_info(100.0, 0.0))], &ride()[..]].concat();
+    let (_folder, file) = written(&recorded(plain(), &sent));
+    let recording = Recording::open(&file).unwrap();
+    let error = recording.calibration(recording.both_views(None).unwrap()).unwrap_err().to_string();
+    assert!(error.contains(one_alone), "{error}");
 }
