@@ -54,6 +54,8 @@ enum Before {
     Known(Box<Precedent>),
     /// An earlier run has matched this pair by itself.
     Finished(Pair, Option<Frame>),
+    /// Such a pair cannot be matched again, for this reason.
+    Lost(String),
 }
 
 impl Work<'_> {
@@ -70,7 +72,7 @@ impl Work<'_> {
         for Member { pair, frame, finished } in members {
             let told = match finished {
                 Some(finished) => (!finished.follows).then_some(Before::Finished(pair, frame)),
-                None => match self.known(&mut before).and_then(|precedent| self.on(pair, frame, precedent)) {
+                None => match self.on(pair, frame, &mut before) {
                     Ok(Done { record, told }) => {
                         then(Ok(record))?;
                         told
@@ -83,25 +85,40 @@ impl Work<'_> {
         ControlFlow::Continue(())
     }
 
-    /// The precedent that is known before a frame. One of an earlier run is matched again, and its files stay as they are.
-    fn known<'b>(&self, before: &'b mut Before) -> hsad::Result<Option<&'b Precedent>> {
+    /// The precedent that is known before a frame, or why it is not. One of an earlier run is matched again, and its files stay as they are.
+    fn known<'b>(&self, before: &'b mut Before) -> hsad::Result<Result<Option<&'b Precedent>, &'b str>> {
         if let Before::Finished(pair, frame) = before {
-            let precedent = match self.matched(pair, frame.as_ref(), None) {
-                Ok(matched) => matched.completed.precedent,
-                Err(error) => lost(error)?,
+            *before = match self.matched(pair, frame.as_ref(), None) {
+                Ok(matched) => Before::of(matched.completed.precedent),
+                Err(error) => {
+                    let reason = format!(
+                        "the frame '{}', which this one follows, cannot be matched again: {}",
+                        pair.name,
+                        described(&error)
+                    );
+                    lost::<()>(error)?;
+                    Before::Lost(reason)
+                }
             };
-            *before = Before::of(precedent);
         }
-        Ok(if let Before::Known(precedent) = before { Some(precedent) } else { None })
+        Ok(match before {
+            Before::Known(precedent) => Ok(Some(precedent)),
+            Before::Lost(reason) => Err(reason),
+            _ => Ok(None),
+        })
     }
 
     /// Matches a pair and writes its files, unless they are there.
-    fn on(&self, pair: Pair, frame: Option<Frame>, precedent: Option<&Precedent>) -> hsad::Result<Done> {
+    fn on(&self, pair: Pair, frame: Option<Frame>, before: &mut Before) -> hsad::Result<Done> {
         if let Some(report) = self.results.report_of(&pair, frame.as_ref()) {
             let record = Record::found(&pair, &report);
             let told = (!record.follows()).then_some(Before::Finished(pair, frame));
             return Ok(Done { record, told });
         }
+        let precedent = match self.known(before)? {
+            Ok(precedent) => precedent,
+            Err(reason) => return Ok(Done { record: Record::failed(&pair, 1, reason), told: None }),
+        };
         let matched = self.matched(&pair, frame.as_ref(), precedent);
         matched.and_then(|matched| self.written(&pair, matched)).or_else(|error| {
             let record = Record::failed(&pair, exit_code(&error), &described(&error));
