@@ -221,6 +221,7 @@ fn what_is_no_pair_of_topics_is_told() {
     fails(&file, &["--topics", "/front", "/scan"], "the topic /scan has sensor_msgs/msg/LaserScan");
     fails(&file, &["--topics", "/front", "/left"], "there is no topic /left");
     fails(&file, &["--topics", "/front", "/rear", "--side-by-side", "left-right"], "a recording has a topic per view");
+    fs::create_dir(root.join("pairs")).unwrap();
     fails(&root.join("pairs"), &["--topics", "/front", "/rear"], "--topics names topics of a recording");
     let bag = root.join("ride.bag");
     fs::write(&bag, "#ROSBAG V2.0\n").unwrap();

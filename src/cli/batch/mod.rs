@@ -20,11 +20,16 @@ mod video;
 mod work;
 mod workers;
 
-use std::{fs, num::NonZero, path::PathBuf, thread};
+use std::{
+    fs,
+    num::NonZero,
+    path::{Path, PathBuf},
+    thread,
+};
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use clap::Args;
-use hsad::internals::fnv1a;
+use hsad::{internals::fnv1a, shown};
 
 use super::{options::RunOptions, recipe::Recipe, report::parameters, view_files::HalvesOptions};
 use desk::Desk;
@@ -188,10 +193,18 @@ impl Batch {
             desk.note_load(load.elapsed(), &load.shares(&cached.backend));
             cached.save();
         }
-        if let Some(error) = feed.into_error() {
-            desk.end(error);
+        let is_empty = feed.is_empty();
+        let left_out = (source.left_out)();
+        match feed.into_error() {
+            Some(error) => desk.end(error),
+            None if is_empty => {
+                let told = left_out.iter().fold("no pairs".to_owned(), |told, left_out| told + ": " + left_out);
+                let source = self.source.as_deref().unwrap_or(Path::new("the list"));
+                desk.end(anyhow!("{}: {told}", shown(source)));
+            }
+            None => {}
         }
-        desk.note_left_out((source.left_out)());
+        desk.note_left_out(left_out);
         Ok(())
     }
 

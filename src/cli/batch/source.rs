@@ -12,7 +12,7 @@ use hsad::{
 };
 
 use super::{
-    super::terminal,
+    super::{output::is_stdout, terminal},
     Batch,
     feed::Pairs,
     frame::Frame,
@@ -42,11 +42,19 @@ impl Source {
     /// # Errors
     /// What is wrong with the options, or with the list, folder, video or recording.
     pub fn of(batch: &Batch) -> Result<Self> {
+        if let Some(source) = batch.source.as_deref().filter(|source| !is_stdout(source))
+            && let Ok(false) = source.try_exists()
+        {
+            bail!("{}: no such file or folder", hsad::shown(source));
+        }
         // Where the pictures of a recording lie beside it, they are what is matched.
         let is_recording = |source: &Path| Recording::is_one(source) && tree::folders_of_views(source).is_none();
         let is_recording = batch.source.as_deref().is_some_and(is_recording);
         if batch.topics.is_some() && !is_recording {
             bail!("--topics names topics of a recording (.mcap)");
+        }
+        if batch.no_camera_info && !is_recording {
+            bail!("--no-camera-info is about a recording (.mcap)");
         }
         let listing = match (&batch.source, &batch.left, &batch.right) {
             (None, Some(left), Some(right)) => patterns::pairs(left, right)?,

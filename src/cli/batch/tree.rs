@@ -77,7 +77,9 @@ fn folder_per_pair(folder: &Path) -> Result<Listing> {
     let mut listing = Listing::default();
     for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
         let both = FILES.map(|both| both.map(|file| scene.join(file)));
-        let Some(both) = both.into_iter().find(|both| both.iter().any(|file| file.is_file())) else { continue };
+        let is_whole = |both: &&[PathBuf; 2]| both.iter().all(|file| file.is_file());
+        let is_part = |both: &&[PathBuf; 2]| both.iter().any(|file| file.is_file());
+        let Some(both) = both.iter().find(is_whole).or_else(|| both.iter().find(is_part)).cloned() else { continue };
         let are_there = both.each_ref().map(|file| file.is_file());
         let [left, right] = both;
         match are_there {
@@ -179,6 +181,8 @@ mod tests {
         let files = ["a/im0.png", "a/im1.png", "b/im0.png", "c/right.png", ".d/im0.png", ".d/im1.png"];
         let told = "views without a partner: 1 left, 1 right (b/im0.png, c/right.png)";
         assert_eq!(found(&files).expect("a pair"), (vec!["a".into()], Some(told.into())));
+        let files = ["a/im0.png", "a/left.png", "a/right.png"];
+        assert_eq!(found(&files).expect("a pair"), (vec!["a".into()], None));
         let files = ["left/1.HEIC", "right/1.HEIC", "left/2.avif", "right/2.avif"];
         assert_eq!(found(&files).expect("pairs that fail"), (vec!["1".into(), "2".into()], None));
     }

@@ -6,13 +6,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use hsad::io::MAX_PIXELS;
 
 use super::{super::output::is_stdout, pair::Pair};
 
 /// Longest line of parameters, in bytes.
 const LONGEST_LINE: usize = 1024;
+/// What each frame begins with.
+const BEGINNING: &[u8] = b"FRAME";
 /// Height from which the colours of a video are those of HDTV (BT.709), and not of earlier television (BT.601): what encoders assume.
 const HDTV: u32 = 720;
 
@@ -22,6 +24,8 @@ pub struct Video {
     path: PathBuf,
     head: Head,
     number: u32,
+    /// The first bytes of the next frame, once the frame before it was read.
+    ahead: Option<Vec<u8>>,
 }
 
 /// The parameters of all frames.
@@ -67,13 +71,29 @@ impl Video {
             return Err(told("no video of uncompressed frames: ffmpeg -i VIDEO -f yuv4mpegpipe - | hsad batch - ..."));
         };
         let head = Head::of(words).map_err(|error| told(&format!("{error:#}")))?;
-        Ok(Self { from, path: path.into(), head, number: 0 })
+        Ok(Self { from, path: path.into(), head, number: 0, ahead: None })
     }
 
-    /// The next frame, as a pair whose name is its number from 1 on.
+    /// The first bytes of the next frame, fewer than it has where the video is cut off, none at its end.
+    fn beginning(&mut self) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.from.by_ref().take(BEGINNING.len() as u64).read_to_end(&mut bytes)?;
+        if !BEGINNING.starts_with(&bytes) {
+            let Head { width, height, .. } = self.head;
+            bail!("no frame begins where one should: frames may be of another size than {width}x{height} pixels");
+        }
+        Ok(bytes)
+    }
+
+    /// The next frame, as a pair whose name is its number from 1 on. A frame counts once the next one, or the end, was found behind it: one
+    /// that the header gives another size is sheared.
     fn frame(&mut self) -> Result<Option<(Pair, Frame)>> {
-        let Some(line) = line(&mut self.from)? else { return Ok(None) };
-        if line.split(' ').next() != Some("FRAME") {
+        let beginning = self.ahead.take().map_or_else(|| self.beginning(), Ok)?;
+        if beginning.is_empty() {
+            return Ok(None);
+        }
+        let parameters = line(&mut self.from)?.context("the video is cut off")?;
+        if !parameters.is_empty() && !parameters.starts_with(' ') {
             bail!("no frame begins where one should");
         }
         let mut planes = vec![0; self.head.bytes()];
@@ -81,6 +101,7 @@ impl Video {
             io::ErrorKind::UnexpectedEof => anyhow!("the video is cut off"),
             _ => error.into(),
         })?;
+        self.ahead = Some(self.beginning()?);
         self.number += 1;
         let name = format!("{:06}", self.number);
         let left = PathBuf::from(format!("{}#{name}", self.path.display()));
@@ -252,7 +273,10 @@ mod tests {
         }
         for (bytes, told) in [
             (&b"YUV4MPEG2 W2 H1 Cmono\nFRAME\nab"[..], None),
-            (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\naFRAME\nab", Some("after frame 1: no frame begins")),
+            (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\naFRAME\nab", Some("after frame 0: no frame begins")),
+            (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\nabc", Some("another size than 2x1 pixels")),
+            (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\nabFRA", Some("after frame 1: the video is cut off")),
+            (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\nabFRAMES\nab", Some("after frame 1: no frame begins")),
             (b"YUV4MPEG2 W2 H1 Cmono\nFRAME\nabFRAME\na", Some("after frame 1: the video is cut off")),
         ] {
             let errors: Vec<String> =

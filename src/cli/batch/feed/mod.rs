@@ -147,6 +147,11 @@ impl<'a> Feed<'a> {
         self.changed.notify_all();
     }
 
+    /// Whether no pair was read, of this shard or of others.
+    pub fn is_empty(&self) -> bool {
+        self.state().count == 0
+    }
+
     /// The error that came after the last pair.
     pub fn into_error(self) -> Option<Error> {
         self.state.into_inner().expect("no panic while it is held").error
