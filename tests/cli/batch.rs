@@ -190,9 +190,25 @@ fn results_belong_to_inputs_and_not_to_their_names() {
     fs::remove_dir_all(out.join("a")).unwrap();
     run("one/pairs.csv", &["--resume"]).success();
     assert!(map() != first, "depths are those of the other calibration");
-    // Killed before the record was written: the results are those of other inputs.
+    // What another journal has recorded, or a run that was killed before it could, is not replaced either.
     fs::write(root.join("one/calib.txt"), calibration(300)).unwrap();
+    let told = || contains("one/calib.txt has changed").and(contains("out/a"));
+    run("one/pairs.csv", &["--shard", "0/1"]).code(1).stderr(told());
     fs::write(out.join("report.jsonl"), "").unwrap();
+    run("one/pairs.csv", &["--resume"]).code(1).stderr(told());
+    let report = fs::read_to_string(out.join("a/report.json")).unwrap();
+    fs::write(out.join("a/report.json"), report.replace("\"inputs\"", "\"other\"")).unwrap();
+    run("one/pairs.csv", &["--resume"]).code(1).stderr(contains("'a' of this folder do not tell their inputs"));
+    fs::write(out.join("a/report.json"), report).unwrap();
+    #[cfg(unix)]
+    {
+        let link = root.join("link.png");
+        std::os::unix::fs::symlink("gone.png", &link).unwrap();
+        fs::write(root.join("link.csv"), "name,left,right\na,link.png,link.png\n").unwrap();
+        run("link.csv", &["--resume"]).code(1).stderr(contains("link.png is gone. Bring it back"));
+    }
+    assert!(map() != first, "nothing is replaced");
+    fs::remove_dir_all(out.join("a")).unwrap();
     run("one/pairs.csv", &["--resume"]).success();
     assert!(map() == first);
 
@@ -238,7 +254,10 @@ fn what_is_no_batch_is_told() {
     fails(&["--left", "a*.png"], 2, "--right");
     fails(&[left.to_str().unwrap()], 1, "neither a folder nor a list of pairs");
     fails(&[root.to_str().unwrap()], 1, "no pairs: expected folders image_2");
-    fails(&["gone.csv"], 1, "gone.csv");
+    for gone in ["gone.csv", "gone", "gone.y4m", "gone.mcap"] {
+        fails(&[gone], 1, &format!("{gone}: no such file or folder"));
+    }
+    fails(&[root.to_str().unwrap(), "--no-camera-info"], 1, "--no-camera-info is about a recording");
     fails(&["gone.csv", "--shard", "2/2"], 2, "I from 0 to N-1");
     fails(&["gone.csv", "--window", "4"], 2, "window");
     let list = root.join("pairs.csv");
@@ -330,6 +349,26 @@ fn frames_follow_one_another_alike_in_one_run_in_shares_and_after_an_interruptio
     let report: Value = serde_json::from_slice(&fs::read(out.join("3/report.json")).unwrap()).unwrap();
     assert_eq!((&report["follows"], &report["features"]["left"]), (&true.into(), &0.into()));
     batch(&[root.to_str().unwrap(), "--temporal", "4", "--figures"], &root.join("none")).code(2);
+
+    // What frame 3 follows is finished, and its pictures are gone.
+    fs::write(
+        out.join("report.jsonl"),
+        fs::read_to_string(out.join("report.jsonl")).unwrap().replace("\"3\"", "\"x\""),
+    )
+    .unwrap();
+    fs::remove_dir_all(out.join("3")).unwrap();
+    let rows = (0..6)
+        .fold("left,right\n".to_owned(), |rows, number| rows + &format!("left/{number}.png,right/{number}.png\n"));
+    let list = root.join("frames.csv");
+    fs::write(&list, rows).unwrap();
+    fs::remove_file(root.join("right/2.png")).unwrap();
+    batch(&[list.to_str().unwrap(), "--temporal", "4", "-q", "--resume"], &out)
+        .code(1)
+        .stderr(contains("1 of 6 pairs failed"));
+    let last = records(&out.join("report.jsonl")).into_iter().find(|record| record["name"] == "3").unwrap();
+    let reason = last["reason"].as_str().unwrap();
+    assert!(reason.starts_with("the frame '2', which this one follows, cannot be matched again: "), "{reason}");
+    assert!(reason.contains("right/2.png") && !out.join("3").exists(), "{reason}");
 }
 
 /// Frames with both views side by side, grey levels as they are.
@@ -378,4 +417,6 @@ fn frames_of_a_video_are_pairs() {
     run("--resume").success();
     assert!(written() == before && is_second(&out));
     hsad().args(["batch", "-o"]).arg(root.join("none")).arg(&file).assert().code(1).stderr(contains("--side-by-side"));
+    let empty = hsad().args(options).arg(root.join("empty")).arg("-").write_stdin("YUV4MPEG2 W2 H1\n").assert();
+    empty.code(1).stderr(contains("-: no pairs"));
 }

@@ -137,6 +137,14 @@ impl Mark {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded([Option<Mark>; NAMES.len()]);
 
+/// An input that is not the one that was recorded.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Other {
+    pub path: PathBuf,
+    /// Whether there is no such file, as behind a link whose target was removed.
+    pub is_gone: bool,
+}
+
 impl Recorded {
     /// Those of a record or a report; `None` if it has none.
     pub fn of(record: &Value) -> Option<Self> {
@@ -145,7 +153,7 @@ impl Recorded {
     }
 
     /// The first input of `pair` that is not the one that was recorded; `None` if all are.
-    pub fn other_input(&self, pair: &Pair, frame: Option<&Frame>) -> Option<PathBuf> {
+    pub fn other_input(&self, pair: &Pair, frame: Option<&Frame>) -> Option<Other> {
         let Self([left, right, calibration]) = self;
         let is_file = |mark: &Option<Mark>, path: Option<&PathBuf>, read: ReadFile| match (mark, path) {
             (Some(mark), Some(path)) => mark.is_of_file(path, read),
@@ -155,16 +163,20 @@ impl Recorded {
         let is_frame = |mark: &Option<Mark>, place: usize| {
             mark.as_ref().map(|mark| mark.content) == contents.get(place).map(|content| hash(content))
         };
-        let [_, right_path] = pair.files();
+        let [left_path, right_path] = pair.files();
+        let other = |path: &Path, is_file: bool| Some(Other { path: path.into(), is_gone: is_file && !path.exists() });
         let are_the_same = match frame {
             Some(_) => [is_frame(left, 0), is_frame(right, 1)],
             None => [is_file(left, Some(&pair.left), load::read), is_file(right, pair.right.as_ref(), load::read)],
         };
         match are_the_same {
-            [false, _] => Some(pair.left.clone()),
-            [_, false] => Some(right_path.into()),
+            [false, _] => other(left_path, frame.is_none()),
+            [_, false] => other(right_path, frame.is_none()),
             _ if is_file(calibration, pair.calibration.as_ref(), read_calibration) => None,
-            _ => Some(pair.calibration.clone().unwrap_or_else(|| "the calibration".into())),
+            _ => match &pair.calibration {
+                Some(path) => other(path, true),
+                None => other(Path::new("the calibration"), false),
+            },
         }
     }
 }
@@ -197,7 +209,12 @@ mod tests {
         let given = pair(folder.path());
         let recorded = json!({ "inputs": Contents::read(&given, None).unwrap().inputs });
         let recorded = Recorded::of(&serde_json::from_str(&recorded.to_string()).unwrap()).unwrap();
-        let other = |pair: &Pair| recorded.other_input(pair, None).map(|path| path.file_name().unwrap().to_owned());
+        let other = |pair: &Pair| {
+            recorded.other_input(pair, None).map(|Other { path, is_gone }| {
+                let name = path.file_name().unwrap().to_str().unwrap();
+                format!("{name}{}", if is_gone { " is gone" } else { "" })
+            })
+        };
         assert_eq!(other(&given), None);
         fs::create_dir(path("below")).unwrap();
         assert_eq!(other(&pair(&path("below/..").join("."))), None, "another spelling");
@@ -218,6 +235,6 @@ mod tests {
         fs::remove_file(path("left")).unwrap();
         assert_eq!(other(&given), None, "gone");
         fs::remove_file(path("below/left")).unwrap();
-        assert_eq!(other(&pair(&path("below"))).unwrap(), "left", "never seen");
+        assert_eq!(other(&pair(&path("below"))).unwrap(), "left is gone", "never seen");
     }
 }

@@ -11,7 +11,7 @@ use anyhow::{Result, anyhow, bail};
 use hsad::{
     Error,
     io::{
-        atomic::{clear_leftovers, try_lock, write_whole},
+        atomic::{clear_leftovers, try_lock, write_new},
         read_whole,
     },
     shown,
@@ -20,6 +20,7 @@ use serde_json::{Value, json};
 
 use super::{
     frame::Frame,
+    inputs::{Other, Recorded},
     pair::Pair,
     record::{Finished, Record},
     results::Results,
@@ -46,20 +47,26 @@ impl Earlier {
     /// What was recorded of a pair that is finished, if its results are still there: what was removed since is made again.
     ///
     /// # Errors
-    /// Results of other inputs than the pair has now, which are not replaced: they may be those of another batch.
+    /// Results of other inputs than the pair has now, which are not replaced: they may be those of another batch, or of another journal.
     pub fn finished(&self, pair: &Pair, frame: Option<&Frame>, results: &Results<'_>) -> Result<Option<&Finished>> {
-        let found =
-            self.0.get(&*pair.name).filter(|found| results.inputs_of(&pair.name).as_ref() == Some(&found.inputs));
-        if let Some(other) = found.and_then(|found| found.inputs.other_input(pair, frame)) {
+        let Some(report) = results.report(&pair.name) else { return Ok(None) };
+        let (name, folder) = (shown(Path::new(&pair.name)), shown(&results.folder.join(&pair.name)));
+        let ways_out = format!("Remove the folder {folder} to match the pair again, or name another folder (-o)");
+        let Some(inputs) = Recorded::of(&report) else {
+            bail!("the results '{name}' of this folder do not tell their inputs: no batch has made them. {ways_out}");
+        };
+        if let Some(Other { path, is_gone }) = inputs.other_input(pair, frame) {
+            let path = shown(&path);
+            if is_gone {
+                bail!(
+                    "the results '{name}' of this folder may be of other inputs: {path} is gone. Bring it back, or name another folder (-o)"
+                );
+            }
             bail!(
-                "the results '{}' of this folder are of other inputs: {} has changed or is another one. Remove the folder {} to match the \
-                 pair again, or name another folder (-o)",
-                shown(Path::new(&pair.name)),
-                shown(&other),
-                shown(&results.folder.join(&pair.name))
+                "the results '{name}' of this folder are of other inputs: {path} has changed or is another one. {ways_out}"
             );
         }
-        Ok(found)
+        Ok(self.0.get(&*pair.name).filter(|found| results.are_of_batch(&report) && found.inputs == inputs))
     }
 }
 
@@ -113,12 +120,11 @@ impl Journal {
 fn check_recipe(folder: &Path, recipe: &str) -> Result<()> {
     let path = folder.join(BATCH);
     let here = json!({ "version": env!("CARGO_PKG_VERSION"), "options": recipe });
-    let known = match read_whole(&path, MOST_OPTIONS) {
-        Err(Error::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
-            return Ok(write_whole(&path, |out| writeln!(out, "{here:#}"))?);
-        }
-        read => read?,
-    };
+    if write_new(&path, |out| writeln!(out, "{here:#}"))? {
+        return Ok(());
+    }
+    // That of an earlier run, or of one that began at the same time.
+    let known = read_whole(&path, MOST_OPTIONS)?;
     if serde_json::from_slice::<Value>(&known).ok().as_ref() != Some(&here) {
         bail!(
             "{}: the pairs of this folder are matched with other options or by another version of hsad: name another folder (-o)",

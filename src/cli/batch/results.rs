@@ -24,24 +24,25 @@ impl Results<'_> {
     /// The report of the results of `pair`, if all of its files are there, and were made as this batch makes them of the inputs that the
     /// pair has now.
     pub fn report_of(&self, pair: &Pair, frame: Option<&Frame>) -> Option<Value> {
-        let report = self.report(&pair.name)?;
+        let report = self.report(&pair.name).filter(|report| self.resumes && self.are_of_batch(report))?;
         Recorded::of(&report)?.other_input(pair, frame).is_none().then_some(report)
     }
 
-    /// What the results of this name were made of, if all of their files are there, and were made as this batch makes them.
-    pub fn inputs_of(&self, name: &str) -> Option<Recorded> {
-        Recorded::of(&self.report(name)?)
+    /// Whether the results of this report were made as this batch makes them.
+    pub fn are_of_batch(&self, report: &Value) -> bool {
+        report["parameters"] == self.parameters
     }
 
-    fn report(&self, name: &str) -> Option<Value> {
+    /// The report of the results of this name, of whatever inputs, if all of their files are there.
+    pub fn report(&self, name: &str) -> Option<Value> {
         let folder = self.folder.join(name);
         let path = folder.join(REPORT);
-        if !self.resumes || !path.is_file() {
+        if !path.is_file() {
             return None;
         }
         let report: Value = serde_json::from_slice(&read_whole(&path, MOST).ok()?).ok()?;
         let files = report["files"].as_array()?;
         let are_there = files.iter().all(|file| file.as_str().is_some_and(|name| folder.join(name).is_file()));
-        (are_there && report["parameters"] == self.parameters).then_some(report)
+        are_there.then_some(report)
     }
 }

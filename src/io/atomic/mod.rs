@@ -36,6 +36,30 @@ pub fn write_whole<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> 
     Ok(written)
 }
 
+/// Writes a new file as [`write_whole`] does, unless there is one at `path`, which stays as it is; whether the file was written.
+///
+/// Of several processes that do so at once one writes the file, where the file system has hard links or renames that replace nothing.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_new(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<bool> {
+    if path.exists() {
+        return Ok(false);
+    }
+    let (mut staged, ()) = Staged::write(path, write)?;
+    staged.sync()?;
+    let Some((temporary, target)) = staged.file else { return Ok(true) };
+    let put = temporary.persist_noclobber(&target).or_else(|error| match error.error.kind() {
+        io::ErrorKind::AlreadyExists => Err(error),
+        _ => error.file.persist(&target),
+    });
+    match put {
+        Ok(_) => Ok(true),
+        Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(error) => Err(Error::Io { path: path.into(), source: error.error }),
+    }
+}
+
 /// A written file that is not yet moved to its place, so that several files appear together or not at all. Dropping it
 /// removes the file.
 #[derive(Debug)]
@@ -173,6 +197,21 @@ mod tests {
         fs::write(folder.path().join(".hsad-kiLLed"), "half").unwrap();
         write_whole(&path, |out| out.write_all(b"two")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(names(folder.path()), ["map"]);
+    }
+
+    #[test]
+    fn a_new_file_takes_no_place_of_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map");
+        // The second one is there before the first is put to its place.
+        let second = || write_new(&path, |out| out.write_all(b"second"));
+        let first = write_new(&path, |out| {
+            assert!(second().unwrap());
+            out.write_all(b"first")
+        });
+        assert!(!first.unwrap() && !second().unwrap());
+        assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(names(folder.path()), ["map"]);
     }
 
