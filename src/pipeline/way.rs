@@ -17,9 +17,9 @@ use crate::{
     seeding::{Rectification, Verdict},
 };
 
-/// Share of the pixels with a disparity from which a map with the columns upright needs no comparison, 0 to 1. Scenes whose columns lean
-/// have at least 0.8; of those of two planes that lean in two ways, where one plane loses what the other gains, the worst have 0.2 to 0.7.
-const WHOLE: f64 = 0.8;
+/// Share of the pixels with a disparity from which a map with the columns upright needs no comparison, 0 to 1. The scene `planes` turned by
+/// 4 and 5 degrees has 0.77 to 0.82 with `fast`; scenes of two planes that lean in two ways, where one loses what the other gains, 0.2 to 0.7.
+const WHOLE: f64 = 0.75;
 
 /// How the rows of a pair come to correspond.
 #[derive(Clone, Debug)]
