@@ -108,10 +108,10 @@ impl Job {
                 [self.left, self.right] = pair.pictures.clone();
             }
         }
-        let by_calibration = rectified.as_ref().filter(|pair| pair.rectification.calibration().is_some());
-        if calibration.is_none() && (self.calibration.is_some() || by_calibration.is_some()) {
+        let is_by_calibration = rectified.as_ref().is_some_and(|pair| pair.rectification.calibration().is_some());
+        if calibration.is_none() && (self.calibration.is_some() || is_by_calibration) {
             let reason = match &rectified {
-                Some(_) if by_calibration.is_some() => {
+                Some(_) if is_by_calibration => {
                     "no depth and no point cloud: the calibration does not fit the pictures, as the rows of the rectified pair tell"
                 }
                 Some(_) => {

@@ -128,7 +128,7 @@ fn exchanged(pair: &RectifiedPair) -> Option<String> {
 /// A warning if the rows of most matches do not correspond after all.
 fn misfit(pair: &RectifiedPair) -> Option<String> {
     let Residual { points, right, .. } = pair.residual;
-    (pair.rectification.calibration().is_some() && (points < LEAST || 2 * right < points)).then(|| {
+    (pair.rectification.calibration().is_some() && (points < LEAST || !pair.residual.is_of_most())).then(|| {
         format!(
             "rows of {right} of {points} matches correspond after the rectification: check that the calibration is that of the \
              pictures, and that left and right are not mixed up"

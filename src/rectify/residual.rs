@@ -28,6 +28,11 @@ impl Residual {
         let most = errors.get(right * 95 / 100).copied().unwrap_or(0.0);
         Self { points, right, mean, most }
     }
+
+    /// Whether most matches are right.
+    pub fn is_of_most(&self) -> bool {
+        2 * self.right >= self.points
+    }
 }
 
 #[cfg(test)]
@@ -40,6 +45,7 @@ mod tests {
         let of = |factor| Residual::new(6, errors.into_iter(), factor);
         assert_eq!(of(1.0), Residual { points: 6, right: 3, mean: 0.5, most: 1.0 });
         assert_eq!(of(2.0), Residual { points: 6, right: 4, mean: 1.875, most: 6.0 });
+        assert!(of(1.0).is_of_most() && !Residual { right: 2, ..of(1.0) }.is_of_most());
         assert_eq!(Residual::new(0, [].into_iter(), 1.0), Residual { points: 0, right: 0, mean: 0.0, most: 0.0 });
     }
 }

@@ -16,6 +16,8 @@ use hsad::{
 };
 use texture::texture;
 
+use crate::real;
+
 /// A pair that shows a wall at disparity `far` with a square in front of it at `near`; the right view's grey values are
 /// mapped by `grey`, and its content lies `lower` px lower.
 fn pair(far: f32, near: f32, lower: f32, grey: impl Fn(f32) -> f32) -> (Luma, Luma) {
@@ -142,11 +144,7 @@ fn sizes_are_checked() {
 /// On real scenes the range found covers nearly all of the ground truth, and rows correspond.
 #[test]
 fn real_scenes_lie_in_the_range_found_for_them() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo"));
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is absent", folder.display());
-        return;
-    }
+    let Some(folder) = real("stereo") else { return };
     for scene in ["Art", "Cones", "Teddy", "Books", "Motorcycle_Q", "Adirondack_Q", "Adirondack_Q_exposure"] {
         let views = (luma(&folder.join(scene).join("left.png")), luma(&folder.join(scene).join("right.png")));
         let found = find(&views);

@@ -18,6 +18,8 @@ use hsad::{
     wide_baseline::{WideBaselineConfig, match_views},
 };
 
+use crate::real;
+
 /// The accuracy that the paper claims: 97 % of the 100 most confident matches are right.
 #[test]
 fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
@@ -28,11 +30,7 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
         ("Art", &["occlusion=0.6"], 25),
         ("Cones", &["blur=3", "clutter=0.5"], 100),
     ] {
-        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/stereo")).join(name);
-        if !folder.is_dir() {
-            eprintln!("skipped: {} is absent", folder.display());
-            continue;
-        }
+        let Some(folder) = real(&format!("stereo/{name}")) else { continue };
         let scene = SceneFiles::find(&folder).unwrap()[0].read(View::Left).unwrap();
         let known = Truth::stereo(scene.truth, scene.non_occluded.as_ref()).unwrap();
         for condition in conditions {
@@ -51,11 +49,7 @@ fn the_hundred_most_confident_are_right_whatever_happened_to_the_second_view() {
 /// Surfaces that are 2.4 to 3.3 times as large in one view as in the other: most of their points show only in views that are not reduced.
 #[test]
 fn marked_rows_correspond_after_a_zoom() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/uncalibrated/zoom"));
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is absent", folder.display());
-        return;
-    }
+    let Some(folder) = real("uncalibrated/zoom") else { return };
     let backend = Backend::open(&DeviceChoice::Best).or_else(|_| Backend::open(&DeviceChoice::Cpu)).unwrap();
     let [left, right] = ["img1.png", "img2.png"].map(|name| load(&folder.join(name)).unwrap());
     let pair = pipeline::rectify(&backend, (&left, &right)).unwrap();
