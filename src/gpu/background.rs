@@ -14,7 +14,8 @@ struct Job<W, T> {
     waiting: Option<Waker>,
 }
 
-/// Runs `work` on a new thread, or on this thread if none can be created. The work goes on if the future is dropped.
+/// Runs `work` on a new thread, or on this thread if none can be created. What the work holds is dropped before the future is ready. The
+/// work goes on if the future is dropped.
 pub(super) fn in_background<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> impl Future<Output = T> + Send {
@@ -55,6 +56,16 @@ mod tests {
     fn the_result_of_another_thread_is_awaited() {
         let here = thread::current().id();
         assert_ne!(block_on(in_background(|| thread::current().id())), here);
+    }
+
+    #[test]
+    fn what_the_work_holds_is_dropped_before_its_result_is_there() {
+        let held = Arc::new(());
+        for _ in 0..100 {
+            let work = held.clone();
+            assert!(block_on(in_background(move || *work == ())));
+            assert_eq!(Arc::strong_count(&held), 1);
+        }
     }
 
     #[test]

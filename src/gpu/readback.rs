@@ -1,10 +1,16 @@
 //! Readback of results through staging buffers.
 
+use std::sync::{Arc, Mutex, PoisonError};
+#[cfg(target_arch = "wasm32")]
+use std::task::{Poll, Waker};
+#[cfg(not(target_arch = "wasm32"))]
 use std::{
-    sync::{Arc, Mutex, PoisonError},
-    task::{Poll, Waker},
+    sync::{Condvar, MutexGuard},
+    time::Duration,
 };
 
+#[cfg(not(target_arch = "wasm32"))]
+use super::background::in_background;
 use super::{Gpu, waits::Waits};
 use crate::error::{Error, Result};
 
@@ -71,93 +77,88 @@ impl Drop for Unmap<'_> {
     }
 }
 
-/// The state of a mapping, and the waker of the task that waits for it.
-#[derive(Default)]
-struct Mapping {
-    result: Option<std::result::Result<(), String>>,
-    /// Whether the future has taken the result.
-    is_taken: bool,
-    waiting: Option<Waker>,
+/// Maps `slice` for reading. Someone must poll the device for a mapping to finish: a thread does, since the application need not.
+///
+/// The thread holds the device. The future is not ready before the thread has dropped it: else the device could be destroyed while the
+/// process ends, which crashes drivers.
+#[cfg(not(target_arch = "wasm32"))]
+async fn mapped(slice: wgpu::BufferSlice<'_>, device: &wgpu::Device) -> std::result::Result<(), String> {
+    let mapping = Arc::new(Mapping::default());
+    let finished = mapping.clone();
+    slice.map_async(wgpu::MapMode::Read, move |result| finished.finish(result.map_err(|error| error.to_string())));
+    // A lost device is reported by the thread's poll.
+    let _ = device.poll(wgpu::PollType::Poll);
+    if mapping.is_pending() {
+        let (device, mapping) = (device.clone(), mapping.clone());
+        in_background(move || mapping.drive(&device)).await;
+    }
+    mapping.result().take().expect("a mapping that is finished")
 }
 
+/// The result of a mapping.
+#[cfg(not(target_arch = "wasm32"))]
+#[derive(Default)]
+struct Mapping {
+    result: Mutex<Option<std::result::Result<(), String>>>,
+    finished: Condvar,
+}
+
+#[cfg(not(target_arch = "wasm32"))]
 impl Mapping {
-    #[cfg(not(target_arch = "wasm32"))]
-    fn is_pending(shared: &Mutex<Self>) -> bool {
-        let mapping = shared.lock().unwrap_or_else(PoisonError::into_inner);
-        mapping.result.is_none() && !mapping.is_taken
+    fn result(&self) -> MutexGuard<'_, Option<std::result::Result<(), String>>> {
+        self.result.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Sets the result, unless there is one already, and wakes the waiting task.
-    fn finish(shared: &Mutex<Self>, result: std::result::Result<(), String>) {
-        let mut mapping = shared.lock().unwrap_or_else(PoisonError::into_inner);
-        if !mapping.is_taken {
-            mapping.result.get_or_insert(result);
+    fn is_pending(&self) -> bool {
+        self.result().is_none()
+    }
+
+    /// Sets the result, unless there is one already.
+    fn finish(&self, result: std::result::Result<(), String>) {
+        self.result().get_or_insert(result);
+        self.finished.notify_all();
+    }
+
+    /// Polls the device until the mapping is finished, by this thread or by another one, at intervals that grow from 10 to 250 us. Waits of
+    /// the device are no substitute: such a wait is for everything submitted, and work submitted after the mapped buffer's must not delay
+    /// the mapping; a wait that times out while another thread finishes the queue panics in wgpu-core 30 and loses callbacks.
+    fn drive(&self, device: &wgpu::Device) {
+        const LONGEST: Duration = Duration::from_micros(250);
+        let mut interval = Duration::from_micros(10);
+        while self.is_pending() {
+            if let Err(error) = device.poll(wgpu::PollType::Poll) {
+                self.finish(Err(error.to_string()));
+            }
+            let waited = self.finished.wait_timeout_while(self.result(), interval, |result| result.is_none());
+            drop(waited);
+            interval = LONGEST.min(interval * 3 / 2);
         }
+    }
+}
+
+/// Maps `slice` for reading. A browser polls its devices itself.
+#[cfg(target_arch = "wasm32")]
+fn mapped(
+    slice: wgpu::BufferSlice<'_>,
+    _: &wgpu::Device,
+) -> impl Future<Output = std::result::Result<(), String>> + use<> {
+    #[derive(Default)]
+    struct Mapping {
+        result: Option<std::result::Result<(), String>>,
+        waiting: Option<Waker>,
+    }
+    let mapping = Arc::new(Mutex::new(Mapping::default()));
+    let finished = mapping.clone();
+    slice.map_async(wgpu::MapMode::Read, move |result| {
+        let mut mapping = finished.lock().unwrap_or_else(PoisonError::into_inner);
+        mapping.result = Some(result.map_err(|error| error.to_string()));
         let waiting = mapping.waiting.take();
         drop(mapping);
         waiting.into_iter().for_each(Waker::wake);
-    }
-}
-
-/// Maps `slice` for reading. Someone must poll the device for a mapping to finish: natively the future does, since the
-/// application need not.
-fn mapped(
-    slice: wgpu::BufferSlice<'_>,
-    device: &wgpu::Device,
-) -> impl Future<Output = std::result::Result<(), String>> + use<> {
-    let mapping = Arc::new(Mutex::new(Mapping::default()));
-    let finished = mapping.clone();
-    slice.map_async(wgpu::MapMode::Read, move |result| Mapping::finish(&finished, result.map_err(|e| e.to_string())));
-    let mut undriven = Some(device.clone());
+    });
     std::future::poll_fn(move |context| {
-        let take = |waiting: &Waker| {
-            let mut mapping = mapping.lock().unwrap_or_else(PoisonError::into_inner);
-            mapping.waiting = Some(waiting.clone());
-            mapping.is_taken = mapping.result.is_some();
-            mapping.result.take()
-        };
-        if let Some(result) = take(context.waker()) {
-            return Poll::Ready(result);
-        }
-        if let Some(device) = undriven.take() {
-            drive(device, &mapping);
-        }
-        take(context.waker()).map_or(Poll::Pending, Poll::Ready)
+        let mut mapping = mapping.lock().unwrap_or_else(PoisonError::into_inner);
+        mapping.waiting = Some(context.waker().clone());
+        mapping.result.take().map_or(Poll::Pending, Poll::Ready)
     })
 }
-
-/// Makes the device finish the mapping: at once if the work is done, else on a thread that waits for it, or on this
-/// thread if none can be spawned.
-#[cfg(not(target_arch = "wasm32"))]
-fn drive(device: wgpu::Device, mapping: &Arc<Mutex<Mapping>>) {
-    // A lost device is reported by the wait below.
-    let _ = device.poll(wgpu::PollType::Poll);
-    if !Mapping::is_pending(mapping) {
-        return;
-    }
-    let (waiting_device, waiting_mapping) = (device.clone(), mapping.clone());
-    let thread = std::thread::Builder::new().name("hsad readback".into());
-    if thread.spawn(move || wait(&waiting_device, &waiting_mapping)).is_err() {
-        wait(&device, mapping);
-    }
-}
-
-/// Polls the device until the mapping is finished, at intervals that grow from 10 to 250 us. Waits are no substitute: a
-/// wait is for everything submitted, and work submitted after the mapped buffer's must not delay the mapping; a wait that
-/// times out while another thread finishes the queue panics in wgpu-core 30 and loses callbacks.
-#[cfg(not(target_arch = "wasm32"))]
-fn wait(device: &wgpu::Device, mapping: &Mutex<Mapping>) {
-    const LONGEST: std::time::Duration = std::time::Duration::from_micros(250);
-    let mut interval = std::time::Duration::from_micros(10);
-    while Mapping::is_pending(mapping) {
-        if let Err(error) = device.poll(wgpu::PollType::Poll) {
-            Mapping::finish(mapping, Err(error.to_string()));
-        }
-        std::thread::sleep(interval);
-        interval = LONGEST.min(interval * 3 / 2);
-    }
-}
-
-/// A browser polls its devices itself.
-#[cfg(target_arch = "wasm32")]
-fn drive(_: wgpu::Device, _: &Arc<Mutex<Mapping>>) {}
