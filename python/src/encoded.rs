@@ -13,7 +13,7 @@ use hsad::{
         load::{LoadedPair, Stretch, Unseen, decode_both, decode_pair},
         png,
     },
-    pipeline::{Geometry, Matched, Outcome, RectifiedPair, Task, Way, doubts},
+    pipeline::{Geometry, Judgement, Matched, Outcome, RectifiedPair, Task, Way},
     report::{self, Value},
 };
 use pyo3::{
@@ -232,8 +232,8 @@ fn run(
         progress: &|_| (),
     }
     .run()?;
-    let Matched { outcome, rectified, calibration, warnings: doubts, not_trusted, .. } = matched;
-    let found = Found { names, stretch, warnings, rectified, calibration, doubts, not_trusted, start };
+    let Matched { outcome, rectified, judgement, .. } = matched;
+    let found = Found { names, stretch, warnings, rectified, judgement, start };
     Ok(found.encoded(backend, config, outcome))
 }
 
@@ -244,16 +244,14 @@ struct Found<'a> {
     /// Doubts about the files.
     warnings: Vec<String>,
     rectified: Option<RectifiedPair>,
-    calibration: Option<Calibration>,
-    /// Doubts about the map; options stand between backticks.
-    doubts: Vec<String>,
-    not_trusted: Option<String>,
+    judgement: Judgement,
     start: Instant,
 }
 
 impl Found<'_> {
     fn encoded(self, backend: &Backend, config: &Config, outcome: Outcome) -> Encoded {
-        let Self { names, stretch, mut warnings, rectified, calibration, doubts, not_trusted, start } = self;
+        let Self { names, stretch, mut warnings, rectified, judgement, start } = self;
+        let Judgement { calibration, warnings: doubts, not_trusted } = judgement;
         // Here options are keywords, spelled as they are.
         warnings.extend(doubts.iter().map(|doubt| doubt.replace('`', "")));
         let report = report::run(&report::Run {
@@ -286,12 +284,8 @@ pub fn of_tiles(
     config: &Config,
     (outcome, start): (Outcome, Instant),
 ) -> Encoded {
-    let mut doubts = doubts::warnings((&pair.left, &pair.right), config, &outcome);
-    let mut not_trusted = doubts::not_trusted(&outcome, None);
-    if config.force {
-        doubts.extend(not_trusted.take());
-    }
+    let judgement = Judgement::of_taken(&outcome, (&pair.left, &pair.right), None, config, None);
     let (stretch, warnings) = (pair.stretch, pair.warnings.clone());
-    let found = Found { names, stretch, warnings, rectified: None, calibration: None, doubts, not_trusted, start };
+    let found = Found { names, stretch, warnings, rectified: None, judgement, start };
     found.encoded(backend, config, outcome)
 }

@@ -6,7 +6,7 @@ use hsad::{
     Backend, Config, DisparityRange,
     gpu::block_on,
     io::load::{LoadedPair, RawPicture},
-    pipeline::{self, Outcome, RectifiedPair},
+    pipeline::{self, Judgement, Matched, Outcome, RectifiedPair, Task, Way},
     report,
 };
 use numpy::{PyArray2, PyUntypedArrayMethods};
@@ -34,6 +34,10 @@ use crate::{
 ///     The smallest and the largest disparity that were searched, in pixels.
 /// trust : float
 ///     Trust in the map, 0 to 1; a map below 0.5 is likely to be wrong in large parts.
+/// warnings : list of str
+///     Doubts about the map, one sentence each.
+/// not_trusted : str or None
+///     Why the map is likely to be wrong in large parts, or shows no depth; None for a map that is to be trusted, and with ``force=True``.
 /// report : dict
 ///     Parameters, figures and seconds: what the command writes to ``report.json``.
 #[pyclass(module = "hsad", frozen, get_all)]
@@ -42,6 +46,8 @@ pub struct Match {
     confidence: Py<PyArray2<u8>>,
     range: (i32, i32),
     trust: f32,
+    warnings: Vec<String>,
+    not_trusted: Option<String>,
     report: Py<PyAny>,
 }
 
@@ -62,14 +68,26 @@ impl Match {
 }
 
 impl Match {
-    pub fn new(py: Python<'_>, config: &Config, outcome: Outcome, of_device: &Backend) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        config: &Config,
+        outcome: Outcome,
+        judgement: Judgement,
+        of_device: &Backend,
+    ) -> PyResult<Self> {
         let DisparityRange { min, .. } = outcome.range;
+        // Here options are keywords, spelled as they are.
+        let warnings: Vec<String> = judgement.warnings.iter().map(|warning| warning.replace('`', "")).collect();
         let mut figures = report::outcome(config, &outcome);
         figures.insert("device".into(), report::device(of_device));
+        figures.insert("warnings".into(), warnings.clone().into());
+        figures.insert("not_trusted".into(), judgement.not_trusted.clone().into());
         Ok(Self {
             disparity: array_of(py, outcome.dense.disparity.map(|&disparity| in_pixels(disparity)))?.unbind(),
             range: (min, outcome.range.last()),
             trust: outcome.trust,
+            warnings,
+            not_trusted: judgement.not_trusted,
             report: python(py, &figures.into())?.unbind(),
             confidence: array_of(py, outcome.dense.confidence)?.unbind(),
         })
@@ -129,11 +147,22 @@ pub fn match_pair(
     let config = given(options)?.config().raise()?;
     let [left, right] = pair(left, right)?;
     let backend = backend(py, device)?;
-    let outcome = py.detach(|| {
+    let matched = py.detach(|| {
         let LoadedPair { left, right, .. } = LoadedPair::from_raw(left, right)?;
-        pipeline::run(&backend, (&left, &right), &config, |_| ())
+        Task {
+            backend: &backend,
+            views: (&left, &right),
+            config: &config,
+            way: &Way::AsIs,
+            calibration: None,
+            precedent: None,
+            begin: &|_| (),
+            progress: &|_| (),
+        }
+        .run()
     });
-    Match::new(py, &config, outcome.raise()?, &backend)
+    let Matched { outcome, judgement, .. } = matched.raise()?;
+    Match::new(py, &config, outcome, judgement, &backend)
 }
 
 /// Copies of both views.
@@ -150,6 +179,7 @@ pub fn match_rectified(
 ) -> PyResult<Match> {
     let config = given(options)?.config().raise()?;
     begin_work()?;
-    let outcome = py.detach(|| block_on(pipeline::run_rectified(backend, pair, &config, |_| (), |_| ())));
-    Match::new(py, &config, outcome.raise()?, backend)
+    let outcome = py.detach(|| block_on(pipeline::run_rectified(backend, pair, &config, |_| (), |_| ()))).raise()?;
+    let judgement = Judgement::of_rectified(&outcome, pair, &config, None);
+    Match::new(py, &config, outcome, judgement, backend)
 }

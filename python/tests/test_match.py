@@ -18,6 +18,17 @@ def test_a_scene_is_matched(scene, found):
     assert found.report["seconds"].keys() == {"luma", "features", "seeding", "dense"}
     assert found.colors().shape == (*scene.truth.shape, 3)
     assert "340x255" in repr(found)
+    assert found.warnings == found.report["warnings"] == [] and found.not_trusted is found.report["not_trusted"] is None
+
+
+def test_doubts_are_told(dots):
+    left, _ = dots
+    options = {"device": "cpu", "preset": "fast", "disparities": 16}
+    found = hsad.match(left, left, **options)
+    assert found.not_trusted is not None and found.report["not_trusted"] == found.not_trusted
+    assert any("both views are the same picture" in warning for warning in found.warnings)
+    forced = hsad.match(left, left, **options, force=True)
+    assert forced.not_trusted is None and found.not_trusted in forced.warnings
 
 
 def test_device_and_cpu_agree_to_the_bit(scene):

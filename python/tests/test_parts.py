@@ -37,28 +37,34 @@ def test_depth_and_points_by_hand():
             hsad.Calibration(*numbers, cx=0.0, cy=0.0)
 
 
+def rig(folder, turn):
+    """The calibration of two cameras 0.1 apart, of which the right one is turned."""
+    path = folder / "rig.yml"
+    matrices = [
+        ("M1", 3, [500.0, 0, 170, 0, 500, 127, 0, 0, 1]),
+        ("D1", 1, [0.0] * 5),
+        ("M2", 3, [500.0, 0, 170, 0, 500, 127, 0, 0, 1]),
+        ("D2", 1, [0.0] * 5),
+        ("R", 3, np.asarray(turn).ravel().tolist()),
+        ("T", 3, [-0.1, 0.001, 0.0]),
+    ]
+    path.write_text(
+        "%YAML:1.0\n---\n"
+        + "".join(
+            f"{name}: !!opencv-matrix\n   rows: {rows}\n   cols: {len(data) // rows}\n   dt: d\n   data: {data}\n"
+            for name, rows, data in matrices
+        )
+    )
+    return path
+
+
 def test_calibrations_are_read(tmp_path):
     file = tmp_path / "calib.txt"
     file.write_text("cam0=[999.4 0 294.2; 0 999.4 252.7; 0 0 1]\ncam1=[999.4 0 327 ; 0 999.4 252.7; 0 0 1]\ndoffs=32.8\nbaseline=193\n")
     calibration = hsad.read_calibration(file)
     assert (calibration.focal, calibration.baseline, calibration.cx, calibration.cy) == (999.4, 0.193, 294.2, 252.7)
     assert calibration.is_rectified and abs(calibration.doffs - 32.8) < 1e-9 and calibration.notes == []
-    rig = tmp_path / "rig.yml"
-    rig.write_text(
-        "%YAML:1.0\n---\n"
-        + "".join(
-            f"{name}: !!opencv-matrix\n   rows: {rows}\n   cols: {len(data) // rows}\n   dt: d\n   data: {data}\n"
-            for name, rows, data in [
-                ("M1", 3, [500.0, 0, 170, 0, 500, 127, 0, 0, 1]),
-                ("D1", 1, [0.0, 0, 0, 0, 0]),
-                ("M2", 3, [500.0, 0, 170, 0, 500, 127, 0, 0, 1]),
-                ("D2", 1, [0.0, 0, 0, 0, 0]),
-                ("R", 3, [1.0, 0, 0, 0, 1, 0, 0, 0, 1]),
-                ("T", 3, [-0.1, 0.001, 0]),
-            ]
-        )
-    )
-    taken = hsad.read_calibration(rig, unit=1.0)
+    taken = hsad.read_calibration(rig(tmp_path, np.eye(3)), unit=1.0)
     assert not taken.is_rectified
     with pytest.raises(hsad.ParameterError, match="rectify the pair by it first"):
         hsad.depth([[1.0]], taken)
@@ -74,8 +80,18 @@ def test_a_calibration_rectifies(scene, tmp_path):
     pair = hsad.rectify(scene.left, scene.right, calibration)
     own = pair.calibration
     assert own is not None and own.baseline == pytest.approx(0.1) and pair.report["method"] == "calibrated"
-    depth = hsad.depth(pair.match().disparity, own)
+    found = pair.match()
+    depth = hsad.depth(found.disparity, own)
     assert 0.5 < np.nanmedian(depth) < 5.0
+    assert found.warnings == [] and found.not_trusted is None
+
+
+def test_a_calibration_of_other_cameras_is_told(scene, tmp_path):
+    turn = [[1, 0, 0], [0, np.cos(0.03), -np.sin(0.03)], [0, np.sin(0.03), np.cos(0.03)]]
+    calibration = hsad.read_calibration(rig(tmp_path, turn), unit=1.0)
+    found = hsad.rectify(scene.left, scene.right, calibration).match(preset="fast")
+    assert any("the calibration does not fit the pictures, and no depth follows" in warning for warning in found.warnings)
+    assert found.report["warnings"] == found.warnings
 
 
 def test_scores_by_hand():

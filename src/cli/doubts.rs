@@ -3,7 +3,7 @@
 use hsad::{
     config::Config,
     io::Picture,
-    pipeline::{Outcome, doubts},
+    pipeline::{Outcome, RectifiedPair, doubts},
 };
 
 use super::wording::in_words_of_options;
@@ -36,7 +36,12 @@ impl NoDepth {
     pub const EXIT_CODE: i32 = 5;
 }
 
-/// The warnings about a result.
-pub fn warnings(views: (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
-    doubts::warnings(views, config, outcome).iter().map(|warning| in_words_of_options(warning)).collect()
+/// The warnings about a result: see [`doubts::warnings`].
+pub fn warnings(
+    views: (&Picture, &Picture),
+    config: &Config,
+    outcome: &Outcome,
+    rectified: Option<&RectifiedPair>,
+) -> Vec<String> {
+    doubts::warnings(views, config, outcome, rectified).iter().map(|warning| in_words_of_options(warning)).collect()
 }

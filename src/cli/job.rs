@@ -7,7 +7,7 @@ use hsad::{
     Backend,
     config::Config,
     io::{Calibration, Picture, depth_png::Unheld, load::Stretch},
-    pipeline::{Matched, Outcome, Precedent, RectifiedPair, Task, Way, WayBack},
+    pipeline::{Judgement, Matched, Outcome, Precedent, RectifiedPair, Task, Way, WayBack},
 };
 
 use super::{
@@ -95,7 +95,8 @@ impl Job {
         }
         .run()?;
         let precedent = matched.precedent((&self.left, &self.right));
-        let Matched { mut outcome, rectified, calibration, warnings, not_trusted, follows } = matched;
+        let Matched { mut outcome, rectified, judgement, follows } = matched;
+        let Judgement { calibration, warnings, not_trusted } = judgement;
         let warnings: Vec<String> = warnings.iter().map(|warning| in_words_of_options(warning)).collect();
         let not_trusted = not_trusted.map(|reason| NotTrusted { reason });
         let (mut back, mut no_depth) = (None, None);

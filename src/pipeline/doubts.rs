@@ -159,8 +159,13 @@ fn without_depth(why: NoDepth) -> &'static str {
 
 /// Warnings about the outcome of a pair: identical views, raw mosaics, pictures enlarged without interpolation, weak interest points
 /// left out, a guessed or cut disparity range, a distorted lens, matches outside the range, surfaces at an end of the range, and a
-/// difference in brightness.
-pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &Outcome) -> Vec<String> {
+/// difference in brightness. `rectified` is the pair if it was rectified first, and `views` are its pictures then.
+pub fn warnings(
+    (left, right): (&Picture, &Picture),
+    config: &Config,
+    outcome: &Outcome,
+    rectified: Option<&RectifiedPair>,
+) -> Vec<String> {
     let mut warnings = Vec::new();
     if left == right {
         warnings.push("both views are the same picture, which shows no depth; a file with both views is named once, and unless it is an MPO \
@@ -180,7 +185,7 @@ pub fn warnings((left, right): (&Picture, &Picture), config: &Config, outcome: &
         let reason = "no pixel has a partner further away than the picture is wide";
         warnings.push(format!("{} were searched, not {}: {reason}", span(outcome.range), span(asked)));
     }
-    warnings.extend(distortion(outcome));
+    warnings.extend(distortion(outcome, rectified));
     warnings.extend(outside(config, outcome));
     warnings.extend(at_end(config, outcome));
     warnings.extend(brightness(outcome));
@@ -228,12 +233,16 @@ pub fn span(range: DisparityRange) -> String {
 }
 
 /// A warning if rows differ as the rows of a distorted lens do.
-fn distortion(outcome: &Outcome) -> Option<String> {
+fn distortion(outcome: &Outcome, rectified: Option<&RectifiedPair>) -> Option<String> {
     let rows = &outcome.seeding.rectification;
+    let is_by_calibration = rectified.is_some_and(|pair| pair.rectification.calibration().is_some());
+    let advice = match is_by_calibration {
+        true => ", whose distortion the calibration does not have: calibrate the cameras anew",
+        false => ": remove the distortion from both pictures first",
+    };
     rows.is_distorted().then(|| {
         format!(
-            "rows are off by up to {:.1} px in parts of the picture, as by a distorted lens: remove the distortion from \
-             both pictures first",
+            "rows are off by up to {:.1} px in parts of the picture, as by a distorted lens{advice}",
             rows.unexplained
         )
     })

@@ -6,6 +6,7 @@ mod confidence;
 pub mod doubts;
 #[cfg(feature = "calibrations")]
 mod geometry;
+mod judgement;
 mod known;
 mod metric;
 mod mirror;
@@ -28,6 +29,7 @@ mod way;
 pub use back::WayBack;
 #[cfg(feature = "calibrations")]
 pub use geometry::Geometry;
+pub use judgement::Judgement;
 #[cfg(not(target_arch = "wasm32"))]
 pub use mirror::mirrored;
 pub use mirror::{Mirrored, mirrored_async};

@@ -1,7 +1,7 @@
 //! From two pictures, as someone has them, to a map and the doubts about it.
 
 use super::{
-    Mirrored, Outcome, Precedent, RectifiedPair, Step, TRUSTED, doubts,
+    Judgement, Mirrored, Outcome, Precedent, RectifiedPair, Step, TRUSTED, doubts,
     mirror::mirrored_async,
     way::{Found, Way},
 };
@@ -54,12 +54,8 @@ pub struct Matched {
     pub outcome: Outcome,
     /// The pair that was matched, if it was rectified first.
     pub rectified: Option<RectifiedPair>,
-    /// The geometry of the disparities.
-    pub calibration: Option<Calibration>,
-    /// Doubts about the map, one sentence each; options stand between backticks.
-    pub warnings: Vec<String>,
-    /// Why the map is not to be trusted; `None` for a map that is, and with [`Config::force`].
-    pub not_trusted: Option<String>,
+    /// What is to be said of the map.
+    pub judgement: Judgement,
     /// Whether the precedent held.
     pub follows: bool,
 }
@@ -86,33 +82,16 @@ impl Task<'_> {
             None => self.on_its_way().await,
         };
         let mirrored = self.mirrored(&found).await?;
-        let Found { outcome, rectified, mut warnings } = match (found, mirrored) {
+        let Found { outcome, rectified, warnings } = match (found, mirrored) {
             (Err(_), Some(sides)) => return Err(Error::NotRectifiable { reason: doubts::mirrored(sides) }),
             (found, _) => found?,
         };
-        let views = rectified.as_ref().map_or(self.views, |pair| (&pair.pictures[0], &pair.pictures[1]));
-        let mut calibration = match &rectified {
-            Some(pair) => pair.rectification.calibration().copied(),
-            None => self.calibration,
+        let mut judgement = match &rectified {
+            Some(pair) => Judgement::of_rectified(&outcome, pair, self.config, mirrored),
+            None => Judgement::of_taken(&outcome, self.views, self.calibration, self.config, mirrored),
         };
-        let mut not_trusted = doubts::not_trusted(&outcome, calibration.as_ref());
-        match (mirrored, &mut not_trusted) {
-            (Some(sides), Some(reason)) => *reason = doubts::mirrored(sides),
-            _ => warnings.extend(doubts::warnings(views, self.config, &outcome)),
-        }
-        if self.config.force {
-            warnings.extend(not_trusted.take());
-        }
-        let as_given = calibration.filter(|_| rectified.is_none());
-        if let Some(doubt) = as_given.and_then(|calibration| doubts::looks_to_the_side(&outcome, &calibration)) {
-            warnings.push(doubt);
-            calibration = None;
-        }
-        if let Some(doubt) = rectified.as_ref().and_then(|pair| doubts::misfit(&outcome, pair)) {
-            warnings.push(doubt);
-            calibration = calibration.filter(|_| self.config.force);
-        }
-        Ok(Matched { outcome, rectified, calibration, warnings, not_trusted, follows })
+        judgement.warnings.splice(0..0, warnings);
+        Ok(Matched { outcome, rectified, judgement, follows })
     }
 
     /// The outcome by the precedent, if there is one and it holds.

@@ -2,7 +2,6 @@
 
 use super::{
     Outcome, RectifiedPair, TRUSTED, TakenPair,
-    doubts::of_rectified,
     rectified::rectify_by_async,
     run_rectified, run_unless, run_with_progress,
     taken_pair::rectify_async,
@@ -133,8 +132,7 @@ impl Task<'_> {
             }
             error => error,
         })?;
-        let warnings = of_rectified(&pair).into_iter().collect();
-        Ok(Found { outcome, rectified: Some(pair), warnings })
+        Ok(Found { outcome, rectified: Some(pair), warnings: Vec::new() })
     }
 
     /// Matches the pair as it is, or rectified from its matches if its rows do not correspond.

@@ -331,6 +331,6 @@ fn times_matched(backend: &Backend, left: &Picture, right: &Picture) -> usize {
     };
     let matched = task.run().unwrap();
     assert!(matched.outcome.seeding.rectification.lean != 0.0 && matched.rectified.is_none());
-    assert!(matched.not_trusted.is_none(), "{:?}", matched.not_trusted);
+    assert!(matched.judgement.not_trusted.is_none(), "{:?}", matched.judgement.not_trusted);
     begun.into_inner().iter().filter(|&&activity| activity == Activity::Step(Step::Dense)).count()
 }

@@ -71,7 +71,11 @@ impl Matched {
 impl Matched {
     /// The geometry, if depth follows from the disparities.
     fn geometry(&self) -> Option<&Calibration> {
-        self.matched.calibration.as_ref().filter(|_| self.matched.outcome.no_depth.is_none() || self.task.config.force)
+        self.matched
+            .judgement
+            .calibration
+            .as_ref()
+            .filter(|_| self.matched.outcome.no_depth.is_none() || self.task.config.force)
     }
 
     fn has(&self, file: ResultFile) -> bool {
@@ -107,14 +111,14 @@ impl Matched {
             size: self.picture.size(),
             stretch: self.task.stretch,
             backend: &self.backend,
-            calibration: self.matched.calibration.as_ref(),
+            calibration: self.matched.judgement.calibration.as_ref(),
             cloud: cloud.as_ref(),
             depth_png: geometry.map(|calibration| depth_png::millimetres(&depth_map(map, calibration)).1),
             rectified: self.matched.rectified.as_ref(),
             mapped_back: false,
             no_depth: None,
-            not_trusted: self.matched.not_trusted.as_deref(),
-            warnings: &self.matched.warnings,
+            not_trusted: self.matched.judgement.not_trusted.as_deref(),
+            warnings: &self.matched.judgement.warnings,
             config: &self.task.config,
             outcome: &self.matched.outcome,
             total: self.total,

@@ -59,7 +59,7 @@ impl Matched {
     /// pixels, and the baseline in metres; empty if it is not known.
     pub fn camera(&self) -> Vec<f64> {
         let values = |c: &Calibration| vec![c.focal, c.cx, c.cy, c.doffs, c.baseline];
-        self.matched.calibration.as_ref().map_or(Vec::new(), values)
+        self.matched.judgement.calibration.as_ref().map_or(Vec::new(), values)
     }
 
     /// Number of disparity steps per pixel.
@@ -135,12 +135,12 @@ impl Matched {
     /// Why the map is not to be trusted; `undefined` if it is, and where the match was forced.
     #[wasm_bindgen(getter, js_name = notTrusted)]
     pub fn not_trusted(&self) -> Option<String> {
-        self.matched.not_trusted.clone()
+        self.matched.judgement.not_trusted.clone()
     }
 
     /// Doubts about the map, one sentence each, with options between backticks.
     pub fn warnings(&self) -> Vec<String> {
-        self.matched.warnings.clone()
+        self.matched.judgement.warnings.clone()
     }
 
     /// Share of pixels with a disparity, 0 to 1.

@@ -59,9 +59,12 @@ impl Session {
         };
         let matched = self.cancel.unless(pair.run_async()).await;
         let mut matched = matched.ok_or_else(|| named("Cancelled", "the match was cancelled"))?.map_err(thrown)?;
-        matched.warnings.splice(0..0, task.warnings.iter().cloned());
-        if matched.rectified.is_some() && matched.calibration.is_none() && task.calibration.is_some() {
-            matched.warnings.push("no depth: a pair rectified without calibration has no known baseline".into());
+        matched.judgement.warnings.splice(0..0, task.warnings.iter().cloned());
+        if matched.rectified.is_some() && matched.judgement.calibration.is_none() && task.calibration.is_some() {
+            matched
+                .judgement
+                .warnings
+                .push("no depth: a pair rectified without calibration has no known baseline".into());
         }
         let picture = matched.rectified.as_ref().map_or(&left.0, |pair| &pair.pictures[0]).clone();
         Ok(Matched { backend: Rc::clone(&self.backend), task, picture, matched, total: start.elapsed() })

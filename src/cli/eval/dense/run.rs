@@ -178,13 +178,13 @@ impl<'a> Run<'a> {
         let (map, outcome, warnings) = match *moved {
             None => {
                 let outcome = pipeline::run(backend, views, self.config, begin)?;
-                let warnings = doubts::warnings(views, self.config, &outcome);
+                let warnings = doubts::warnings(views, self.config, &outcome, None);
                 (in_pixels(&outcome.dense.disparity), outcome, warnings)
             }
             Some(change) => {
                 let moved = Moved::new(backend, views, self.config, begin)?;
                 let [left, right] = &moved.pair.pictures;
-                let warnings = doubts::warnings((left, right), self.config, &moved.outcome);
+                let warnings = doubts::warnings((left, right), self.config, &moved.outcome, Some(&moved.pair));
                 (moved.before(change), moved.outcome, warnings)
             }
         };
