@@ -1,11 +1,9 @@
 //! A pair of views as luma, on the backend that matches them.
 
-use std::borrow::Cow;
-
 use crate::{
     backend::Backend,
     cpu,
-    dense::{Dense, DenseConfig, DenseParameters, Masks, UploadedPair, View, compute_uploaded, kernels::Loss},
+    dense::{Dense, DenseConfig, Masks, Seen, UploadedPair, View, compute_uploaded},
     error::{Error, Result, check},
     features::{Detected, FeatureConfig, detect_both},
     gpu::{Gpu, Readback, check_limits, storage_buffer},
@@ -24,15 +22,6 @@ pub struct Pair<'b> {
     /// The pictures of either view on the host, without a device and unless other views took their place.
     pictures: [Option<&'b Picture>; 2],
     device: Option<OnDevice<'b>>,
-}
-
-/// What does not show the scene in the dense matching of a pair.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<'m> {
-    /// Which pixels of the reference view and of the other one show the scene: 255 or 0; `None`: all do.
-    pub masks: [Option<&'m Luma>; 2],
-    /// What a pixel with a hidden partner loses before the refinement; after it the confidence.
-    pub loss: Loss,
 }
 
 /// Packed luma of both views on a device.
@@ -245,29 +234,13 @@ impl<'b> Pair<'b> {
         let views = [&self.left, &self.right];
         if let Some(OnDevice { gpu, luma, colours }) = &self.device {
             let masks = match seen {
-                Some(Seen { masks, loss }) => {
-                    Some(gpu.with_room("the masks", || Masks::new(gpu, self.size(), masks, loss)).await?)
-                }
+                Some(seen) => Some(gpu.with_room("the masks", || Masks::new(gpu, self.size(), seen)).await?),
                 None => None,
             };
             let pair = UploadedPair { luma: luma.clone(), colours: colours[reference].clone(), masks };
             return compute_uploaded(gpu, self.size(), config, pair, progress).await;
         }
-        let matched = |config: &DenseConfig| match self.pictures[reference] {
-            Some(picture) => cpu::dense::compute_in_colour(views, picture, config),
-            None => cpu::dense::compute(views[0], views[1], config),
-        };
-        let (Some(Seen { masks: [own, other], loss }), Some(refinement)) = (seen, config.parameters.refinement) else {
-            return matched(config);
-        };
-        let parameters = DenseParameters { refinement: None, ..config.parameters };
-        let mut dense = matched(&DenseConfig { parameters, ..config.clone() })?;
-        cpu::dense::unseen(&mut dense, config.reference, own, other, loss);
-        let picture =
-            self.pictures[reference].map_or_else(|| Cow::Owned(cpu::luma::rgba(views[reference])), Cow::Borrowed);
-        let mut dense = cpu::dense::refined(views, &picture, dense, &refinement, config);
-        cpu::dense::unseen(&mut dense, config.reference, own, other, Loss::Confidence);
-        Ok(dense)
+        cpu::dense::compute_seen(views, self.pictures[reference], seen, config)
     }
 }
 

@@ -4,6 +4,8 @@ use super::{
     Dense, Matcher, colours::ReferenceColours, config::DenseConfig, kept, levels, matcher::Views, pyramid::Pyramid,
     uploaded::UploadedPair,
 };
+#[cfg(feature = "verify")]
+use super::{seen::Seen, uploaded::Masks};
 use crate::{
     error::{Error, Result},
     gpu::{Gpu, check_limits},
@@ -48,16 +50,18 @@ pub(crate) async fn compute_uploaded(
     Matcher::build(gpu, size, config, Views::Uploaded(pair), u32::MAX).await?.run_by_parts(progress).await
 }
 
-/// [`compute`] over the levels of `pyramid`, in bands of at most `band_rows` rows.
+/// [`compute`] of what is `seen` of a pair, over the levels of `pyramid`, in bands of at most `band_rows` rows.
 #[cfg(feature = "verify")]
 pub(crate) async fn compute_over(
     gpu: &Gpu,
     [left, right]: [&Luma; 2],
+    seen: Option<Seen<'_>>,
     config: &DenseConfig,
     pyramid: &Pyramid,
     band_rows: u32,
 ) -> Result<Dense> {
     let luma = [upload(gpu, left).await?, upload(gpu, right).await?];
     let colours = ReferenceColours::without_colours(gpu, left.size(), config, luma.each_ref()).await?;
-    levels::compute(gpu, UploadedPair { luma, colours, masks: None }, config, pyramid, band_rows, |_| ()).await
+    let masks = seen.map(|seen| Masks::new(gpu, left.size(), seen)).transpose()?;
+    levels::compute(gpu, UploadedPair { luma, colours, masks }, config, pyramid, band_rows, |_| ()).await
 }

@@ -3,13 +3,13 @@
 
 use super::{
     config::DenseConfig,
-    kernels::Halve,
+    kernels::{Halve, Loss},
     map::Dense,
     outputs::{Disparities, Outputs},
     plan::{BandLimits, LevelKernels, LevelTask},
     pyramid::{CellTable, Level, Pyramid, filters},
     readback::MapReadback,
-    uploaded::UploadedPair,
+    uploaded::{Masks, UploadedPair},
 };
 use crate::{
     error::Result,
@@ -59,19 +59,27 @@ pub(super) async fn compute(
     Ok(map.expect("a pyramid has a level"))
 }
 
-/// The pairs of all levels, the finest first, which alone has colours and masks.
+/// The pairs of all levels, the finest first, which alone has colours. On the others, a disparity whose partner is hidden is none.
 async fn halved(gpu: &Gpu, pair: UploadedPair, levels: &[Level]) -> Result<Vec<UploadedPair>> {
     gpu.with_room("the pyramid", || {
         let halve = Halve::new(gpu);
         let mut pairs = vec![pair.clone()];
         let mut encoder = gpu.encoder("pyramid");
         for sizes in levels.windows(2) {
-            let [left, right] = pairs[pairs.len() - 1].luma.each_ref().map(|picture| -> Result<wgpu::Buffer> {
+            let mut half = |picture: &wgpu::Buffer| -> Result<wgpu::Buffer> {
                 let half = storage_buffer(gpu, "half the picture", packed_bytes(sizes[1].size))?;
                 halve.prepare(sizes[0].size, picture, &half).record(&mut encoder);
                 Ok(half)
-            });
-            pairs.push(UploadedPair { luma: [left?, right?], colours: None, masks: None });
+            };
+            let UploadedPair { luma: [left, right], masks, .. } = &pairs[pairs.len() - 1];
+            let luma = [half(left)?, half(right)?];
+            let masks = match masks {
+                Some(Masks { own, other, .. }) => {
+                    Some(Masks { own: half(own)?, other: half(other)?, loss: Loss::Disparity })
+                }
+                None => None,
+            };
+            pairs.push(UploadedPair { luma, colours: None, masks });
         }
         gpu.queue.submit([encoder.finish()]);
         Ok(pairs)

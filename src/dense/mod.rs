@@ -23,6 +23,7 @@ mod plan;
 pub(crate) mod pyramid;
 mod readback;
 pub(crate) mod reprojection;
+mod seen;
 mod uploaded;
 mod word_copy;
 
@@ -43,4 +44,5 @@ pub(crate) use plan::After;
 pub use pyramid::Pyramid;
 pub use readback::MapReadback;
 pub use reprojection::{MapSources, MapTextureOutput, PointCloud, PointDraw, Reprojection};
+pub(crate) use seen::Seen;
 pub(crate) use uploaded::{Masks, UploadedPair};

@@ -1,6 +1,6 @@
 //! A pair on a device, ready to be matched.
 
-use super::kernels::Loss;
+use super::{kernels::Loss, seen::Seen};
 use crate::{
     error::Result,
     gpu::{Gpu, storage_buffer},
@@ -60,11 +60,11 @@ pub(crate) struct Masks {
 }
 
 impl Masks {
-    /// Uploads the masks of the reference view and of the other one, both of `size`; `None`: the whole view shows the scene.
+    /// Uploads the masks of a pair of `size`.
     ///
     /// # Errors
     /// [`crate::Error::TooLarge`].
-    pub fn new(gpu: &Gpu, size: Size, [own, other]: [Option<&Luma>; 2], loss: Loss) -> Result<Self> {
+    pub fn new(gpu: &Gpu, size: Size, Seen { masks: [own, other], loss }: Seen<'_>) -> Result<Self> {
         let uploaded = |mask: Option<&Luma>| -> Result<wgpu::Buffer> {
             let buffer = storage_buffer(gpu, "mask", packed_bytes(size))?;
             let words = mask.map_or_else(|| vec![u32::MAX; (packed_bytes(size) / 4) as usize], pack);

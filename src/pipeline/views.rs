@@ -7,7 +7,7 @@ use crate::{
     backend::Backend,
     config::{Config, Method},
     cpu::{self, dense::unseen},
-    dense::{Dense, DenseConfig, View, kernels::Loss},
+    dense::{Dense, DenseConfig, Seen, View, kernels::Loss},
     disparity::DisparityMap,
     error::Result,
     features::{Detected, FeatureConfig},
@@ -15,7 +15,7 @@ use crate::{
     io::Picture,
     mask::{self, Mask},
     mosaic::demosaicked,
-    pair::{Pair, Seen},
+    pair::Pair,
     rectify::{RowModel, WarpMap},
     tiles::Whole,
 };

@@ -3,12 +3,12 @@
 use super::plan::{Area, Tile, levels};
 use crate::{
     backend::Backend,
-    dense::{Aggregation, Dense, DenseConfig, Search, View, kernels::Loss},
+    dense::{Aggregation, Dense, DenseConfig, Search, Seen, View, kernels::Loss},
     error::Result,
     image::{Luma, Size},
     io::Picture,
     mask::Mask,
-    pair::{Pair, Seen},
+    pair::Pair,
 };
 
 /// A prepared pair of which tiles are cut.

@@ -11,10 +11,13 @@ use super::{
     half_consistency, halve,
     pyramid::pyramid,
     refined::{self, checked_and_refined},
-    soft_rank,
+    soft_rank, unseen,
 };
 use crate::{
-    dense::{After, Aggregation, Brightness, Compared, Dense, DenseConfig, Pyramid, Search, kernels::halved_config},
+    dense::{
+        After, Aggregation, Brightness, Compared, Dense, DenseConfig, Pyramid, Search, Seen,
+        kernels::{Loss, halved_config},
+    },
     error::{Error, Result},
     image::{Luma, Plane},
     memory::Left,
@@ -33,7 +36,7 @@ const LEVELS: u64 = 1;
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`], [`Error::NotEnoughMemory`].
 pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense> {
-    checked([left, right], None, config)
+    compute_seen([left, right], None, None, config)
 }
 
 /// [`compute`], with holes filled by the colours of `picture`, the reference view.
@@ -41,31 +44,46 @@ pub fn compute(left: &Luma, right: &Luma, config: &DenseConfig) -> Result<Dense>
 /// # Errors
 /// [`Error::SizesDiffer`], [`Error::Parameter`], [`Error::NotEnoughMemory`].
 pub fn compute_in_colour(views: [&Luma; 2], picture: &Plane<[u8; 4]>, config: &DenseConfig) -> Result<Dense> {
-    checked(views, Some(picture), config)
+    compute_seen(views, Some(picture), None, config)
 }
 
-fn checked(views: [&Luma; 2], picture: Option<&Plane<[u8; 4]>>, config: &DenseConfig) -> Result<Dense> {
+/// [`compute`], with holes filled by the colours of `picture`, if there is one, of what is `seen` of the pair.
+///
+/// # Errors
+/// [`Error::SizesDiffer`], [`Error::Parameter`], [`Error::NotEnoughMemory`].
+pub fn compute_seen(
+    views: [&Luma; 2],
+    picture: Option<&Plane<[u8; 4]>>,
+    seen: Option<Seen<'_>>,
+    config: &DenseConfig,
+) -> Result<Dense> {
     let [left, right] = views.map(Plane::size);
     if left != right {
         return Err(Error::SizesDiffer { left, right });
     }
     config.validate()?;
-    computed(views, picture, config, Pyramid::of(config, left).as_ref())
+    computed(views, picture, seen, config, Pyramid::of(config, left).as_ref())
 }
 
-/// [`compute`] over the levels of a pyramid, if there is one.
+/// [`compute`] of what is `seen` of a pair, over the levels of a pyramid, if there is one.
 ///
 /// # Errors
 /// [`Error::Parameter`] if no pixel has a partner; [`Error::NotEnoughMemory`], before anything is computed, or before the level of
 /// a pyramid, whose need the level above tells.
-pub fn compute_over(left: &Luma, right: &Luma, config: &DenseConfig, levels: Option<&Pyramid>) -> Result<Dense> {
-    computed([left, right], None, config, levels)
+pub fn compute_over(
+    views: [&Luma; 2],
+    seen: Option<Seen<'_>>,
+    config: &DenseConfig,
+    levels: Option<&Pyramid>,
+) -> Result<Dense> {
+    computed(views, None, seen, config, levels)
 }
 
 /// The map of a pair, with holes filled by the colours of `picture`, or by luma without it.
 fn computed(
     [left, right]: [&Luma; 2],
     picture: Option<&Plane<[u8; 4]>>,
+    seen: Option<Seen<'_>>,
     config: &DenseConfig,
     levels: Option<&Pyramid>,
 ) -> Result<Dense> {
@@ -83,7 +101,7 @@ fn computed(
         }
         (Aggregation::Costs(costs), Some(levels)) => {
             needs(LEVELS * size.pixels())?;
-            pyramid(views, config, costs, levels)?
+            pyramid(views, seen.map_or([None; 2], |seen| seen.masks), config, costs, levels)?
         }
         (Aggregation::Costs(costs), None) => {
             needs(0)?;
@@ -91,7 +109,14 @@ fn computed(
             aggregate(task, Cut::fitting(task)?)
         }
     };
-    Ok(checked_and_refined(views, picture, dense, &after, config))
+    let worked_on = |dense, after: &After| checked_and_refined(views, picture, dense, after, config);
+    let Some(Seen { masks: [own, other], loss }) = seen else { return Ok(worked_on(dense, &after)) };
+    // What is hidden takes no part in the filters.
+    let mut dense = worked_on(dense, &After { filters: None, ..after.clone() });
+    unseen(&mut dense, config.reference, own, other, loss);
+    let mut dense = worked_on(dense, &After { agreement: None, ..after });
+    unseen(&mut dense, config.reference, own, other, Loss::Confidence);
+    Ok(dense)
 }
 
 /// Block matching of `views`, before the change of brightness, after its left-right consistency check.

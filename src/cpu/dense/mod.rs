@@ -50,7 +50,7 @@ pub use cell_select::cell_select;
 pub use cell_volume::CellVolume;
 pub use census::census;
 pub use claim::claim;
-pub use compute::{compute, compute_in_colour, compute_over};
+pub use compute::{compute, compute_in_colour, compute_over, compute_seen};
 pub use confidence_texture::confidence_texture;
 pub use consistency::{consistency, half_consistency};
 pub use cost::{Transforms, cost};

@@ -5,6 +5,7 @@ use crate::{
         colours::ReferenceColours,
         config::View,
         kernels::Loss,
+        seen::Seen,
         uploaded::{Masks, UploadedPair},
     },
     error::Result,
@@ -106,7 +107,7 @@ pub(super) fn masks_of(gpu: &Gpu, maps: [&WarpMap; 2], reference: View) -> Resul
         return Ok(None);
     }
     let [own, other] = &visible;
-    Masks::new(gpu, maps[0].size(), [Some(own), Some(other)], Loss::Nothing).map(Some)
+    Masks::new(gpu, maps[0].size(), Seen { masks: [Some(own), Some(other)], loss: Loss::Nothing }).map(Some)
 }
 
 fn index(view: View) -> usize {

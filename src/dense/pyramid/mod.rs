@@ -34,7 +34,7 @@ const SUPPORT: u32 = 7;
 /// in the cell or in the cells around it, and 2 more at either end, in whole sixteens; cells without any take the
 /// disparities of the nearest cells. Along a path, a disparity that the pixel before does not have costs as much as a jump.
 /// A winner at an end of its cell's range that is no end of the whole range is none. Levels but the finest keep what 7
-/// pixels of a 7x7 window support; they are neither checked from the other view nor filled.
+/// pixels of a 7x7 window support, and none whose partner does not show the scene; they are neither checked from the other view nor filled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pyramid {
     levels: Vec<Level>,

@@ -3,7 +3,7 @@
 use crate::{
     config::Preset,
     cpu::dense::{self as twins, compute},
-    dense::{Brightness, Dense, DenseConfig, Matcher, Pyramid, compute_over},
+    dense::{Brightness, Dense, DenseConfig, Matcher, Pyramid, Seen, compute_over, kernels::Loss},
     disparity::DisparityRange,
     error::Result,
     gpu::block_on,
@@ -105,6 +105,8 @@ pub struct PyramidTrial {
     pub dense: DenseTrial,
     /// The levels.
     pub pyramid: Pyramid,
+    /// Masks of the reference view and of the other one, and what a pixel with a hidden partner loses, if anything is hidden.
+    pub hidden: Option<([Luma; 2], Loss)>,
 }
 
 impl PyramidTrial {
@@ -114,27 +116,42 @@ impl PyramidTrial {
         // Verified by the CPU: the range has a disparity that gives a pixel a partner.
         let range = dense.config.searched(size.width).unwrap_or(dense.config.range);
         let pyramid = Pyramid::down_to(dice.pick(&[20, 60]), size, range);
-        Self { dense, pyramid }
+        // Parts that levels of half and a quarter of the size hide as a whole, too.
+        let mut mask = || {
+            let parts = smooth_noise((size.width / 12 + 1, size.height / 12 + 1), dice.word());
+            Luma::from_fn(size, |x, y| if parts.get(x / 12, y / 12) < 80 { 0 } else { 255 })
+        };
+        let masks = [mask(), mask()];
+        let hidden = (dice.below(2) == 0).then(|| (masks, dice.pick(&Loss::ALL)));
+        Self { dense, pyramid, hidden }
+    }
+
+    fn seen(&self) -> Option<Seen<'_>> {
+        self.hidden.as_ref().map(|(masks, loss)| Seen { masks: masks.each_ref().map(Some), loss: *loss })
     }
 }
 
 impl Trial for PyramidTrial {
     fn parameters(&self) -> String {
-        format!("{} levels, {}", self.pyramid.levels().len(), self.dense.parameters())
+        let hidden = self.hidden.as_ref().map_or(String::new(), |(_, loss)| format!(", masked, {loss:?} lost"));
+        format!("{} levels{hidden}, {}", self.pyramid.levels().len(), self.dense.parameters())
     }
 
     fn input(&self) -> Vec<Array> {
-        self.dense.input()
+        let mask = |(name, mask): (&'static str, &Luma)| Array::exact(name, mask.data().to_vec());
+        let masks =
+            self.hidden.iter().flat_map(|(masks, _)| ["own mask", "other mask"].into_iter().zip(masks)).map(mask);
+        self.dense.input().into_iter().chain(masks).collect()
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
-        let Self { dense: DenseTrial { left, right, config, band_rows }, pyramid } = self;
-        let dense = block_on(compute_over(bench.gpu, [left, right], config, pyramid, *band_rows))?;
+        let Self { dense: DenseTrial { left, right, config, band_rows }, pyramid, .. } = self;
+        let dense = block_on(compute_over(bench.gpu, [left, right], self.seen(), config, pyramid, *band_rows))?;
         Ok(DenseTrial::arrays(dense))
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let Self { dense: DenseTrial { left, right, config, .. }, pyramid } = self;
-        Ok(DenseTrial::arrays(twins::compute_over(left, right, config, Some(pyramid))?))
+        let Self { dense: DenseTrial { left, right, config, .. }, pyramid, .. } = self;
+        Ok(DenseTrial::arrays(twins::compute_over([left, right], self.seen(), config, Some(pyramid))?))
     }
 }

@@ -8,7 +8,7 @@ use hsad::{
     image::{Luma, Plane, Size},
     internals::{
         cpu::dense::CellVolume,
-        dense::{CellRange, CellTable},
+        dense::{CellRange, CellTable, Loss},
     },
     verify::trials::{DenseTrial, PyramidTrial},
 };
@@ -49,7 +49,20 @@ fn trial(size: Size, preset: Preset, coarsest: u32, band_rows: u32) -> PyramidTr
     PyramidTrial {
         dense: DenseTrial { left, right, config, band_rows },
         pyramid: Pyramid::down_to(coarsest, size, range),
+        hidden: None,
     }
+}
+
+/// Hides all but the middle of either view.
+fn masked(trial: PyramidTrial, loss: Loss) -> PyramidTrial {
+    let Size { width, height } = trial.dense.left.size();
+    let middle = |edge: u32| {
+        Luma::from_fn((width, height), |x, y| match (edge..width - edge).contains(&x) && y > height / 3 {
+            true => 255,
+            false => 0,
+        })
+    };
+    PyramidTrial { hidden: Some(([middle(width / 8), middle(width / 4)], loss)), ..trial }
 }
 
 #[test]
@@ -58,6 +71,14 @@ fn the_twins_end_with_the_same_bytes() {
         for (preset, coarsest) in [(Preset::Balanced, 40), (Preset::Quality, 70), (Preset::Balanced, 1)] {
             assert_twin(&format!("{size} {preset} down to {coarsest}"), &trial(size, preset, coarsest, u32::MAX));
         }
+    }
+}
+
+#[test]
+fn what_is_hidden_is_neither_searched_nor_shown() {
+    let size = Size::new(260, 131);
+    for loss in Loss::ALL {
+        assert_twin(&format!("{loss:?} lost"), &masked(trial(size, Preset::Balanced, 70, u32::MAX), loss));
     }
 }
 
