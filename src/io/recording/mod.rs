@@ -8,6 +8,7 @@
 mod chunk;
 mod fields;
 mod messages;
+mod metadata;
 mod pairing;
 mod pairs;
 mod records;
@@ -26,6 +27,7 @@ use crate::{
     image::Size,
 };
 use messages::Kind;
+use metadata::METADATA;
 use stream::Stream;
 
 pub(crate) use messages::CameraInfo;
@@ -98,11 +100,11 @@ impl Recording {
         let is_compressed =
             has_extension(path, "zstd") && ["mcap", "db3"].iter().any(|known| has_extension(inner, known));
         let has_parts = || ["mcap", "db3"].iter().any(|known| !files_in(path, known).is_empty());
-        is_file || is_compressed || path.join("metadata.yaml").is_file() || has_parts()
+        is_file || is_compressed || path.join(METADATA).is_file() || has_parts()
     }
 
-    /// Opens a recording, and looks for its topics: in its summary, or, without one, in all of it. A file among several may be broken, which
-    /// the pairs end with.
+    /// Opens a recording, and looks for its topics: in its summary, or, without one, in all of it. A file among several may be broken or lacking,
+    /// which the pairs end with.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Format`] for bags of other formats, with the command that converts them, and where no file is an MCAP with
@@ -195,7 +197,8 @@ impl Recording {
     /// The pairs of frames of two topics, in the order of their times.
     pub fn pairs(&self, topics: [&Topic; 2]) -> Pairs {
         let names = topics.map(|topic| topic.name.as_str());
-        Pairs::new(self.path.clone(), Stream::new(self.files.clone()), names)
+        let lacking = metadata::check(&self.path, &self.files).err();
+        Pairs::new(self.path.clone(), Stream::new(self.files.clone(), lacking), names)
     }
 
     /// The calibration of the cameras of two topics: the first `sensor_msgs/CameraInfo` of each, of the topics `camera_info` beside them.
@@ -235,7 +238,7 @@ impl Recording {
 
     /// The first message of each of both topics that can be read; `None` if neither has a message.
     fn first_infos(&self, names: &[String; 2]) -> Result<Option<[CameraInfo; 2]>> {
-        let mut stream = Stream::new(self.files.clone());
+        let mut stream = Stream::new(self.files.clone(), None);
         let mut found: [Option<Told<CameraInfo>>; 2] = [None, None];
         loop {
             if let [Some(Ok(left)), Some(Ok(right))] = &found {

@@ -42,8 +42,9 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    pub fn new(files: Vec<PathBuf>) -> Self {
-        Self { files: files.into_iter(), open: None, broken: Vec::new() }
+    /// Those of `files`; `lacking` tells of files beside them that are not there.
+    pub fn new(files: Vec<PathBuf>, lacking: Option<Error>) -> Self {
+        Self { files: files.into_iter(), open: None, broken: lacking.into_iter().collect() }
     }
 
     /// The next message of a topic that is `wanted`. After a file that breaks off comes the next one.
@@ -72,7 +73,10 @@ impl Stream {
             return self.broken.pop();
         }
         let all: Vec<String> = self.broken.iter().take(LISTED).map(Error::to_string).collect();
-        Some(malformed(recording, format!("{} of its files are broken: {}", self.broken.len(), all.join("; "))))
+        Some(malformed(
+            recording,
+            format!("{} of its files are broken or lacking: {}", self.broken.len(), all.join("; ")),
+        ))
     }
 }
 

@@ -78,7 +78,7 @@ fn the_whole_files_of_a_recording_are_read_beside_broken_ones() {
     assert_eq!((found, left_out.alone), (PAIRS.to_vec(), [0, 0]));
     let error = error.unwrap();
     assert!(
-        error.contains("2 of its files are broken") && error.contains("ride_1.mcap: the recording is cut"),
+        error.contains("2 of its files are broken or lacking") && error.contains("ride_1.mcap: the recording is cut"),
         "{error}"
     );
     fs::remove_file(folder.path().join("ride_1.mcap")).unwrap();
@@ -88,6 +88,35 @@ fn the_whole_files_of_a_recording_are_read_beside_broken_ones() {
         fs::remove_file(folder.path().join(name)).unwrap();
     }
     assert!(read(folder.path()).unwrap_err().to_string().contains("ride_2.mcap: the recording is cut off"));
+}
+
+#[test]
+fn files_that_a_recording_lacks_are_told_once_the_others_were_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    let metadata = |names: &str| file("metadata.yaml", format!("a:\n  relative_file_paths: [{names}]\n").as_bytes());
+    file("ride_0.mcap", &recorded(plain(), &ride()));
+    let error = || {
+        let (found, _, error) = read(folder.path()).unwrap();
+        assert_eq!(found, PAIRS);
+        error
+    };
+    metadata("ride_0.mcap");
+    assert_eq!(error(), None);
+    metadata("ride/ride_0.mcap, ride/ride_1.mcap, ride/ride_2.mcap");
+    let told = error().unwrap();
+    assert!(
+        told.contains("metadata.yaml: the folder lacks 2 of the files that are named there (ride_1.mcap, ride_2.mcap)"),
+        "{told}"
+    );
+    file("ride_1.mcap", b"");
+    let told = error().unwrap();
+    assert!(told.contains("2 of its files are broken or lacking") && told.contains("(ride_2.mcap)"), "{told}");
+    fs::remove_file(folder.path().join("ride_1.mcap")).unwrap();
+    file("metadata.yaml", b"");
+    assert!(error().unwrap().contains("metadata.yaml: the file is empty"));
+    metadata("'");
+    assert!(error().unwrap().contains("which files the recording has is not known"));
 }
 
 #[test]
