@@ -39,6 +39,8 @@ struct Set {
     /// Name of the file that lists the others.
     list: &'static str,
     earlier: EarlierSet,
+    /// Whether files that no list names are an earlier run's, too.
+    is_taken_over: bool,
     _lock: FolderLock,
 }
 
@@ -99,8 +101,15 @@ impl Output {
                 "another run of hsad is writing its results there: name another folder (-o), or wait for its end";
             return Err(Error::Io { path: folder.into(), source: io::Error::new(io::ErrorKind::ResourceBusy, reason) });
         };
-        output.set = Some(Set { list, earlier: EarlierSet::read(folder, list), _lock: lock });
+        output.set = Some(Set { list, earlier: EarlierSet::read(folder, list), is_taken_over: false, _lock: lock });
         Ok(output)
+    }
+
+    /// Takes files of a set whose list is gone for those of an earlier run, which is known to have written one: they are replaced.
+    pub fn take_over(&mut self) {
+        if let Some(set) = &mut self.set {
+            set.is_taken_over = !self.folder.join(set.list).exists();
+        }
     }
 
     /// Spares the files that are read: no output replaces them.
@@ -130,7 +139,7 @@ impl Output {
                 "a result of this name would replace a file that was read: name another folder (-o)".into(),
             );
         }
-        let is_foreign = |set: &Set| path.is_file() && !set.earlier.contains(name);
+        let is_foreign = |set: &Set| path.is_file() && !set.earlier.contains(name) && !set.is_taken_over;
         if let Some(Set { list, .. }) = self.set.as_ref().filter(|set| is_foreign(set)) {
             return refused(format!(
                 "a result of this name would replace a file that no {list} beside it lists as hsad's: name another folder (-o), or move the \

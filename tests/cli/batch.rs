@@ -124,8 +124,20 @@ fn a_batch_goes_on_where_it_ended() {
     // What was removed since is made again, whole or in part.
     fs::remove_dir_all(out.join("9")).unwrap();
     fs::remove_file(out.join("10/confidence.png")).unwrap();
+    fs::remove_file(out.join("11/report.json")).unwrap();
+    fs::remove_file(out.join("11/confidence.png")).unwrap();
+    // Not among the files of such a pair.
+    fs::write(out.join("11/cloud.ply"), "mine").unwrap();
+    let before = written("11");
     run(&["--resume"]).success();
     assert!(out.join("9/disparity.pfm").exists() && out.join("10/confidence.png").exists());
+    assert!(written("11") > before && out.join("11/report.json").exists(), "one set");
+    assert_eq!(fs::read_to_string(out.join("11/cloud.ply")).unwrap(), "mine");
+    fs::remove_file(out.join("11/report.json")).unwrap();
+    fs::rename(&journal, root.join("journal")).unwrap();
+    run(&["--resume"]).code(1).stderr(contains("1 of 3 pairs failed"));
+    fs::rename(root.join("journal"), &journal).unwrap();
+    run(&["--resume"]).success();
 
     // The same name for other pictures.
     let list = root.join("others.csv");

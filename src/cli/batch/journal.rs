@@ -20,7 +20,6 @@ use serde_json::{Value, json};
 
 use super::{
     frame::Frame,
-    inputs::{Other, Recorded},
     pair::Pair,
     record::{Finished, Record},
     results::Results,
@@ -39,7 +38,7 @@ pub struct Journal {
     file: File,
 }
 
-/// The pairs that an earlier run has finished, by their names.
+/// The pairs whose results an earlier run has written, by their names.
 #[derive(Default)]
 pub struct Earlier(HashMap<Box<str>, Finished>);
 
@@ -47,26 +46,16 @@ impl Earlier {
     /// What was recorded of a pair that is finished, if its results are still there: what was removed since is made again.
     ///
     /// # Errors
-    /// Results of other inputs than the pair has now, which are not replaced: they may be those of another batch, or of another journal.
+    /// As [`Results::of`].
     pub fn finished(&self, pair: &Pair, frame: Option<&Frame>, results: &Results<'_>) -> Result<Option<&Finished>> {
-        let Some(report) = results.report(&pair.name) else { return Ok(None) };
-        let (name, folder) = (shown(Path::new(&pair.name)), shown(&results.folder.join(&pair.name)));
-        let ways_out = format!("Remove the folder {folder} to match the pair again, or name another folder (-o)");
-        let Some(inputs) = Recorded::of(&report) else {
-            bail!("the results '{name}' of this folder do not tell their inputs: no batch has made them. {ways_out}");
-        };
-        if let Some(Other { path, is_gone }) = inputs.other_input(pair, frame) {
-            let path = shown(&path);
-            if is_gone {
-                bail!(
-                    "the results '{name}' of this folder may be of other inputs: {path} is gone. Bring it back, or name another folder (-o)"
-                );
-            }
-            bail!(
-                "the results '{name}' of this folder are of other inputs: {path} has changed or is another one. {ways_out}"
-            );
-        }
-        Ok(self.0.get(&*pair.name).filter(|found| results.are_of_batch(&report) && found.inputs == inputs))
+        let Some((report, inputs)) = results.of(pair, frame)? else { return Ok(None) };
+        let finished = self.0.get(&*pair.name).filter(|found| !found.has_failed_since);
+        Ok(finished.filter(|found| results.are_of_batch(&report) && found.inputs == inputs))
+    }
+
+    /// Whether results of the pair, as it is now, have been written: what is left of them is none of the user's.
+    pub fn has_written(&self, pair: &Pair, frame: Option<&Frame>) -> bool {
+        self.0.get(&*pair.name).is_some_and(|found| found.inputs.other_input(pair, frame).is_none())
     }
 }
 
@@ -137,7 +126,7 @@ fn check_recipe(folder: &Path, recipe: &str) -> Result<()> {
 /// Reads the records of a journal line by line, and cuts off a line that was not written whole.
 fn read(path: &Path) -> Result<Earlier> {
     let mut file = BufReader::new(File::open(path)?);
-    let (mut finished, mut line, mut whole) = (HashMap::new(), Vec::new(), 0);
+    let (mut finished, mut line, mut whole) = (HashMap::<Box<str>, Finished>::new(), Vec::new(), 0);
     for number in 1.. {
         line.clear();
         let length = file.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? as u64;
@@ -163,9 +152,13 @@ fn read(path: &Path) -> Result<Earlier> {
             anyhow!("line {number}: '{name}' was recorded without its inputs, by an earlier version of hsad: name another folder (-o)")
         })?;
         match found {
-            Some(found) => finished.insert(record.name().into(), found),
-            None => finished.remove(record.name()),
-        };
+            Some(found) => _ = finished.insert(record.name().into(), found),
+            None => {
+                if let Some(found) = finished.get_mut(record.name()) {
+                    found.has_failed_since = true;
+                }
+            }
+        }
     }
     if whole < path.metadata()?.len() {
         OpenOptions::new().write(true).open(path)?.set_len(whole)?;
@@ -189,7 +182,8 @@ mod tests {
     fn a_journal_goes_on_after_a_line_that_was_not_written_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let open = |recipe: &str, resume| Journal::open(folder.path(), "report.jsonl", recipe, resume);
-        let is_finished = |earlier: &Earlier, name: &str| earlier.0.contains_key(name);
+        let is_finished =
+            |earlier: &Earlier, name: &str| earlier.0.get(name).is_some_and(|found| !found.has_failed_since);
         let (mut journal, earlier) = open("quickly", false).expect("a new journal");
         assert!(!is_finished(&earlier, "a"));
         let second = open("quickly", true).map(|_| ()).expect_err("two at once").to_string();

@@ -182,7 +182,7 @@ impl Batch {
             let load = Load::begin(&cached.backend);
             let halves = self.halves.halves();
             let recorded = source.recorded.as_ref();
-            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, recorded, results };
+            let work = Work { backend: &cached.backend, recipe: &self.recipe, halves, recorded, results, earlier };
             side_by_side(source.count.unwrap_or(usize::MAX).min(self.jobs()), || {
                 while let Some(group) = feed.group() {
                     if work.on_group(group, |record| desk.record(record.map_err(Into::into))).is_break() {

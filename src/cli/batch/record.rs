@@ -44,6 +44,8 @@ pub struct Finished {
     pub reason: Option<Box<str>>,
     /// What the pair was made of.
     pub inputs: Recorded,
+    /// Whether a later try has failed, which leaves the results as they are.
+    pub has_failed_since: bool,
 }
 
 /// Times of the parts of the work on a pair.
@@ -187,7 +189,13 @@ impl Record {
             return Ok(None);
         }
         let inputs = Recorded::of(&self.0).ok_or(self.name())?;
-        Ok(Some(Finished { status, follows: self.follows(), reason: self.reason().map(Box::from), inputs }))
+        Ok(Some(Finished {
+            status,
+            follows: self.follows(),
+            reason: self.reason().map(Box::from),
+            inputs,
+            has_failed_since: false,
+        }))
     }
 
     pub fn status(&self) -> Status {

@@ -2,10 +2,16 @@
 
 use std::path::Path;
 
-use hsad::io::read_whole;
+use anyhow::{Result, bail};
+use hsad::{io::read_whole, shown};
 use serde_json::Value;
 
-use super::{super::names::REPORT, frame::Frame, inputs::Recorded, pair::Pair};
+use super::{
+    super::names::REPORT,
+    frame::Frame,
+    inputs::{Other, Recorded},
+    pair::Pair,
+};
 
 /// Longest report that is read, in bytes.
 const MOST: u64 = 1 << 26;
@@ -33,8 +39,32 @@ impl Results<'_> {
         report["parameters"] == self.parameters
     }
 
+    /// The report of the results under the name of `pair`, and their inputs, if all of their files are there.
+    ///
+    /// # Errors
+    /// Results of other inputs than the pair has now, which are not replaced: they may be those of another batch, or of another journal.
+    pub fn of(&self, pair: &Pair, frame: Option<&Frame>) -> Result<Option<(Value, Recorded)>> {
+        let Some(report) = self.report(&pair.name) else { return Ok(None) };
+        let (name, folder) = (shown(Path::new(&pair.name)), shown(&self.folder.join(&pair.name)));
+        let ways_out = format!("Remove the folder {folder} to match the pair again, or name another folder (-o)");
+        let Some(inputs) = Recorded::of(&report) else {
+            bail!("the results '{name}' of this folder do not tell their inputs: no batch has made them. {ways_out}");
+        };
+        match inputs.other_input(pair, frame) {
+            None => Ok(Some((report, inputs))),
+            Some(Other { path, is_gone: true }) => bail!(
+                "the results '{name}' of this folder may be of other inputs: {} is gone. Bring it back, or name another folder (-o)",
+                shown(&path)
+            ),
+            Some(Other { path, .. }) => bail!(
+                "the results '{name}' of this folder are of other inputs: {} has changed or is another one. {ways_out}",
+                shown(&path)
+            ),
+        }
+    }
+
     /// The report of the results of this name, of whatever inputs, if all of their files are there.
-    pub fn report(&self, name: &str) -> Option<Value> {
+    fn report(&self, name: &str) -> Option<Value> {
         let folder = self.folder.join(name);
         let path = folder.join(REPORT);
         if !path.is_file() {

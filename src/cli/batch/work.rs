@@ -26,6 +26,7 @@ use super::{
     feed::Member,
     frame::Frame,
     inputs::Contents,
+    journal::Earlier,
     pair::Pair,
     record::{Record, Times},
     results::Results,
@@ -39,6 +40,7 @@ pub struct Work<'a> {
     /// The calibration that a recording has.
     pub recorded: Option<&'a RecordedCalibration>,
     pub results: &'a Results<'a>,
+    pub earlier: &'a Earlier,
 }
 
 /// What comes of a pair.
@@ -134,6 +136,9 @@ impl Work<'_> {
             fs::create_dir_all(above).map_err(|source| Error::Io { path: above.into(), source })?;
         }
         let mut output = Output::open_set(&folder)?;
+        if self.earlier.has_written(pair, frame) {
+            output.take_over();
+        }
         let Contents { pictures, calibration, inputs } = Contents::read(pair, frame)?;
         let in_memory = Some(pictures.in_memory());
         let views = Views { left: &pair.left, right: pair.right.as_deref(), halves: self.halves, in_memory };
