@@ -122,7 +122,7 @@ impl Work<'_> {
             Err(reason) => return Ok(Done { record: Record::failed(&pair, 1, reason), told: None }),
         };
         let matched = self.matched(&pair, frame.as_ref(), precedent);
-        matched.and_then(|matched| self.written(&pair, matched)).or_else(|error| {
+        matched.and_then(|matched| self.written(&pair, frame.as_ref(), matched)).or_else(|error| {
             let record = Record::failed(&pair, exit_code(&error), &described(&error));
             lost(error).map(|told| Done { record, told })
         })
@@ -154,10 +154,12 @@ impl Work<'_> {
         Ok(Matched { output, inputs, completed, read, matched: start.elapsed() - read })
     }
 
-    fn written(&self, pair: &Pair, matched: Matched) -> Result<Done> {
+    fn written(&self, pair: &Pair, frame: Option<&Frame>, matched: Matched) -> Result<Done> {
         let Matched { mut output, inputs, mut completed, read, matched } = matched;
         let start = Instant::now();
         self.recipe.add_files(&mut completed, Some(&inputs), &mut output)?;
+        // Runs with other journals may have written results of this name in the meantime.
+        self.results.of(pair, frame)?;
         output.finish()?;
         let times = Times { read, matched, written: start.elapsed() };
         let shortfall = completed.shortfall().map(|error| (exit_code(&error), described(&error)));
@@ -189,5 +191,53 @@ fn lost<T>(error: anyhow::Error) -> hsad::Result<Option<T>> {
     match error.downcast::<Error>() {
         Ok(lost @ Error::DeviceLost(_)) => Err(lost),
         _ => Ok(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use hsad::{image::Plane, io::png};
+    use serde_json::json;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Options {
+        #[command(flatten)]
+        recipe: Recipe,
+    }
+
+    #[test]
+    fn results_of_other_inputs_that_came_in_the_meantime_are_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = folder.path().join("picture.png");
+        let mut bytes = Vec::new();
+        png::write_grey8(&mut bytes, &Plane::from_fn((40, 30), |x, y| (x * x * 7 + y * y * 3 + x * y) as u8)).unwrap();
+        fs::write(&picture, bytes).unwrap();
+        let pair = Pair { name: "a".into(), left: picture.clone(), right: Some(picture.clone()), calibration: None };
+        let options = ["hsad", "--preset", "fast", "--disparities", "8", "--rectify", "never", "--force"];
+        let Options { recipe } = Options::parse_from(options);
+        let results = Results { folder: &folder.path().join("out"), resumes: false, parameters: Value::Null };
+        let work = Work {
+            backend: &Backend::Cpu,
+            recipe: &recipe,
+            halves: None,
+            recorded: None,
+            results: &results,
+            earlier: &Earlier::default(),
+        };
+        let write = || work.written(&pair, None, work.matched(&pair, None, None).unwrap());
+        write().unwrap();
+        let report = folder.path().join("out/a/report.json");
+        let mut other: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
+        write().unwrap();
+        let matched = work.matched(&pair, None, None).unwrap();
+        other["inputs"]["left"]["hash"] = json!("0");
+        other["inputs"]["left"]["path"] = json!("/other.png");
+        fs::write(&report, other.to_string()).unwrap();
+        let error = work.written(&pair, None, matched).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains("picture.png has changed or is another one"), "{error}");
+        assert_eq!(fs::read_to_string(&report).unwrap(), other.to_string());
     }
 }
