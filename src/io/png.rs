@@ -45,8 +45,35 @@ fn encode(
     Size { width, height }: Size,
     color: ExtendedColorType,
 ) -> io::Result<()> {
-    PngEncoder::new(out).write_image(bytes, width, height, color).map_err(|error| match error {
-        ImageError::IoError(error) => error,
-        other => io::Error::other(other),
+    let mut out = Keeping { out, error: None };
+    PngEncoder::new(&mut out).write_image(bytes, width, height, color).map_err(|error| match (out.error, error) {
+        (Some(error), _) | (None, ImageError::IoError(error)) => error,
+        (None, other) => io::Error::other(other),
     })
+}
+
+/// A writer that keeps its last error: the encoder passes on the text, and not the kind.
+struct Keeping<W> {
+    out: W,
+    error: Option<io::Error>,
+}
+
+impl<W> Keeping<W> {
+    fn keep<T>(&mut self, written: impl FnOnce(&mut W) -> io::Result<T>) -> io::Result<T> {
+        written(&mut self.out).map_err(|error| {
+            let kind = error.kind();
+            self.error = Some(error);
+            kind.into()
+        })
+    }
+}
+
+impl<W: Write> Write for Keeping<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.keep(|out| out.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.keep(W::flush)
+    }
 }

@@ -12,6 +12,7 @@ use super::{
     journal::Journal,
     load::Shares,
     record::{Finished, Record},
+    storage,
     tally::Tally,
 };
 
@@ -50,7 +51,7 @@ impl Desk {
             Ok(tally.count(&record)?)
         });
         if result.is_ok() {
-            *result = written;
+            *result = written.map_err(storage::told);
         }
         if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }

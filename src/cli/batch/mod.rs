@@ -14,6 +14,7 @@ mod record;
 mod results;
 mod shard;
 mod source;
+mod storage;
 mod tally;
 mod tree;
 mod video;
@@ -163,7 +164,7 @@ impl Batch {
     }
 
     /// Works on the pairs of `source`, several groups at once, and brings their records to the `desk`. Ends with the first record that cannot
-    /// be written, and with a device that is lost.
+    /// be written, with a device that is lost, and with storage that takes no more files.
     fn work_on(
         &self,
         source: Source,

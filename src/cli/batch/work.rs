@@ -30,6 +30,7 @@ use super::{
     pair::Pair,
     record::{Record, Times},
     results::Results,
+    storage,
 };
 
 /// What all pairs share.
@@ -63,8 +64,7 @@ enum Before {
 impl Work<'_> {
     /// Works on the pairs of a group, one after the other, and calls `then` with the record of each until it breaks.
     ///
-    /// An error that `then` gets is [`hsad::Error::DeviceLost`], after which no pair can be matched; whatever else is wrong with a pair is in
-    /// its record.
+    /// An error that `then` gets is one after which no pair can be matched or written; whatever else is wrong with a pair is in its record.
     pub fn on_group(
         &self,
         members: impl Iterator<Item = Member>,
@@ -98,7 +98,7 @@ impl Work<'_> {
                         pair.name,
                         described(&error)
                     );
-                    lost::<()>(error)?;
+                    fatal::<()>(error)?;
                     Before::Lost(reason)
                 }
             };
@@ -124,7 +124,7 @@ impl Work<'_> {
         let matched = self.matched(&pair, frame.as_ref(), precedent);
         matched.and_then(|matched| self.written(&pair, frame.as_ref(), matched)).or_else(|error| {
             let record = Record::failed(&pair, exit_code(&error), &described(&error));
-            lost(error).map(|told| Done { record, told })
+            fatal(error).map(|told| Done { record, told })
         })
     }
 
@@ -186,10 +186,12 @@ impl Before {
     }
 }
 
-/// The error of a device that is lost; nothing for any other one, which is that of a pair.
-fn lost<T>(error: anyhow::Error) -> hsad::Result<Option<T>> {
+/// The error of a device that is lost, or of storage that takes no more files; nothing for any other one, which is that of a pair.
+fn fatal<T>(error: anyhow::Error) -> hsad::Result<Option<T>> {
+    let is_full = storage::way_out(&error).is_some();
     match error.downcast::<Error>() {
         Ok(lost @ Error::DeviceLost(_)) => Err(lost),
+        Ok(full) if is_full => Err(full),
         _ => Ok(None),
     }
 }
