@@ -127,9 +127,9 @@ impl Source {
             None
         });
         let pairs = first.into_iter().chain(frames).map(|read| {
-            let (stamp, shots) = read?;
+            let (name, shots) = read?;
             let [left, right] = shots.each_ref().map(|shot| shot.path.clone());
-            let pair = Pair { name: stamp.to_string(), left, right: Some(right), calibration: None };
+            let pair = Pair { name, left, right: Some(right), calibration: None };
             Ok((pair, Some(Frame::Each(Box::new(shots)))))
         });
         Ok(Self {

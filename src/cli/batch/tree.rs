@@ -14,11 +14,13 @@ use super::{
     pair::Pair,
 };
 
-/// Folders of the left and the right view whose files have the same names: KITTI 2015, KITTI 2012 and odometry, EuRoC, and plain ones.
-const FOLDERS: [[&str; 2]; 6] = [
+/// Folders of the left and the right view whose files have the same names: KITTI 2015, KITTI 2012 and odometry, raw KITTI, EuRoC, and plain ones.
+const FOLDERS: [[&str; 2]; 8] = [
     ["image_2", "image_3"],
     ["colored_0", "colored_1"],
     ["image_0", "image_1"],
+    ["image_02/data", "image_03/data"],
+    ["image_00/data", "image_01/data"],
     ["cam0/data", "cam1/data"],
     ["mav0/cam0/data", "mav0/cam1/data"],
     ["left", "right"],
@@ -48,7 +50,8 @@ const CALIBRATION: &str = "calib.txt";
 
 /// What the folder must be.
 const EXPECTED: &str = "expected folders image_2 and image_3 (KITTI), cam0/data and cam1/data (EuRoC) or left and right with files of the \
-                        same names, or a folder per pair with im0.png and im1.png (Middlebury, ETH3D) or left.png and right.png";
+                        same names, or a folder of such folders, or a folder per pair with im0.png and im1.png (Middlebury, ETH3D) or left.png and \
+                        right.png";
 
 /// What is in `folder`, in the order of the names. Hidden files are passed over.
 ///
@@ -56,8 +59,12 @@ const EXPECTED: &str = "expected folders image_2 and image_3 (KITTI), cam0/data 
 /// A folder that cannot be read or has no pairs, and a name that is no text.
 pub fn pairs(folder: &Path) -> Result<Listing> {
     let listing = match folders_of_views(folder) {
-        Some(both) => same_names(both)?,
-        None => folder_per_pair(folder)?,
+        Some(both) => {
+            let mut listing = Listing::default();
+            same_names(both, "", &mut listing)?;
+            listing
+        }
+        None => folder_per_scene(folder)?,
     };
     if listing.pairs.is_empty() {
         let alone = listing.left_out().map(|alone| format!("{alone}; ")).unwrap_or_default();
@@ -72,14 +79,20 @@ pub fn folders_of_views(folder: &Path) -> Option<[PathBuf; 2]> {
     both.into_iter().find(|both| both.iter().all(|one| one.is_dir()))
 }
 
-/// The pairs of folders in `folder`, one each.
-fn folder_per_pair(folder: &Path) -> Result<Listing> {
+/// The pairs of folders in `folder`: one each, or those of a sequence, whose names begin with that of its folder.
+fn folder_per_scene(folder: &Path) -> Result<Listing> {
     let mut listing = Listing::default();
     for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
         let both = FILES.map(|both| both.map(|file| scene.join(file)));
         let is_whole = |both: &&[PathBuf; 2]| both.iter().all(|file| file.is_file());
         let is_part = |both: &&[PathBuf; 2]| both.iter().any(|file| file.is_file());
-        let Some(both) = both.iter().find(is_whole).or_else(|| both.iter().find(is_part)).cloned() else { continue };
+        let Some(both) = both.iter().find(is_whole).or_else(|| both.iter().find(is_part)).cloned() else {
+            if let Some(both) = folders_of_views(&scene) {
+                let name = text(scene.file_name(), &scene)?;
+                same_names(both, &format!("{name}/"), &mut listing)?;
+            }
+            continue;
+        };
         let are_there = both.each_ref().map(|file| file.is_file());
         let [left, right] = both;
         match are_there {
@@ -101,21 +114,20 @@ fn text(name: Option<&OsStr>, path: &Path) -> Result<String> {
     name.with_context(|| format!("{}: the name is no text in UTF-8: rename it", hsad::shown(path)))
 }
 
-/// The pairs of pictures with the same name in a left and a right folder.
-fn same_names([left, right]: [PathBuf; 2]) -> Result<Listing> {
-    let mut listing = Listing::default();
+/// Adds the pairs of pictures with the same name in a left and a right folder. Their names follow `prefix`.
+fn same_names([left, right]: [PathBuf; 2], prefix: &str, listing: &mut Listing) -> Result<()> {
     let mut rights = pictures(&right)?;
     for (name, left) in pictures(&left)? {
         match rights.remove(&name) {
             Some(right) => {
-                let name = text(left.file_stem(), &left)?;
+                let name = prefix.to_owned() + &text(left.file_stem(), &left)?;
                 listing.pairs.push(Pair { name, left, right: Some(right), calibration: None });
             }
             None => listing.alone[0].push(left),
         }
     }
     listing.alone[1].extend(rights.into_values());
-    Ok(listing)
+    Ok(())
 }
 
 /// The pictures in a folder, by their names.
@@ -170,6 +182,11 @@ mod tests {
         assert_eq!(names(&euroc).expect("EuRoC"), ["17"]);
         let middlebury = ["Art/im0.png", "Art/im1.png", "Art/calib.txt", "Books/im0.png", "Books/im1.png", "notes.txt"];
         assert_eq!(names(&middlebury).expect("Middlebury"), ["Art calibrated", "Books"]);
+        let drives =
+            ["1/image_02/data/7.png", "1/image_03/data/7.png", "2/image_02/data/7.png", "2/image_03/data/7.png"];
+        assert_eq!(names(&drives).expect("raw KITTI"), ["1/7", "2/7"]);
+        let sequences = ["b/cam0/data/7.png", "b/cam1/data/7.png", "a/left.png", "a/right.png"];
+        assert_eq!(names(&sequences).expect("a sequence beside a pair"), ["a", "b/7"]);
     }
 
     #[test]

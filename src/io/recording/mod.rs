@@ -40,7 +40,7 @@ type Told<T> = std::result::Result<T, String>;
 /// Topics that a message lists at most.
 const LISTED: usize = 20;
 
-/// A recording: an MCAP file, or the folder of several that rosbag2 writes one after the other.
+/// A recording: an MCAP file, or a folder of several that rosbag2 writes one after the other; or of several recordings.
 #[derive(Clone, Debug)]
 pub struct Recording {
     path: PathBuf,
@@ -63,17 +63,21 @@ fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
-/// Files in a folder with an extension and not hidden, those with numbers in their order.
+/// Files in a folder with an extension and not hidden, recording by recording, those with numbers in their order.
 fn files_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let is_hidden = |file: &PathBuf| file.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
     let mut files: Vec<PathBuf> = entries.filter(|file| has_extension(file, extension) && !is_hidden(file)).collect();
-    files.sort_by_cached_key(|file| {
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let number = name.rsplit('_').next().and_then(|number| number.parse::<u64>().ok());
-        (number, name)
-    });
+    files.sort_by_cached_key(|file| recording_of(file));
     files
+}
+
+/// The name of the recording that a file belongs to, and its number there: rosbag2 calls the files of `ride` `ride_0`, `ride_1` and so on.
+fn recording_of(file: &Path) -> (String, Option<u64>) {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let parts = stem.rsplit_once('_').filter(|(name, _)| !name.is_empty());
+    let numbered = parts.and_then(|(name, number)| Some((name.to_owned(), Some(number.parse().ok()?))));
+    numbered.unwrap_or_else(|| (stem.into_owned(), None))
 }
 
 impl RecordedCalibration {
@@ -194,7 +198,7 @@ impl Recording {
         format!("topics of pictures are {}{more}", shown(Path::new(&listed.join(", "))))
     }
 
-    /// The pairs of frames of two topics, in the order of their times.
+    /// The pairs of frames of two topics, in the order of their times, with a name each.
     pub fn pairs(&self, topics: [&Topic; 2]) -> Pairs {
         let names = topics.map(|topic| topic.name.as_str());
         let lacking = metadata::check(&self.path, &self.files).err();

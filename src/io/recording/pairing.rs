@@ -1,6 +1,6 @@
 //! Which frames of two topics belong together: those of the same time, or the nearest ones.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::{HashMap, VecDeque};
 
 /// Most bytes of frames that wait for their partners.
 const MOST: usize = 1 << 28;
@@ -22,8 +22,11 @@ pub(super) struct Pairing<T> {
     waiting: [VecDeque<Waiting<T>>; 2],
     /// Times of the last frames that no longer wait.
     last: [Option<u64>; 2],
-    /// Times of the left frames of all pairs, each of which names one pair.
-    paired: HashSet<u64>,
+    /// Greatest times so far of this recording.
+    latest: [Option<u64>; 2],
+    /// Times of the left frames of all pairs, each of which names one pair of a recording, and the number of the last recording that has one.
+    paired: HashMap<u64, u32>,
+    recording: u32,
     /// Bytes of all that wait.
     bytes: usize,
     has_ended: bool,
@@ -38,7 +41,9 @@ impl<T> Pairing<T> {
         Self {
             waiting: [VecDeque::new(), VecDeque::new()],
             last: [None; 2],
-            paired: HashSet::new(),
+            latest: [None; 2],
+            paired: HashMap::new(),
+            recording: 0,
             bytes: 0,
             has_ended: false,
             alone: [0; 2],
@@ -49,11 +54,13 @@ impl<T> Pairing<T> {
     /// Takes the next frame of a topic, 0 left or 1 right. A second one of a time finds no partner.
     pub fn add(&mut self, side: usize, stamp: u64, frame: T, bytes: usize) {
         let place = self.waiting[side].binary_search_by_key(&stamp, |waiting| waiting.stamp);
-        let (Err(place), false) = (place, side == 0 && self.paired.contains(&stamp)) else {
+        let is_paired = side == 0 && self.paired.get(&stamp) == Some(&self.recording);
+        let (Err(place), false) = (place, is_paired) else {
             self.alone[side] += 1;
             return;
         };
         self.bytes += bytes;
+        self.latest[side] = self.latest[side].max(Some(stamp));
         self.waiting[side].insert(place, Waiting { stamp, frame, bytes });
         // Frames whose topic is far ahead of the other one wait in vain.
         while self.bytes > MOST {
@@ -65,13 +72,26 @@ impl<T> Pairing<T> {
         }
     }
 
-    /// No frame follows.
+    /// No frame follows in this recording.
     pub fn end(&mut self) {
         self.has_ended = true;
     }
 
-    /// The next pair with the time of its left frame, if it is known by the frames so far.
-    pub fn next(&mut self) -> Option<(u64, [T; 2])> {
+    /// Whether a frame of this time goes back behind others of its topic.
+    pub fn goes_back(&self, side: usize, stamp: u64) -> bool {
+        self.latest[side].is_some_and(|latest| stamp <= latest)
+    }
+
+    /// Another recording begins, once the one before it has ended and all of its pairs were taken: none of its frames has a partner there.
+    pub fn begin(&mut self) {
+        self.has_ended = false;
+        (self.last, self.latest) = ([None; 2], [None; 2]);
+        self.recording += 1;
+    }
+
+    /// The next pair, if it is known by the frames so far: the time of its left frame, whether an earlier recording has a pair of this time,
+    /// and both frames.
+    pub fn next(&mut self) -> Option<(u64, bool, [T; 2])> {
         loop {
             let [Some(left), Some(right)] = self.waiting.each_ref().map(VecDeque::front) else {
                 if self.has_ended {
@@ -86,9 +106,9 @@ impl<T> Pairing<T> {
             }
             if apart == 0 || self.gap().is_some_and(|gap| 2 * u128::from(apart) <= u128::from(gap)) {
                 let stamp = left.stamp;
-                self.paired.insert(stamp);
+                let is_again = self.paired.insert(stamp, self.recording).is_some();
                 let [left, right] = [0, 1].map(|side| self.take(side));
-                return left.zip(right).map(|(left, right)| (stamp, [left, right]));
+                return left.zip(right).map(|(left, right)| (stamp, is_again, [left, right]));
             }
             let earlier = usize::from(right.stamp < left.stamp);
             self.drop_first(earlier);
@@ -129,10 +149,10 @@ mod tests {
         let mut pairs = Vec::new();
         for &(side, stamp) in frames {
             pairing.add(side, stamp, stamp, 1);
-            pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(_, pair)| pair));
+            pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(.., pair)| pair));
         }
         pairing.end();
-        pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(_, pair)| pair));
+        pairs.extend(std::iter::from_fn(|| pairing.next()).map(|(.., pair)| pair));
         (pairs, pairing.alone)
     }
 
@@ -152,7 +172,7 @@ mod tests {
             pairing.add(side, 10, side, 1);
             first.extend(pairing.next());
         }
-        assert_eq!(first, [(10, [0, 1])], "nothing needs to follow");
+        assert_eq!(first, [(10, false, [0, 1])], "nothing needs to follow");
     }
 
     #[test]
@@ -184,6 +204,28 @@ mod tests {
     }
 
     #[test]
+    fn frames_of_another_recording_are_pairs_of_their_own() {
+        let (mut pairing, mut found) = (Pairing::new(), Vec::new());
+        // The last left frame of the first recording has no partner, and the second one has both.
+        for (recording, last) in [(0, None), (1, Some(20))] {
+            for (side, stamp) in [(0, 10), (1, 10), (0, 20)].into_iter().chain(last.map(|last| (1, last))) {
+                if recording == 1 && pairing.recording == 0 {
+                    assert!(pairing.goes_back(side, stamp));
+                    pairing.end();
+                    assert_eq!(pairing.next(), None);
+                    pairing.begin();
+                }
+                assert!(!pairing.goes_back(side, stamp));
+                pairing.add(side, stamp, (recording, side), 1);
+                found.extend(pairing.next());
+            }
+        }
+        let pair = |stamp, is_again, recording| (stamp, is_again, [(recording, 0), (recording, 1)]);
+        assert_eq!(found, [pair(10, false, 0), pair(10, true, 1), pair(20, false, 1)]);
+        assert_eq!(pairing.alone, [1, 0]);
+    }
+
+    #[test]
     fn the_nearest_frames_are_a_pair_within_half_a_period() {
         assert_eq!(paired(&in_turn(&[10, 20, 30], &[15, 25, 35])), (vec![[10, 15], [20, 25], [30, 35]], [0, 0]));
         assert_eq!(paired(&in_turn(&[10, 20, 30], &[4, 14, 24])), (vec![[10, 14], [20, 24]], [1, 1]));
@@ -201,6 +243,6 @@ mod tests {
         assert_eq!(pairing.given_up, pairing.alone);
         assert_eq!(pairing.next(), None);
         pairing.end();
-        assert_eq!(pairing.next(), Some((7, [(), ()])));
+        assert_eq!(pairing.next(), Some((7, false, [(), ()])));
     }
 }

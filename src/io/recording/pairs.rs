@@ -10,7 +10,7 @@ use super::{
     fields::Encoding,
     messages::{Kind, compressed_picture, raw_picture, stamp_of},
     pairing::Pairing,
-    place_in,
+    place_in, recording_of,
     stream::{Message, Stream},
 };
 use crate::{
@@ -25,8 +25,10 @@ const IN_ORDER: &str =
 /// A frame as it was recorded.
 #[derive(Clone, Debug)]
 pub struct Shot {
-    /// The recording, its topic and the time, as reports and messages name the frame.
+    /// The file of the recording, the topic and the time, as reports and messages name the frame.
     pub path: PathBuf,
+    /// The name of the recording.
+    recording: String,
     kind: Kind,
     encoding: Encoding,
     message: Vec<u8>,
@@ -74,6 +76,10 @@ pub struct Pairs {
     stream: Option<Stream>,
     topics: [String; 2],
     pairing: Pairing<Shot>,
+    /// The name of the recording that is read.
+    recording: Option<String>,
+    /// The first frame of the next recording, while pairs of this one are left: its side, its time, and the frame.
+    held: Option<(usize, u64, Shot)>,
     /// The error that comes after all pairs.
     error: Option<Error>,
     has_pairs: bool,
@@ -87,6 +93,8 @@ impl Pairs {
             stream: Some(stream),
             topics: topics.map(str::to_owned),
             pairing: Pairing::new(),
+            recording: None,
+            held: None,
             error: None,
             has_pairs: false,
             left_out: Arc::default(),
@@ -116,9 +124,21 @@ impl Pairs {
                 });
             }
         };
-        let bytes = message.data.len();
-        let path = place_in(&self.path, &format!("{}@{stamp}", message.topic));
-        let shot = Shot { path, kind: message.kind, encoding: message.encoding, message: message.data };
+        let path = place_in(&message.file, &format!("{}@{stamp}", message.topic));
+        let (recording, _) = recording_of(&message.file);
+        let is_another = self.recording.as_ref().is_some_and(|before| *before != recording);
+        self.recording = Some(recording.clone());
+        let shot = Shot { path, recording, kind: message.kind, encoding: message.encoding, message: message.data };
+        if is_another && self.pairing.goes_back(side, stamp) {
+            self.pairing.end();
+            self.held = Some((side, stamp, shot));
+        } else {
+            self.pair(side, stamp, shot);
+        }
+    }
+
+    fn pair(&mut self, side: usize, stamp: u64, shot: Shot) {
+        let bytes = shot.message.len();
         self.pairing.add(side, stamp, shot, bytes);
     }
 
@@ -149,17 +169,24 @@ impl Pairs {
 }
 
 impl Iterator for Pairs {
-    /// The time of the left frame, in nanoseconds, and both frames.
-    type Item = Result<(u64, [Shot; 2])>;
+    /// The name of the pair, and both frames. The name is the time of the left frame in nanoseconds, behind the name of its recording where an
+    /// earlier one has a pair of this time.
+    type Item = Result<(String, [Shot; 2])>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let pair = self.pairing.next();
             let Pairing { alone, given_up, .. } = self.pairing;
             self.note(|left_out| (left_out.alone, left_out.given_up) = (alone, given_up));
-            if let Some(pair) = pair {
+            if let Some((stamp, is_again, shots)) = pair {
                 self.has_pairs = true;
-                return Some(Ok(pair));
+                let name = if is_again { format!("{}/{stamp}", shots[0].recording) } else { stamp.to_string() };
+                return Some(Ok((name, shots)));
+            }
+            if let Some((side, stamp, shot)) = self.held.take() {
+                self.pairing.begin();
+                self.pair(side, stamp, shot);
+                continue;
             }
             if self.stream.is_none() {
                 let error = self.error.take().or_else(|| (!self.has_pairs).then(|| self.nothing()));

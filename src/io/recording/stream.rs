@@ -24,6 +24,8 @@ use crate::{error::Error, io::malformed};
 
 /// A message.
 pub(super) struct Message {
+    /// The file that has it.
+    pub file: PathBuf,
     pub topic: String,
     pub kind: Kind,
     /// When it was recorded, in nanoseconds.
@@ -36,7 +38,7 @@ pub(super) struct Message {
 pub(super) struct Stream {
     files: IntoIter<PathBuf>,
     /// The file that is read.
-    open: Option<(PathBuf, Messages<File>)>,
+    open: Option<Messages<File>>,
     /// What is wrong with files so far; of each what came before was read.
     broken: Vec<Error>,
 }
@@ -50,10 +52,10 @@ impl Stream {
     /// The next message of a topic that is `wanted`. After a file that breaks off comes the next one.
     pub fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Option<Message> {
         loop {
-            let Some((path, messages)) = &mut self.open else {
+            let Some(messages) = &mut self.open else {
                 let path = self.files.next()?;
                 match File::open(&path) {
-                    Ok(file) => self.open = Some((path, Messages::new(file))),
+                    Ok(file) => self.open = Some(Messages::new(file, path)),
                     Err(error) => self.broken.push(io_error(&path)(error)),
                 }
                 continue;
@@ -61,7 +63,7 @@ impl Stream {
             match messages.next(&wanted) {
                 Ok(Some(message)) => return Some(message),
                 Ok(None) => {}
-                Err(reason) => self.broken.push(malformed(path, reason)),
+                Err(reason) => self.broken.push(malformed(&messages.file, reason)),
             }
             self.open = None;
         }
@@ -81,14 +83,15 @@ impl Stream {
 }
 
 /// The messages of a file.
-pub(super) struct Messages<R> {
+struct Messages<R> {
+    file: PathBuf,
     records: Records<R>,
     channels: ChannelAccumulator<'static>,
 }
 
 impl<R: Read> Messages<R> {
-    pub fn new(from: R) -> Self {
-        Self { records: Records::of_file(from), channels: ChannelAccumulator::default() }
+    fn new(from: R, file: PathBuf) -> Self {
+        Self { file, records: Records::of_file(from), channels: ChannelAccumulator::default() }
     }
 
     fn next(&mut self, wanted: impl Fn(&str) -> bool) -> Told<Option<Message>> {
@@ -104,7 +107,8 @@ impl<R: Read> Messages<R> {
                 let kind = channel.schema.as_ref().and_then(|schema| Kind::of(&schema.name));
                 if let Some(kind) = kind.filter(|_| wanted(&channel.topic)) {
                     let (topic, data) = (channel.topic.clone(), data.into_owned());
-                    return Ok(Some(Message { topic, kind, recorded: header.log_time, encoding, data }));
+                    let (file, recorded) = (self.file.clone(), header.log_time);
+                    return Ok(Some(Message { file, topic, kind, recorded, encoding, data }));
                 }
             }
         }

@@ -153,11 +153,11 @@ fn read(file: &Path) -> Result<(Vec<Found>, LeftOut, Option<String>)> {
     let (mut found, mut error) = (Vec::new(), None);
     for pair in pairs.by_ref() {
         match pair {
-            Ok((stamp, [left, right])) => {
+            Ok((name, [left, right])) => {
                 let files = [left.to_file()?, right.to_file()?];
                 let paths = [&left, &right].map(|shot| shot.path.as_path());
                 let loaded = decode_pair((&files[0], paths[0]), (&files[1], paths[1]), &Unseen::default())?;
-                found.push((stamp, [loaded.left, loaded.right].map(|picture| picture.get(0, 0)[0])));
+                found.push((name.parse().unwrap(), [loaded.left, loaded.right].map(|picture| picture.get(0, 0)[0])));
             }
             Err(reason) => error = Some(reason.to_string()),
         }
@@ -292,6 +292,28 @@ fn files_of_one_recording_follow_one_another() {
     let recording = Recording::open(folder.path()).unwrap();
     let counts: Vec<_> = recording.topics().iter().map(|topic| (topic.name.as_str(), topic.messages)).collect();
     assert_eq!(counts, [("/left/image", Some(4)), ("/right/image", Some(3)), ("/tf", Some(1))]);
+}
+
+#[test]
+fn recordings_in_one_folder_have_pairs_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let both =
+        |stamp, level| [("/left/image", IMAGE, grey(stamp, level)), ("/right/image", IMAGE, grey(stamp, level + 1))];
+    // The first one breaks off in a pair, and the second one goes on in another file.
+    for (name, sent) in [
+        ("a_0", both(10, 50).to_vec()),
+        ("a_1", both(20, 60)[..1].to_vec()),
+        ("b_0", [both(10, 70), both(15, 80)].concat()),
+        ("b_1", both(20, 90).to_vec()),
+        ("c", both(30, 100).to_vec()),
+    ] {
+        fs::write(folder.path().join(format!("{name}.mcap")), recorded(plain(), &sent)).unwrap();
+    }
+    let recording = Recording::open(folder.path()).unwrap();
+    let mut pairs = recording.pairs(recording.both_views(None).unwrap());
+    let names: Vec<String> = pairs.by_ref().map(|pair| pair.unwrap().0).collect();
+    assert_eq!(names, ["10", "b/10", "15", "20", "30"]);
+    assert_eq!(pairs.left_out().lock().unwrap().alone, [1, 0]);
 }
 
 #[test]
