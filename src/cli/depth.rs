@@ -44,6 +44,15 @@ impl CalibrationOptions {
         Ok(CalibrationFile { path: file.0.into(), loaded })
     }
 
+    /// Checks the files before any picture is read.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    fn check(&self) -> Result<()> {
+        self.calib_unit.map_or(Ok(()), check_unit)?;
+        if self.calib.is_empty() { Ok(()) } else { calibration::check(&self.calib, self.calib_unit) }
+    }
+
     fn hints<'a>(&self, pictures: [&'a Path; 2], sizes: [Size; 2]) -> Result<Hints<'a>> {
         self.calib_unit.map_or(Ok(()), check_unit)?;
         Ok(Hints { pictures: Some(pictures), sizes: Some(sizes), unit: self.calib_unit })
@@ -111,6 +120,14 @@ impl DepthOptions {
     /// The calibration files.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         self.files.calib.iter_mut()
+    }
+
+    /// Checks the calibration files before any picture is read, and returns whether there are any.
+    ///
+    /// # Errors
+    /// As [`CalibrationOptions::read`].
+    pub fn check_files(&self) -> Result<bool> {
+        self.files.check().map(|()| !self.files.calib.is_empty())
     }
 
     /// Whether options tell anything of the cameras.

@@ -59,6 +59,16 @@ pub struct Recipe {
     unseen: UnseenOptions,
 }
 
+/// What a pair may have of its own, besides what the options tell of all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Own {
+    Nothing,
+    /// The geometry of pictures that are rectified.
+    Geometry,
+    /// A calibration of the pictures as they were taken.
+    Calibration,
+}
+
 /// A job, and doubts about the files that were read for it, which may be the reason why it fails.
 pub struct Prepared {
     pub job: Job,
@@ -90,14 +100,19 @@ impl Recipe {
         self.depth.are_given()
     }
 
-    /// Checks, before any pair is read, what all pairs have in common; `have_calibrations`: whether a pair may have a calibration of its own.
+    /// Checks, before any pair is read, what all pairs have in common: options, calibration files and masks. `own`: what a pair may have of its
+    /// own.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for options that no pair can follow.
-    pub fn check_common(&self, have_calibrations: bool) -> hsad::Result<()> {
-        let is_calibrated = have_calibrations || self.depth.are_given();
-        self.cloud.check(is_calibrated)?;
-        self.rectify.check_known(is_calibrated, self.depth.are_given())
+    /// [`Error::Parameter`] for options that no pair can follow, and those of a file that cannot be read.
+    pub fn check_common(&self, own: Own) -> hsad::Result<()> {
+        let has_files = self.depth.check_files()?;
+        for mask in self.unseen.unseen().files() {
+            load::load(mask)?;
+        }
+        let is_given = self.depth.are_given();
+        self.cloud.check(own != Own::Nothing || is_given)?;
+        self.rectify.check_known(own == Own::Calibration || has_files, is_given)
     }
 
     /// All options as text, each file by the hash of its content: what two runs that match pairs alike have in common.

@@ -24,7 +24,8 @@ pub enum Rectify {
 }
 
 impl Rectify {
-    /// Checks that pairs can be brought to correspond so: whether any may have a calibration, and whether all have that of the options.
+    /// Checks that pairs can be brought to correspond so: whether any may have a calibration of the pair as it was taken, and whether the options
+    /// have a calibration of all.
     ///
     /// # Errors
     /// [`Error::Parameter`] if none can.

@@ -282,14 +282,22 @@ fn what_is_no_batch_is_told() {
         (&["--filled"], "--filled is given, but without a calibration"),
         (&["--max-depth", "9"], "--max-depth is 9, but without a calibration"),
         (&["--rectify", "calibrated"], "--rectify is calibrated, but it needs the calibration"),
+        (
+            &["--rectify", "calibrated", "--focal", "300", "--baseline", "0.1"],
+            "needs the calibration of the pair as it was taken",
+        ),
         (&["--max-depth", "0", "--focal", "300", "--baseline", "0.1"], "the largest depth is 0, but"),
         (&["--rectify", "uncalibrated", "--focal", "300", "--baseline", "0.1"], "leave the calibration out"),
     ] {
         fails(&[&[pairs], arguments].concat(), 2, told);
     }
+    let junk = root.join("junk").display().to_string();
+    fs::write(&junk, "junk").unwrap();
     for (arguments, told) in [
         (["--calib", "gone.txt"], "gone.txt: No such file"),
         (["--mask", "gone.png"], "gone.png: No such file"),
+        (["--calib", &junk], "junk: the file has no calibration that hsad knows"),
+        (["--mask", &junk], "junk: "),
         (["--side-by-side", "left-right"], "every pair has a right view of its own"),
     ] {
         fails(&[&[pairs], &arguments[..]].concat(), 1, told);

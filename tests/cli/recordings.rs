@@ -226,5 +226,15 @@ fn what_is_no_pair_of_topics_is_told() {
     let bag = root.join("ride.bag");
     fs::write(&bag, "#ROSBAG V2.0\n").unwrap();
     fails(&bag, &[], "mcap convert IN.bag OUT.mcap");
+    let rectified = root.join("rectified.mcap");
+    let messages = [
+        ("/left/camera_info", "CameraInfo", camera_info(left, 0.0)),
+        ("/right/camera_info", "CameraInfo", camera_info(right, -30.0)),
+        ("/left/image_rect", "Image", image(1, left)),
+        ("/right/image_rect", "Image", image(1, right)),
+    ];
+    fs::write(&rectified, recording(&messages)).unwrap();
+    batch(&rectified, &["--rectify", "calibrated"], &out).code(2).stderr(contains("of the pair as it was taken"));
+    assert!(!out.exists());
     batch(&file, &["-q", "--topics", "/front", "/rear"], &out).success();
 }

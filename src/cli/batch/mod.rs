@@ -139,7 +139,7 @@ impl Batch {
         let (config, strongest) = self.recipe.config()?;
         let parameters = parameters(&config, strongest);
         let source = Source::of(&self)?;
-        self.recipe.check_common(source.has_calibrations)?;
+        self.recipe.check_common(source.own)?;
         let grouping = Grouping { length: self.temporal.map_or(1, usize::from), shard: self.shard };
         let name = self.shard.map_or_else(|| "report.jsonl".into(), Shard::journal);
         let temporal = self.temporal.map(|length| format!(" temporal {length}")).unwrap_or_default();

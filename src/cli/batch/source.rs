@@ -12,7 +12,7 @@ use hsad::{
 };
 
 use super::{
-    super::{output::is_stdout, terminal},
+    super::{output::is_stdout, recipe::Own, terminal},
     Batch,
     feed::Pairs,
     frame::Frame,
@@ -28,8 +28,8 @@ pub struct Source {
     pub pairs: Pairs,
     /// The number of pairs, if it is known.
     pub count: Option<usize>,
-    /// Whether a pair may have a calibration of its own.
-    pub has_calibrations: bool,
+    /// What a pair may have of its own.
+    pub own: Own,
     /// The calibration of a recording.
     pub recorded: Option<RecordedCalibration>,
     /// What the summary says of views that are in no pair, once all pairs were read; `None` if there are none.
@@ -79,9 +79,9 @@ impl Source {
         }
         pair::check_names(&pairs, &batch.output)?;
         let count = Some(pairs.len());
-        let has_calibrations = pairs.iter().any(|pair| pair.calibration.is_some());
+        let own = if pairs.iter().any(|pair| pair.calibration.is_some()) { Own::Calibration } else { Own::Nothing };
         let pairs = Box::new(pairs.into_iter().map(|pair| Ok((pair, None))));
-        Ok(Self { pairs, count, has_calibrations, recorded: None, left_out: Box::new(|| left_out) })
+        Ok(Self { pairs, count, own, recorded: None, left_out: Box::new(|| left_out) })
     }
 
     fn of_video(path: &Path, batch: &Batch) -> Result<Self> {
@@ -91,7 +91,7 @@ impl Source {
         let frames = Video::open(path)?;
         let pairs = frames.map(|frame| frame.map(|(pair, frame)| (pair, Some(Frame::Both(frame)))));
         let left_out = Box::new(|| None);
-        Ok(Self { pairs: Box::new(pairs), count: None, has_calibrations: false, recorded: None, left_out })
+        Ok(Self { pairs: Box::new(pairs), count: None, own: Own::Nothing, recorded: None, left_out })
     }
 
     fn of_recording(path: &Path, batch: &Batch) -> Result<Self> {
@@ -126,6 +126,10 @@ impl Source {
             }
             None
         });
+        let own = calibration.as_ref().map_or(Own::Nothing, |calibration| match calibration.is_rectified {
+            true => Own::Geometry,
+            false => Own::Calibration,
+        });
         let pairs = first.into_iter().chain(frames).map(|read| {
             let (name, shots) = read?;
             let [left, right] = shots.each_ref().map(|shot| shot.path.clone());
@@ -135,7 +139,7 @@ impl Source {
         Ok(Self {
             pairs: Box::new(pairs),
             count: None,
-            has_calibrations: calibration.is_some(),
+            own,
             recorded: calibration,
             left_out: Box::new(move || told(&left_out.lock().unwrap_or_else(PoisonError::into_inner), &topics)),
         })

@@ -121,13 +121,35 @@ impl<'a> File<'a> {
 /// # Errors
 /// [`Error::Io`] if a file cannot be read, otherwise as [`parse`].
 pub fn read(paths: &[PathBuf], hints: &Hints<'_>) -> Result<Loaded> {
+    with_texts(paths, |texts| parse(texts, hints))
+}
+
+/// Checks, before any picture is known, that one or two files are the calibration of a pair; `unit` is that of [`Hints`]. Of files with many
+/// cameras or pictures, which are KITTI's and COLMAP's, only the format is checked.
+///
+/// # Errors
+/// As [`read`].
+pub fn check(paths: &[PathBuf], unit: Option<f64>) -> Result<()> {
+    with_texts(paths, |texts| {
+        let files = recognised(texts)?;
+        let formats: Vec<Format> = files.iter().map(|file| file.format).collect();
+        match formats[..] {
+            [Format::Kitti]
+            | [Format::ColmapCameras, Format::ColmapImages]
+            | [Format::ColmapImages, Format::ColmapCameras] => Ok(()),
+            _ => of_all(&files, &Hints { unit, ..Hints::default() }, &mut Vec::new()).map(|_| ()),
+        }
+    })
+}
+
+fn with_texts<T>(paths: &[PathBuf], then: impl FnOnce(&[(&Path, &str)]) -> Result<T>) -> Result<T> {
     let texts = paths.iter().map(|path| {
         let bytes = read_whole(path, MAX_BYTES)?;
         Ok((path.as_path(), String::from_utf8_lossy(&bytes).into_owned()))
     });
     let texts: Vec<(&Path, String)> = texts.collect::<Result<_>>()?;
     let texts: Vec<(&Path, &str)> = texts.iter().map(|(path, text)| (*path, text.as_str())).collect();
-    parse(&texts, hints)
+    then(&texts)
 }
 
 /// Parses the texts of one or two files; their paths are named in errors.
@@ -136,23 +158,28 @@ pub fn read(paths: &[PathBuf], hints: &Hints<'_>) -> Result<Loaded> {
 /// [`Error::Format`] for an unknown format, for a file without its other half, and for values that are missing or wrong; the message
 /// says what to write instead. [`Error::Parameter`] for another number of files.
 pub fn parse(texts: &[(&Path, &str)], hints: &Hints<'_>) -> Result<Loaded> {
-    let files = texts.iter().map(|&(path, text)| File::new(path, text)).collect::<Result<Vec<_>>>()?;
     let mut notes = Vec::new();
-    let (stereo, rectified) = match files.as_slice() {
-        [file] => of_one(file, hints, &mut notes)?,
-        [first, second] => of_two(first, second, hints, &mut notes)?,
-        _ => {
-            return Err(Error::Parameter {
-                name: "the number of calibration files",
-                value: files.len().to_string(),
-                expected: "it must be one, or two for formats with a file per camera".into(),
-            });
-        }
-    };
+    let (stereo, rectified) = of_all(&recognised(texts)?, hints, &mut notes)?;
     Ok(Loaded { rectified: rectified.or_else(|| stereo.rectified()), stereo, notes })
 }
 
 type Found = (StereoCalibration, Option<Calibration>);
+
+fn recognised<'a>(texts: &[(&'a Path, &'a str)]) -> Result<Vec<File<'a>>> {
+    texts.iter().map(|&(path, text)| File::new(path, text)).collect()
+}
+
+fn of_all(files: &[File<'_>], hints: &Hints<'_>, notes: &mut Vec<String>) -> Result<Found> {
+    match files {
+        [file] => of_one(file, hints, notes),
+        [first, second] => of_two(first, second, hints, notes),
+        _ => Err(Error::Parameter {
+            name: "the number of calibration files",
+            value: files.len().to_string(),
+            expected: "it must be one, or two for formats with a file per camera".into(),
+        }),
+    }
+}
 
 fn of_one(file: &File<'_>, hints: &Hints<'_>, notes: &mut Vec<String>) -> Result<Found> {
     let File { path, text, .. } = *file;

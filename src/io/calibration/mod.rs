@@ -36,7 +36,7 @@ mod yaml;
 
 pub use crate::calibration::{Calibration, depth_map};
 #[cfg(feature = "calibrations")]
-pub use files::{Format, Hints, Loaded, parse, read};
+pub use files::{Format, Hints, Loaded, check, parse, read};
 #[cfg(feature = "calibrations")]
 pub use opencv::to_opencv_yaml;
 #[cfg(feature = "calibrations")]

@@ -100,3 +100,28 @@ fn damaged_files_do_not_panic() {
     }
     assert!(read > 500, "{read} were read");
 }
+
+#[test]
+fn files_are_checked_before_any_picture_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let check_of = |texts: &[&str]| {
+        let paths: Vec<_> = (0..texts.len()).map(|number| folder.path().join(number.to_string())).collect();
+        paths.iter().zip(texts).for_each(|(path, text)| std::fs::write(path, text).unwrap());
+        check(&paths, None).map_err(|error| error.to_string())
+    };
+    let many = format!("{COLMAP_IMAGES}9 1 0 0 0 -0.5 0.2 0.3 0 images/im2.png\n\n");
+    let first_alone = KITTI.lines().take(1).map(|line| format!("{line}\n")).collect::<String>();
+    for texts in [&[MIDDLEBURY][..], &[ROS_LEFT, ROS_RIGHT], &[COLMAP_CAMERAS, &many], &[&first_alone]] {
+        assert_eq!(check_of(texts), Ok(()));
+    }
+    for (texts, told) in [
+        (&["hello: world"][..], "no calibration that hsad knows"),
+        (&[ROS_LEFT], "this is ROS camera_info of one camera"),
+        (&[NUMBERS, KALIBR], "two files are"),
+        (&[COLMAP_CAMERAS], "name images.txt after it"),
+        (&[&MIDDLEBURY.replace("baseline", "base")], "baseline"),
+    ] {
+        let error = check_of(texts).unwrap_err();
+        assert!(error.contains(told), "{error}");
+    }
+}
