@@ -1,7 +1,7 @@
 //! Pairs from the folders of the benchmarks and of recordings.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, HashMap},
     ffi::{OsStr, OsString},
     fs,
     path::{Path, PathBuf},
@@ -114,19 +114,25 @@ fn text(name: Option<&OsStr>, path: &Path) -> Result<String> {
     name.with_context(|| format!("{}: the name is no text in UTF-8: rename it", hsad::shown(path)))
 }
 
-/// Adds the pairs of pictures with the same name in a left and a right folder. Their names follow `prefix`.
+/// Adds the pairs of pictures with the same name in a left and a right folder. Their names follow `prefix`, and have the extension where others
+/// differ in it alone.
 fn same_names([left, right]: [PathBuf; 2], prefix: &str, listing: &mut Listing) -> Result<()> {
-    let mut rights = pictures(&right)?;
+    let (mut rights, mut both, mut stems) = (pictures(&right)?, Vec::new(), HashMap::new());
     for (name, left) in pictures(&left)? {
         match rights.remove(&name) {
             Some(right) => {
-                let name = prefix.to_owned() + &text(left.file_stem(), &left)?;
-                listing.pairs.push(Pair { name, left, right: Some(right), calibration: None });
+                *stems.entry(left.file_stem().unwrap_or_default().to_owned()).or_insert(0) += 1;
+                both.push([left, right]);
             }
             None => listing.alone[0].push(left),
         }
     }
     listing.alone[1].extend(rights.into_values());
+    for [left, right] in both {
+        let stem = left.file_stem().filter(|stem| stems.get(*stem) == Some(&1));
+        let name = prefix.to_owned() + &text(stem.or(left.file_name()), &left)?;
+        listing.pairs.push(Pair { name, left, right: Some(right), calibration: None });
+    }
     Ok(())
 }
 
@@ -200,6 +206,13 @@ mod tests {
         assert_eq!(found(&files).expect("a pair"), (vec!["a".into()], Some(told.into())));
         let files = ["a/im0.png", "a/left.png", "a/right.png"];
         assert_eq!(found(&files).expect("a pair"), (vec!["a".into()], None));
+        let files = ["left/1.png", "left/1.jpg", "left/1.2.png", "left/3.png", "left/3.jpg"];
+        let files = [&files[..], &["right/1.png", "right/1.jpg", "right/1.2.png", "right/3.png"]].concat();
+        let told = "views without a partner: 1 left, 0 right (left/3.jpg)";
+        assert_eq!(
+            found(&files).expect("pairs"),
+            (["1.2", "1.jpg", "1.png", "3"].map(String::from).into(), Some(told.into()))
+        );
         let files = ["left/1.HEIC", "right/1.HEIC", "left/2.avif", "right/2.avif"];
         assert_eq!(found(&files).expect("pairs that fail"), (vec!["1".into(), "2".into()], None));
     }
