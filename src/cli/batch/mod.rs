@@ -3,11 +3,13 @@
 mod desk;
 mod feed;
 mod frame;
+mod given;
 mod inputs;
 mod journal;
 mod list;
 mod listing;
 mod load;
+mod names;
 mod pair;
 mod patterns;
 mod record;

@@ -16,9 +16,10 @@ use super::{
     Batch,
     feed::Pairs,
     frame::Frame,
-    list,
+    given::{Given, Summary},
+    list::{self, List},
     listing::Listing,
-    pair::{self, Pair},
+    pair::Pair,
     patterns, tree,
     video::{Video, is_video},
 };
@@ -56,32 +57,30 @@ impl Source {
         if batch.no_camera_info && !is_recording {
             bail!("--no-camera-info is about a recording (.mcap)");
         }
-        let listing = match (&batch.source, &batch.left, &batch.right) {
-            (None, Some(left), Some(right)) => patterns::pairs(left, right)?,
-            (None, Some(both), None) => Listing::of(patterns::pictures_of_both(both)?),
+        let given = match (&batch.source, &batch.left, &batch.right) {
+            (None, Some(left), Some(right)) => Given::Found(patterns::pairs(left, right)?),
+            (None, Some(both), None) => Given::Found(Listing::of(patterns::pictures_of_both(both)?)),
             (Some(source), ..) if is_recording => return Self::of_recording(source, batch),
             (Some(source), ..) if is_video(source) => return Self::of_video(source, batch),
-            (Some(source), ..) if source.is_dir() => tree::pairs(source)?,
-            (Some(source), ..) if list::is_list(source) => Listing::of(list::read(source)?),
+            (Some(source), ..) if source.is_dir() => Given::Found(tree::pairs(source)?),
+            (Some(source), ..) if list::is_list(source) => Given::Listed(List::read(source)?),
             (Some(source), ..) => bail!(
                 "{}: neither a folder nor a list of pairs (.csv, .jsonl) nor a video (.y4m) nor a recording (.mcap); hsad match matches a pair",
                 hsad::shown(source)
             ),
             _ => bail!("name a list or a folder, or --left and --right"),
         };
-        let left_out = listing.left_out();
-        let pairs = listing.pairs;
-        if pairs.is_empty() {
+        let left_out = given.left_out();
+        let Summary { count, has_calibrations, has_both_in_one } = given.check(&batch.output)?;
+        if count == 0 {
             bail!("{}: no pairs", hsad::shown(batch.source.as_deref().unwrap_or(Path::new("the list"))));
         }
-        if batch.halves.halves().is_some() && pairs.iter().all(|pair| pair.right.is_some()) {
+        if batch.halves.halves().is_some() && !has_both_in_one {
             bail!("every pair has a right view of its own: leave out --side-by-side and --top-bottom");
         }
-        pair::check_names(&pairs, &batch.output)?;
-        let count = Some(pairs.len());
-        let own = if pairs.iter().any(|pair| pair.calibration.is_some()) { Own::Calibration } else { Own::Nothing };
-        let pairs = Box::new(pairs.into_iter().map(|pair| Ok((pair, None))));
-        Ok(Self { pairs, count, own, recorded: None, left_out: Box::new(|| left_out) })
+        let own = if has_calibrations { Own::Calibration } else { Own::Nothing };
+        let pairs = Box::new(given.into_pairs().map(|pair| Ok((pair?, None))));
+        Ok(Self { pairs, count: Some(count), own, recorded: None, left_out: Box::new(|| left_out) })
     }
 
     fn of_video(path: &Path, batch: &Batch) -> Result<Self> {
