@@ -35,6 +35,7 @@ pub mod dense {
         kernels::*,
         pyramid::{CellRange, CellTable, SIDE},
         reprojection::DepthTable,
+        seen::Seen,
     };
 }
 

@@ -8,7 +8,6 @@
 // doubtful pixel, which rays would draw out into streaks. The pixel gets the weighted median of the
 // candidates; the weight halves with every 2^HALVING_BITS that a price exceeds the least price.
 
-#import bitmap_rows
 #import consistent
 #import halving
 
@@ -55,7 +54,7 @@ struct Params {
 @group(0) @binding(1) var<storage, read> tangents: array<u32>;
 // Disparities that point at the pixels of the other view, as project.wgsl writes them.
 @group(0) @binding(2) var<storage, read> projected: array<u32>;
-// Which pixels have a disparity, as bitmap.wgsl writes them.
+// Which pixels have a disparity, and which holes are filled, as bitmap.wgsl writes them.
 @group(0) @binding(3) var<storage, read> bitmaps: array<u32>;
 // One i32 per pixel: the disparity, fixed-point. Then the confidences, four packed per u32, 0 in holes. Disparities and
 // confidences of holes are written; those of other pixels stay.
@@ -241,6 +240,15 @@ fn filling(at: vec2<i32>) -> vec2<i32> {
     return vec2<i32>(median(candidates, u32(least)), FILLED - min(least >> PRICE_BITS, FILLED - 1));
 }
 
+// The holes to be filled of word `word` of row `y`.
+fn to_fill_of(word: i32, y: i32) -> u32 {
+    let height = i32(params.height);
+    let row_words = (i32(params.width) + 31) / 32;
+    let others = height * row_words + 3 * ((height + 31) / 32) * (i32(params.width) + 2 * MARGIN);
+    let index = others + min(y, height - 1) * row_words + min(word, row_words - 1);
+    return select(0u, bitmaps[index], (word < row_words) & (y < height));
+}
+
 // A workgroup first lists the holes of its tile, and then shares them out among its threads: they are few, and without
 // a list most threads would wait.
 @compute @workgroup_size(WORKGROUP_WIDTH)
@@ -251,7 +259,7 @@ fn main(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_index)
     workgroupBarrier();
     let first = vec2<i32>(i32(tile.x) * TILE_WORDS, i32(params.first_tile_row + tile.y) * TILE_ROWS);
     if thread < TILE_WORDS * TILE_ROWS {
-        var rest = holes_of(first.x + i32(thread) % TILE_WORDS, first.y + i32(thread) / TILE_WORDS);
+        var rest = to_fill_of(first.x + i32(thread) % TILE_WORDS, first.y + i32(thread) / TILE_WORDS);
         while rest != 0u {
             places[atomicAdd(&count, 1u)] = 32u * thread + firstTrailingBit(rest);
             rest &= rest - 1u;

@@ -23,7 +23,7 @@ mod plan;
 pub(crate) mod pyramid;
 mod readback;
 pub(crate) mod reprojection;
-mod seen;
+pub(crate) mod seen;
 mod uploaded;
 mod word_copy;
 

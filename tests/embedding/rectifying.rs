@@ -6,17 +6,17 @@ use hsad::{
     Backend, Config,
     calibration::{CameraModel, Lens, RadialTangential, StereoCalibration},
     config::Preset,
-    dense::{Dense, DenseConfig, DenseParameters, Destination, Matcher, View},
+    dense::{Dense, DenseConfig, Destination, Matcher, View},
     disparity::DisparityRange,
     glam::{DMat3, DVec2, DVec3},
     gpu::block_on,
     image::Size,
     internals::{
         cpu::{
-            dense::{compute, compute_in_colour, map_back, refined, unseen},
+            dense::{compute_in_colour, compute_seen, map_back},
             rectify::{warp, warp_colours},
         },
-        dense::{Loss, MapTexel},
+        dense::{Loss, MapTexel, Seen},
     },
     io::{Picture, load},
     luma::{Source, pack},
@@ -54,13 +54,10 @@ fn expected(pictures: &[Picture; 2], maps: &[WarpMap; 2], config: &DenseConfig) 
     let (own, other) = if config.reference == View::Left { (0, 1) } else { (1, 0) };
     let masks = [own, other].map(|view: usize| maps[view].visible());
     let picture = warp_colours(&pictures[own], &maps[own]);
-    let parameters = DenseParameters { refinement: None, ..config.parameters };
-    let mut dense = compute(&left, &right, &DenseConfig { parameters, ..config.clone() }).unwrap();
-    unseen(&mut dense, config.reference, Some(&masks[0]), None, Loss::Nothing);
-    if let Some(refinement) = &config.parameters.refinement {
-        dense = refined([&left, &right], &picture, dense, refinement, config);
-    }
-    unseen(&mut dense, config.reference, Some(&masks[0]), Some(&masks[1]), Loss::Confidence);
+    let seen = Seen { masks: [Some(&masks[0]), Some(&masks[1])], loss: Loss::Nothing };
+    let shown = seen.with_partners(config.reference, config.range).unwrap();
+    let seen = Seen { masks: [Some(&shown), seen.masks[1]], ..seen };
+    let dense = compute_seen([&left, &right], Some(&picture), Some(seen), config).unwrap();
     // What the masks keep out makes a difference.
     assert_ne!(dense, compute_in_colour([&left, &right], &picture, config).unwrap());
     dense

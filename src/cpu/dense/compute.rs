@@ -109,12 +109,12 @@ fn computed(
             aggregate(task, Cut::fitting(task)?)
         }
     };
-    let worked_on = |dense, after: &After| checked_and_refined(views, picture, dense, after, config);
-    let Some(Seen { masks: [own, other], loss }) = seen else { return Ok(worked_on(dense, &after)) };
+    let worked_on = |own, dense, after: &After| checked_and_refined(views, picture, own, dense, after, config);
+    let Some(Seen { masks: [own, other], loss }) = seen else { return Ok(worked_on(None, dense, &after)) };
     // What is hidden takes no part in the filters.
-    let mut dense = worked_on(dense, &After { filters: None, ..after.clone() });
+    let mut dense = worked_on(None, dense, &After { filters: None, ..after.clone() });
     unseen(&mut dense, config.reference, own, other, loss);
-    let mut dense = worked_on(dense, &After { agreement: None, ..after });
+    let mut dense = worked_on(own, dense, &After { agreement: None, ..after });
     unseen(&mut dense, config.reference, own, other, Loss::Confidence);
     Ok(dense)
 }

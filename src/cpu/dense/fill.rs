@@ -19,7 +19,7 @@ use crate::{
         },
     },
     disparity::{DisparityMap, DisparityRange, NONE, SCALE},
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
 };
 
 /// Column and row steps of the rays.
@@ -46,12 +46,19 @@ impl<'p> Surroundings<'p> {
 
 /// Fills the holes of a map of `view` with disparities within `range`: the weighted median of the planes that a ray in
 /// each of eight directions reaches first, past up to [`PASSED`] doubtful pixels if another one follows behind a hole. The weight of a plane halves with every 2^[`HALVING_BITS`] that its price
-/// exceeds the least. Filled pixels get a confidence of 1 to [`FILLED`], less for a larger least price.
-pub fn fill(dense: &Dense, surroundings: &Surroundings<'_>, view: View, range: DisparityRange) -> Dense {
+/// exceeds the least. Filled pixels get a confidence of 1 to [`FILLED`], less for a larger least price. Pixels that `own`, the mask of the
+/// view, hides stay holes: they are 0 there.
+pub fn fill(
+    dense: &Dense,
+    surroundings: &Surroundings<'_>,
+    own: Option<&Luma>,
+    view: View,
+    range: DisparityRange,
+) -> Dense {
     let Size { width, height } = dense.disparity.size();
     let filled = |x: u32, y: u32| {
         let disparity = dense.disparity.get(x, y);
-        if disparity != NONE {
+        if disparity != NONE || own.is_some_and(|mask| mask.get(x, y) == 0) {
             return (disparity, dense.confidence.get(x, y));
         }
         let candidates: Vec<(i32, u32)> = DIRECTIONS

@@ -64,7 +64,6 @@ pub use path::path;
 pub use point_counts::point_counts;
 pub use points::{PointList, points};
 pub use project::project;
-pub use refined::refined;
 pub use residual::residual;
 pub use select::{path_winners, select};
 pub use soft_rank::soft_rank;

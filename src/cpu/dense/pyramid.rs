@@ -40,7 +40,7 @@ pub(super) fn pyramid(
         let config = level.coarse(config);
         let mut dense = matched(pair.each_ref(), &config, costs, &table)?;
         unseen(&mut dense, config.reference, own.as_ref(), other.as_ref(), Loss::Disparity);
-        let Dense { disparity, .. } = checked_and_refined(pair.each_ref(), None, dense, &filters, &config);
+        let Dense { disparity, .. } = checked_and_refined(pair.each_ref(), None, None, dense, &filters, &config);
         table = CellTable::below(&disparity, finer.size, finer.range);
     }
     matched(views, &levels[0].finest(config), costs, &table)

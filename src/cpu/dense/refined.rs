@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{Surroundings, agreement, fill, residual, support, weighted_median};
 use crate::{
     cpu::luma::rgba,
-    dense::{After, Dense, DenseConfig, Filters, Refinement, View},
+    dense::{After, Dense, DenseConfig, Filters, View},
     image::{Luma, Plane, Size},
 };
 
@@ -16,38 +16,21 @@ const WINDOW: u32 = 1 << 21;
 const BYTES: u64 = 48;
 const SURROUNDINGS: u64 = 48;
 
-/// The map of the pair `views`, before the change of brightness, after all steps of `refinement`; `picture` has the colours of
-/// the reference view.
-pub fn refined(
-    views: [&Luma; 2],
-    picture: &Plane<[u8; 4]>,
-    dense: Dense,
-    refinement: &Refinement,
-    config: &DenseConfig,
-) -> Dense {
-    checked_and_refined(
-        views,
-        Some(picture),
-        dense,
-        &After { agreement: None, filters: Some(refinement.into()) },
-        config,
-    )
-}
-
 /// The map of the pair `views`, before the change of brightness, after its checks and filters. Holes are filled by the colours
-/// of `picture`, the reference view, or by its luma.
+/// of `picture`, the reference view, or by its luma, but for those that `own`, the mask of the reference view, hides.
 ///
 /// A large map is worked on in windows of rows with a halo of as many rows as checks and filters reach; the result does not
 /// depend on where windows are cut.
 pub(super) fn checked_and_refined(
     views: [&Luma; 2],
     picture: Option<&Plane<[u8; 4]>>,
+    own: Option<&Luma>,
     dense: Dense,
     after: &After,
     config: &DenseConfig,
 ) -> Dense {
     let rows = (WINDOW / dense.disparity.width()).max(1);
-    in_windows(views, picture, dense, after, config, rows)
+    in_windows(views, (picture, own), dense, after, config, rows)
 }
 
 /// Memory of the windows of a map of `size`, in bytes.
@@ -60,7 +43,7 @@ pub(super) fn bytes(size: Size, after: &After) -> u64 {
 /// [`checked_and_refined`] in windows of `rows` rows without their halo.
 pub(super) fn in_windows(
     views: [&Luma; 2],
-    picture: Option<&Plane<[u8; 4]>>,
+    (picture, own): (Option<&Plane<[u8; 4]>>, Option<&Luma>),
     mut dense: Dense,
     after: &After,
     config: &DenseConfig,
@@ -80,7 +63,8 @@ pub(super) fn in_windows(
         }
         if let Some(filters) = &after.filters {
             let picture = picture.map(|picture| picture.cut(top..bottom));
-            window = filtered(views.map(|view| view.cut(top..bottom)), picture, &window, filters, config);
+            let own = own.map(|mask| mask.cut(top..bottom));
+            window = filtered(views.map(|view| view.cut(top..bottom)), (picture, own), &window, filters, config);
         }
         let place = (first * width) as usize..(end * width) as usize;
         let Dense { disparity, confidence } = cut(&window, first - top..end - top);
@@ -92,7 +76,7 @@ pub(super) fn in_windows(
 
 fn filtered(
     [left, right]: [Luma; 2],
-    picture: Option<Plane<[u8; 4]>>,
+    (picture, own): (Option<Plane<[u8; 4]>>, Option<Luma>),
     dense: &Dense,
     filters: &Filters,
     config: &DenseConfig,
@@ -107,7 +91,7 @@ fn filtered(
     if filters.fill {
         let picture = picture.unwrap_or_else(|| rgba(&luma));
         let surroundings = Surroundings::new(&refined.disparity, config.reference, config.range, &picture);
-        refined = fill(&refined, &surroundings, config.reference, config.range);
+        refined = fill(&refined, &surroundings, own.as_ref(), config.reference, config.range);
     }
     for &median in &filters.after {
         refined.disparity = weighted_median(&luma, &refined.disparity, median);
@@ -167,11 +151,13 @@ pub(super) mod tests {
             });
             let dense = compute(&left, &right, &matched).unwrap();
             let after = After::of(&config.parameters);
-            let windows = |rows| in_windows([&left, &right], None, dense.clone(), &after, &config, rows);
-            let expected = windows(300);
-            assert_ne!(expected, dense, "{preset}");
-            for rows in [7, 100, 299] {
-                assert_eq!(windows(rows), expected, "{preset}, {rows}");
+            for own in [None, Some(&Luma::from_fn(left.size(), |x, y| if (x + y) % 50 < 20 { 0 } else { 255 }))] {
+                let windows = |rows| in_windows([&left, &right], (None, own), dense.clone(), &after, &config, rows);
+                let expected = windows(300);
+                assert_ne!(expected, dense, "{preset}");
+                for rows in [7, 100, 299] {
+                    assert_eq!(windows(rows), expected, "{preset}, {rows}");
+                }
             }
         }
     }

@@ -12,7 +12,20 @@ shader_struct! {
     struct Params {
         width: u32,
         height: u32,
+        first_row: u32,
+        is_masked: u32,
     }
+}
+
+/// Which pixels of a view are shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'b> {
+    /// Packed bytes, 0 for a hidden pixel.
+    pub mask: &'b wgpu::Buffer,
+    /// Row of the mask of the first row of the map.
+    pub first_row: u32,
+    /// Whether the mask hides pixels; else the buffer may have any content.
+    pub is_masked: bool,
 }
 
 /// The kernel that makes bitmaps.
@@ -28,7 +41,7 @@ impl Bitmaps {
         Stage {
             name: "bitmap",
             source: include_str!("../../../shaders/dense/bitmap.wgsl"),
-            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write],
+            bindings: &[Binding::Uniform(Params::SHAPE), Binding::Words, Binding::Write, Binding::Read],
             constants: vec![
                 ("WORKGROUP_WIDTH", WORKGROUP[0].into()),
                 ("WORKGROUP_HEIGHT", WORKGROUP[1].into()),
@@ -47,16 +60,24 @@ impl Bitmaps {
     /// Words of the bitmaps of a map of `size`.
     pub fn words(Size { width, height }: Size) -> u64 {
         let rows = u64::from(height) * u64::from(width.div_ceil(32));
-        rows + 3 * u64::from(height.div_ceil(32)) * u64::from(width + 2 * Self::MARGIN)
+        2 * rows + 3 * u64::from(height.div_ceil(32)) * u64::from(width + 2 * Self::MARGIN)
     }
 
-    /// Writes the bitmaps of `disparities`.
-    pub fn prepare(&self, Size { width, height }: Size, disparities: &WordTexture, bitmaps: &wgpu::Buffer) -> Dispatch {
+    /// Writes the bitmaps of `disparities`, a map of `size` in a view of which `shown` shows pixels.
+    pub fn prepare(
+        &self,
+        Size { width, height }: Size,
+        disparities: &WordTexture,
+        shown: Shown<'_>,
+        bitmaps: &wgpu::Buffer,
+    ) -> Dispatch {
+        let Shown { mask, first_row, is_masked } = shown;
         let groups = [
             (width + 2 * Self::MARGIN).max(height).div_ceil(WORKGROUP[0]),
             height.div_ceil(32).max(width.div_ceil(32)).div_ceil(WORKGROUP[1]),
             4,
         ];
-        self.0.dispatch(&Params { width, height }, &[&disparities.view, bitmaps], groups)
+        let params = Params { width, height, first_row, is_masked: is_masked.into() };
+        self.0.dispatch(&params, &[&disparities.view, bitmaps, mask], groups)
     }
 }

@@ -45,7 +45,7 @@ mod weighted_median;
 mod windows;
 
 pub use agreement::{AGREEMENT_REACH, AGREEMENT_TOLERANCE, Agreement, AgreementTile};
-pub use bitmap::Bitmaps;
+pub use bitmap::{Bitmaps, Shown};
 pub use block_match::{BlockMatch, ConfirmingMap, Layout, Tile};
 pub use box_mean::BoxMean;
 pub use cell_cost::CellCost;

@@ -115,7 +115,7 @@ impl Matcher {
                 let (masks, resampling) = match maps {
                     None => (None, None),
                     Some(maps) => (
-                        masks_of(gpu, maps, config.reference)?,
+                        masks_of(gpu, maps, (config.reference, config.range))?,
                         Some(Resampling::new(gpu, maps, config.reference, &luma, own.as_ref())?),
                     ),
                 };

@@ -8,6 +8,7 @@ use crate::{
         seen::Seen,
         uploaded::{Masks, UploadedPair},
     },
+    disparity::DisparityRange,
     error::Result,
     gpu::{Dispatch, Gpu, storage_buffer},
     image::{Plane, Size},
@@ -96,8 +97,12 @@ impl Resampling {
     }
 }
 
-/// Which pixels of the pictures that `maps` make show their views, unless all do.
-pub(super) fn masks_of(gpu: &Gpu, maps: [&WarpMap; 2], reference: View) -> Result<Option<Masks>> {
+/// Which pixels of the pictures that `maps` make show their views, and have a partner in `range` that does, unless all do.
+pub(super) fn masks_of(
+    gpu: &Gpu,
+    maps: [&WarpMap; 2],
+    (reference, range): (View, DisparityRange),
+) -> Result<Option<Masks>> {
     let mut visible = maps.map(WarpMap::visible);
     if reference == View::Right {
         visible.reverse();
@@ -107,7 +112,9 @@ pub(super) fn masks_of(gpu: &Gpu, maps: [&WarpMap; 2], reference: View) -> Resul
         return Ok(None);
     }
     let [own, other] = &visible;
-    Masks::new(gpu, maps[0].size(), Seen { masks: [Some(own), Some(other)], loss: Loss::Nothing }).map(Some)
+    let seen = Seen { masks: [Some(own), Some(other)], loss: Loss::Nothing };
+    let own = seen.with_partners(reference, range);
+    Masks::new(gpu, maps[0].size(), Seen { masks: [own.as_ref(), Some(other)], ..seen }).map(Some)
 }
 
 fn index(view: View) -> usize {

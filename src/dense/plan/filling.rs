@@ -8,7 +8,7 @@ use super::Plan;
 use crate::{
     dense::{
         config::View,
-        kernels::{Bitmaps, Fill, MapBuffer, MapLayout, Project, Surroundings, Tangents, rays},
+        kernels::{Bitmaps, Fill, MapBuffer, MapLayout, Project, Shown, Surroundings, Tangents, rays},
         word_copy::{CopyTarget, WordCopy},
     },
     disparity::DisparityRange,
@@ -45,11 +45,13 @@ impl<'a> Filling<'a> {
         })
     }
 
-    /// Fills, between checkpoints, the holes in `rows` of `map`, which has the rows of the view from row `top` on.
+    /// Fills, between checkpoints, the holes in `rows` of `map` that the mask `own` of the view shows, if there is one. The map has the rows of
+    /// the view from row `top` on.
     pub(super) fn plan(
         &self,
         plan: &mut Plan,
         (range, view): (DisparityRange, View),
+        own: Option<&wgpu::Buffer>,
         top: u32,
         map: MapBuffer<'_>,
         rows: Range<u32>,
@@ -72,7 +74,9 @@ impl<'a> Filling<'a> {
         plan.clear(projected);
         plan.run(project.prepare(size, view, disparities, projected));
         plan.fill_texture(disparities, with_holes);
-        plan.run(bitmap.prepare(size, with_holes, bitmaps));
+        // A binding has a buffer, also where nothing reads it.
+        let shown = Shown { mask: own.unwrap_or(projected), first_row: top, is_masked: own.is_some() };
+        plan.run(bitmap.prepare(size, with_holes, shown, bitmaps));
         plan.run(tangent.prepare(size, range, with_holes, bitmaps, tangents));
         plan.checkpoint();
         plan.run(fill.prepare(range, view, Surroundings { tangents, projected, bitmaps }, map, rows));

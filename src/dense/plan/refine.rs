@@ -129,7 +129,7 @@ impl<'a> Refining<'a> {
         })
     }
 
-    /// Plans the refinement of a window of rows, in `unrefined`. Returns the buffers of the result: of its disparities, and
+    /// Plans the refinement of a window of rows, in `unrefined`, whose view has the mask `own`. Returns the buffers of the result: of its disparities, and
     /// of the confidences, which lie behind a map.
     fn plan<'b>(
         &'b self,
@@ -137,6 +137,7 @@ impl<'a> Refining<'a> {
         unrefined: MapBuffer<'b>,
         Window { top, result }: Window,
         (views, range): (ComparedViews<'_>, DisparityRange),
+        own: Option<&wgpu::Buffer>,
     ) -> [&'b wgpu::Buffer; 2] {
         let layout = unrefined.layout;
         let size = Size::new(layout.width, layout.rows);
@@ -160,7 +161,8 @@ impl<'a> Refining<'a> {
             confidences = maps[0];
             let reach: u32 = self.filters.after.iter().map(|median| median.radius).sum();
             let filled = result.start.saturating_sub(reach)..(result.end + reach).min(layout.rows);
-            filling.plan(plan, (range, views.reference), top, MapBuffer { buffer: maps[0], layout }, filled);
+            let map = MapBuffer { buffer: maps[0], layout };
+            filling.plan(plan, (range, views.reference), own, top, map, filled);
         }
         for &median in &self.filters.after {
             plan.run(filter(median, maps));
@@ -198,6 +200,7 @@ pub(super) fn plan_after_bands(
         Some(least) => Some((Agreement::new(gpu), least, plan.word_texture("map before the check", largest.words())?)),
         None => None,
     };
+    let own = pair.masks.as_ref().map(|masks| &masks.own);
     let unseen = pair.masks.as_ref().map(|masks| (Unseen::new(gpu), masks));
     let refining = match &after.filters {
         Some(filters) => Some(Refining::new(gpu, plan, filters, colours, largest)?),
@@ -224,7 +227,7 @@ pub(super) fn plan_after_bands(
             None => [&window, &window],
             Some(refining) => {
                 let result = skipped..skipped + result_rows;
-                refining.plan(plan, matches, Window { top, result }, (views, range))
+                refining.plan(plan, matches, Window { top, result }, (views, range), own)
             }
         };
         if let Some((unseen, masks)) = &unseen {

@@ -2,7 +2,7 @@
 
 use hsad::{
     disparity::NONE,
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
     verify::{Values, trials::BitmapTrial},
 };
 
@@ -16,7 +16,7 @@ fn the_twin_marks_the_same() {
                 value if value < holes => NONE,
                 value => i32::from(value),
             });
-            assert_twin(&format!("{width}x{height}, {holes}"), &BitmapTrial { disparities });
+            assert_twin(&format!("{width}x{height}, {holes}"), &BitmapTrial { disparities, shown: None });
         }
     }
 }
@@ -25,11 +25,13 @@ fn the_twin_marks_the_same() {
 fn by_hand() {
     // 40x34 pixels, and a disparity in column 33 of rows 1 and 33.
     let disparities = Plane::from_fn((40, 34), |x, y| if x == 33 && y % 32 == 1 { 0 } else { NONE });
-    let found = leaves(&BitmapTrial { disparities });
+    // A mask with a row above the map, which shows rows 1 and 2 from column 31 on.
+    let mask = Luma::from_fn((40, 35), |x, y| if x > 30 && (2..4).contains(&y) { 255 } else { 0 });
+    let found = leaves(&BitmapTrial { disparities, shown: Some((mask, 1)) });
     let [Values::U32(words)] = &found[..] else { panic!("the words of the bitmaps") };
     // Rows of two words: bit 1 of the second word. Then for shears of -1, 0 and 1 two blocks of 32 + 40 + 32 columns: bit 1 of
     // the word whose diagonal passes column 33 in the second row of the block.
-    let mut expected = vec![0; 34 * 2 + 3 * 2 * 104];
+    let mut expected = vec![0; 34 * 2 + 3 * 2 * 104 + 34 * 2];
     for row in [1, 33] {
         expected[2 * row + 1] = 1 << 1;
     }
@@ -38,5 +40,8 @@ fn by_hand() {
             expected[68 + (2 * bitmap + block) * 104 + 32 + column] = 1 << 1;
         }
     }
+    // The holes that are shown.
+    let holes = 34 * 2 + 3 * 2 * 104;
+    expected[holes + 2..holes + 6].copy_from_slice(&[1 << 31, 0xff & !(1 << 1), 1 << 31, 0xff]);
     assert_eq!(words, &expected);
 }

@@ -3,7 +3,7 @@
 use hsad::{
     dense::{Dense, FILLED, View},
     disparity::{DisparityMap, DisparityRange, NONE},
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
     luma::unpack,
     verify::{Values, trials::FillTrial},
 };
@@ -19,7 +19,7 @@ fn dense(disparity: DisparityMap) -> Dense {
 fn plain(disparity: DisparityMap) -> FillTrial {
     let picture = Plane::filled(disparity.size(), [90, 90, 90, 255]);
     let range = DisparityRange::new(0, 60).unwrap();
-    FillTrial { dense: dense(disparity), picture, view: View::Left, range }
+    FillTrial { dense: dense(disparity), picture, view: View::Left, range, own: None }
 }
 
 /// Disparities and confidences of the filled map.
@@ -44,7 +44,7 @@ fn the_twin_fills_the_same() {
             });
             let channels = [1, 2, 3, 4].map(|seed| picture((width, height), seed));
             let picture = Plane::from_fn((width, height), |x, y| channels.each_ref().map(|channel| channel.get(x, y)));
-            let trial = FillTrial { dense: dense(disparities), picture, view, range };
+            let trial = FillTrial { dense: dense(disparities), picture, view, range, own: None };
             assert_twin(&format!("{width}x{height}, {holes} {slope} {view:?}"), &trial);
         }
     }
@@ -104,6 +104,20 @@ fn a_row_without_disparities_is_filled_from_others_within_reach() {
     assert_eq!(disparities, [512; 400]);
     let nothing = Plane::filled((4, 2), NONE);
     assert_eq!(filled(&plain(nothing.clone())), (nothing.into_data(), vec![0; 8]));
+}
+
+#[test]
+fn hidden_pixels_stay_holes() {
+    // A hole from column 20 on, of which the mask hides some words and parts of words.
+    let map = Plane::from_fn((99, 3), |x, _| if x < 20 { 512 } else { NONE });
+    let is_hidden = |x: u32, y: u32| y != 1 && (x == 21 || (30..66).contains(&x) || x == 98);
+    let mask = Luma::from_fn((99, 3), |x, y| if is_hidden(x, y) { 0 } else { 255 });
+    let (disparities, confidences) = filled(&FillTrial { own: Some(mask), ..plain(map) });
+    for (index, (disparity, confidence)) in disparities.into_iter().zip(confidences).enumerate() {
+        let (x, y) = (index as u32 % 99, index as u32 / 99);
+        assert_eq!(disparity, if is_hidden(x, y) { NONE } else { 512 }, "{x}, {y}");
+        assert_eq!(confidence == 0, is_hidden(x, y), "{x}, {y}");
+    }
 }
 
 #[test]

@@ -8,11 +8,12 @@ use crate::{
     cpu::dense::{Surroundings, Tangent, bitmaps, fill, project, tangents},
     dense::{
         Dense, FILLED, View,
-        kernels::{self, Bitmaps, Fill, MapBuffer, MapLayout, Project, Tangents, fit},
+        kernels::{self, Bitmaps, Fill, MapBuffer, MapLayout, Project, Shown, Tangents, fit},
     },
     disparity::{DisparityMap, DisparityRange, NONE},
     error::Result,
-    image::{Plane, Size},
+    image::{Luma, Plane, Size},
+    luma::pack,
     verify::trial::{Array, Bench, Dice, Subject, Trial},
 };
 
@@ -41,6 +42,11 @@ fn surfaces(Size { width, height }: Size, dice: &mut Dice) -> DisparityMap {
 fn picture(size: Size, dice: &mut Dice) -> Plane<[u8; 4]> {
     let channels = [0; 4].map(|_| dice.picture(size));
     Plane::from_fn(size, |x, y| channels.each_ref().map(|channel| channel.get(x, y)))
+}
+
+/// Draws a mask.
+fn mask(size: Size, dice: &mut Dice) -> Luma {
+    dice.picture(size).map(|&value| if value < 90 { 0 } else { value })
 }
 
 /// Draws a range of disparities.
@@ -119,33 +125,42 @@ impl Trial for ProjectTrial {
 pub struct BitmapTrial {
     /// The map.
     pub disparities: DisparityMap,
+    /// The mask of the view, if it hides pixels, and its row of the first row of the map.
+    pub shown: Option<(Luma, u32)>,
 }
 
 impl BitmapTrial {
     fn draw(size: Size, dice: &mut Dice) -> Self {
-        Self { disparities: surfaces(size, dice) }
+        let (disparities, first_row) = (surfaces(size, dice), dice.below(3));
+        let mask = mask(Size::new(size.width, size.height + first_row), dice);
+        Self { disparities, shown: (dice.below(2) == 0).then_some((mask, first_row)) }
     }
 }
 
 impl Trial for BitmapTrial {
     fn parameters(&self) -> String {
-        String::new()
+        self.shown.as_ref().map(|(_, first_row)| format!("masked from row {first_row} on")).unwrap_or_default()
     }
 
     fn input(&self) -> Vec<Array> {
-        vec![Array::exact("disparities", self.disparities.data().to_vec())]
+        let mask = self.shown.iter().map(|(mask, _)| Array::exact("mask", mask.data().to_vec()));
+        std::iter::once(Array::exact("disparities", self.disparities.data().to_vec())).chain(mask).collect()
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.disparities.size();
         let (from, to) = (bench.upload_words(self.disparities.data())?, bench.output(Bitmaps::words(size) as u32)?);
-        let dispatch = Bitmaps::new(bench.gpu).prepare(size, &from, &to);
+        let mask = bench.upload(&self.shown.as_ref().map_or(vec![0], |(mask, _)| pack(mask)))?;
+        let first_row = self.shown.as_ref().map_or(0, |(_, first_row)| *first_row);
+        let shown = Shown { mask: &mask, first_row, is_masked: self.shown.is_some() };
+        let dispatch = Bitmaps::new(bench.gpu).prepare(size, &from, shown, &to);
         bench.run(|encoder| dispatch.record(encoder));
         Ok(vec![Array::exact("bitmaps", bench.download::<u32>(&to)?)])
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        Ok(vec![Array::exact("bitmaps", bitmaps(&self.disparities))])
+        let own = self.shown.as_ref().map(|(mask, first_row)| mask.cut(*first_row..mask.height()));
+        Ok(vec![Array::exact("bitmaps", bitmaps(&self.disparities, own.as_ref()))])
     }
 }
 
@@ -180,7 +195,8 @@ impl Trial for TangentTrial {
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
         let size = self.disparities.size();
-        let (from, marks) = (bench.upload_words(self.disparities.data())?, bench.upload(&bitmaps(&self.disparities))?);
+        let (from, marks) =
+            (bench.upload_words(self.disparities.data())?, bench.upload(&bitmaps(&self.disparities, None))?);
         // Pixels beside no hole stay as they are, and so does the picture.
         let before = vec![0; 3 * size.pixels() as usize];
         let to = bench.upload(&[before, picture_words(&self.picture)].concat())?;
@@ -211,6 +227,8 @@ pub struct FillTrial {
     pub view: View,
     /// Range of the filled disparities.
     pub range: DisparityRange,
+    /// The mask of the view, if it hides pixels: these stay holes.
+    pub own: Option<Luma>,
 }
 
 impl FillTrial {
@@ -218,8 +236,9 @@ impl FillTrial {
         let disparity = surfaces(size, dice);
         let measured = u32::from(u8::MAX - FILLED);
         let confidence = disparity.map(|&d| if d == NONE { 0 } else { FILLED + 1 + dice.below(measured) as u8 });
-        let range = range(dice);
-        Self { dense: Dense { disparity, confidence }, picture: picture(size, dice), view: dice.view(), range }
+        let (range, picture, view, own) = (range(dice), picture(size, dice), dice.view(), mask(size, dice));
+        let own = (dice.below(2) == 0).then_some(own);
+        Self { dense: Dense { disparity, confidence }, picture, view, range, own }
     }
 
     fn surroundings(&self) -> Surroundings<'_> {
@@ -233,10 +252,9 @@ impl Trial for FillTrial {
     }
 
     fn input(&self) -> Vec<Array> {
-        vec![
-            Array::exact("matches", matches(&self.dense)),
-            Array::exact("picture", self.picture.data().as_flattened().to_vec()),
-        ]
+        let mask = self.own.iter().map(|mask| Array::exact("mask", mask.data().to_vec()));
+        let picture = Array::exact("picture", self.picture.data().as_flattened().to_vec());
+        [Array::exact("matches", matches(&self.dense)), picture].into_iter().chain(mask).collect()
     }
 
     fn on_device(&self, bench: &Bench<'_>) -> Result<Vec<Array>> {
@@ -246,7 +264,7 @@ impl Trial for FillTrial {
         let words = matches(&self.dense);
         let tangents = bench.upload(&[tangent_words(&tangents), picture_words(picture)].concat())?;
         let projected = bench.upload(&projected_words(&projected))?;
-        let bitmaps = bench.upload(&bitmaps(&self.dense.disparity))?;
+        let bitmaps = bench.upload(&bitmaps(&self.dense.disparity, self.own.as_ref()))?;
         let buffer = bench.upload(&words)?;
         let surroundings = kernels::Surroundings { tangents: &tangents, projected: &projected, bitmaps: &bitmaps };
         let map = MapBuffer { buffer: &buffer, layout };
@@ -256,7 +274,7 @@ impl Trial for FillTrial {
     }
 
     fn twin(&self) -> Result<Vec<Array>> {
-        let filled = fill(&self.dense, &self.surroundings(), self.view, self.range);
+        let filled = fill(&self.dense, &self.surroundings(), self.own.as_ref(), self.view, self.range);
         Ok(arrays(&matches(&filled), filled.disparity.data().len()))
     }
 }
