@@ -222,7 +222,7 @@ impl<'b> Pair<'b> {
         self.dense_seen(config, None, |_| ()).await
     }
 
-    /// [`Self::dense`], where only pixels that show the scene, and whose partner may, take part in the refinement. Calls `progress` with the share of the
+    /// [`Self::dense`], where only pixels that show the scene, near those whose partner may, take part in the refinement. Calls `progress` with the share of the
     /// work that a device has done, 0 to 1.
     pub(crate) async fn dense_seen(
         &self,
@@ -232,7 +232,7 @@ impl<'b> Pair<'b> {
     ) -> Result<Dense> {
         let reference = usize::from(config.reference == View::Right);
         let views = [&self.left, &self.right];
-        let own = seen.and_then(|seen| seen.with_partners(config.reference, config.range));
+        let own = seen.and_then(|seen| seen.near_partners(config.reference, config.range));
         let seen = seen.map(|seen| Seen { masks: [own.as_ref().or(seen.masks[0]), seen.masks[1]], ..seen });
         if let Some(OnDevice { gpu, luma, colours }) = &self.device {
             let masks = match seen {

@@ -55,7 +55,7 @@ fn expected(pictures: &[Picture; 2], maps: &[WarpMap; 2], config: &DenseConfig) 
     let masks = [own, other].map(|view: usize| maps[view].visible());
     let picture = warp_colours(&pictures[own], &maps[own]);
     let seen = Seen { masks: [Some(&masks[0]), Some(&masks[1])], loss: Loss::Nothing };
-    let shown = seen.with_partners(config.reference, config.range).unwrap();
+    let shown = seen.near_partners(config.reference, config.range).unwrap();
     let seen = Seen { masks: [Some(&shown), seen.masks[1]], ..seen };
     let dense = compute_seen([&left, &right], Some(&picture), Some(seen), config).unwrap();
     // What the masks keep out makes a difference.

@@ -97,7 +97,7 @@ impl Resampling {
     }
 }
 
-/// Which pixels of the pictures that `maps` make show their views, and have a partner in `range` that does, unless all do.
+/// Which pixels of the pictures that `maps` make show their views, or lie near pixels with a partner in `range` that does, unless all do.
 pub(super) fn masks_of(
     gpu: &Gpu,
     maps: [&WarpMap; 2],
@@ -113,7 +113,7 @@ pub(super) fn masks_of(
     }
     let [own, other] = &visible;
     let seen = Seen { masks: [Some(own), Some(other)], loss: Loss::Nothing };
-    let own = seen.with_partners(reference, range);
+    let own = seen.near_partners(reference, range);
     Masks::new(gpu, maps[0].size(), Seen { masks: [own.as_ref(), Some(other)], ..seen }).map(Some)
 }
 
