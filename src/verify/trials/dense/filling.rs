@@ -237,7 +237,7 @@ impl FillTrial {
         let measured = u32::from(u8::MAX - FILLED);
         let confidence = disparity.map(|&d| if d == NONE { 0 } else { FILLED + 1 + dice.below(measured) as u8 });
         let (range, picture, view, own) = (range(dice), picture(size, dice), dice.view(), mask(size, dice));
-        let own = (dice.below(2) == 0).then_some(own);
+        let own = (dice.below(4) > 0).then_some(own);
         Self { dense: Dense { disparity, confidence }, picture, view, range, own }
     }
 
