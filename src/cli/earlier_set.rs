@@ -12,6 +12,9 @@ use super::names::is_ours;
 /// Size beyond which a list of files is none of ours, in bytes.
 const MOST: u64 = 1 << 26;
 
+/// The field of a list that is true while the files of the set take their places: after a kill, earlier files may lie among them.
+pub const UNFINISHED: &str = "unfinished";
+
 /// Names of the files in a folder that an earlier run of hsad wrote, as a file among them lists them.
 #[derive(Debug, Default, PartialEq)]
 pub struct EarlierSet(Vec<String>);

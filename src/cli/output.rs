@@ -14,7 +14,7 @@ use hsad::{
 use serde_json::Value;
 
 use super::{
-    earlier_set::{EarlierSet, FolderLock},
+    earlier_set::{EarlierSet, FolderLock, UNFINISHED},
     interruption::{self, remove_empty},
     names::{REPORT, RESULT, is_ours},
     terminal,
@@ -139,7 +139,9 @@ impl Output {
                 "a result of this name would replace a file that was read: name another folder (-o)".into(),
             );
         }
-        let is_foreign = |set: &Set| path.is_file() && !set.earlier.contains(name) && !set.is_taken_over;
+        // No run of hsad makes links.
+        let is_link = path.is_symlink();
+        let is_foreign = |set: &Set| path.is_file() && (is_link || !set.earlier.contains(name) && !set.is_taken_over);
         if let Some(Set { list, .. }) = self.set.as_ref().filter(|set| is_foreign(set)) {
             return refused(format!(
                 "a result of this name would replace a file that no {list} beside it lists as hsad's: name another folder (-o), or move the \
@@ -215,20 +217,35 @@ impl Output {
             Some(set) => set.earlier.without(&self.folder, &self.names).filter(|path| !is_spared(path)).collect(),
             None => Vec::new(),
         };
-        let mut staged = mem::take(&mut self.staged);
-        if let Some(set) = &self.set {
-            list_first(&mut staged, &self.names, set.list);
-        }
+        let staged = mem::take(&mut self.staged);
+        let staged = match &self.set {
+            Some(set) => self.listed_first(staged, set.list)?,
+            None => staged,
+        };
         atomic::replace_all(staged, &stale)
     }
-}
 
-/// Moves what stands for the file `list` to the front of `staged`, which belong to the last of `names`. The list takes its place first:
-/// where a process is killed then, later runs know the other files.
-fn list_first<T>(staged: &mut [T], names: &[&str], list: &str) {
-    let names = &names[names.len() - staged.len()..];
-    if let Some(place) = names.iter().position(|name| *name == list) {
-        staged[..=place].rotate_right(1);
+    /// `staged`, the last of the files, in the order in which they take their places: first the one called `list`, so that later runs know the
+    /// others where the process is killed then. Where any of these replaces one, that list says that the set is [`UNFINISHED`], and the one that
+    /// does not comes last.
+    fn listed_first(&self, mut staged: Vec<Staged>, list: &str) -> Result<Vec<Staged>> {
+        let names = &self.names[self.names.len() - staged.len()..];
+        let Some(place) = names.iter().position(|name| *name == list) else { return Ok(staged) };
+        let replaces = names.iter().any(|name| *name != list && self.folder.join(name).exists());
+        let last = staged.remove(place);
+        if !replaces {
+            staged.insert(0, last);
+            return Ok(staged);
+        }
+        let path = self.folder.join(list);
+        let failed = |source| Error::Io { path: path.clone(), source };
+        let content = fs::read(last.content()).map_err(failed)?;
+        let mut value: Value = serde_json::from_slice(&content).map_err(|error| failed(error.into()))?;
+        value[UNFINISHED] = true.into();
+        let (first, ()) = Staged::write(&path, |out| write_json(out, &value))?;
+        staged.insert(0, first);
+        staged.push(last);
+        Ok(staged)
     }
 }
 
@@ -329,12 +346,45 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_of_a_set_takes_its_place_first() {
-        let mut staged = [1, 2, 3];
-        list_first(&mut staged, &["there", "map", "list", "mask"], "list");
-        assert_eq!(staged, [2, 1, 3]);
-        list_first(&mut staged, &["list", "a", "b", "c"], "list");
-        assert_eq!(staged, [2, 1, 3], "the list is in its place");
+    fn the_list_of_a_set_takes_its_place_first_and_is_unfinished_where_files_are_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let order = |is_there: bool| {
+            let mut output = Output::open_set(folder.path()).unwrap();
+            output.add("disparity.pfm", |out| out.write_all(b"map")).unwrap();
+            output.add_json(REPORT, &serde_json::json!({ "version": "1", "files": ["disparity.pfm"] })).unwrap();
+            let staged = mem::take(&mut output.staged);
+            let staged = output.listed_first(staged, REPORT).unwrap();
+            let contents: Vec<String> =
+                staged.iter().map(|staged| fs::read_to_string(staged.content()).unwrap()).collect();
+            let is_list = |text: &String| text.contains("version");
+            let is_unfinished = |text: &String| text.contains(UNFINISHED);
+            assert_eq!(
+                contents.iter().map(is_list).collect::<Vec<_>>(),
+                [&[true, false][..], &[true][..]].concat()[..2 + usize::from(is_there)]
+            );
+            assert_eq!(
+                contents.iter().map(is_unfinished).collect::<Vec<_>>(),
+                [is_there, false, false][..contents.len()]
+            );
+            atomic::replace_all(staged, &[]).unwrap();
+        };
+        order(false);
+        order(true);
+        assert!(!fs::read_to_string(folder.path().join(REPORT)).unwrap().contains(UNFINISHED));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_set_replaces_no_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mine, link) = (folder.path().join("mine"), folder.path().join("out/disparity.pfm"));
+        fs::create_dir(folder.path().join("out")).unwrap();
+        fs::write(&mine, "mine").unwrap();
+        std::os::unix::fs::symlink(&mine, &link).unwrap();
+        let report = serde_json::json!({ "version": "1", "files": ["disparity.pfm"] });
+        fs::write(folder.path().join("out").join(REPORT), report.to_string()).unwrap();
+        let mut output = Output::open_set(&folder.path().join("out")).unwrap();
+        assert!(output.add("disparity.pfm", |out| out.write_all(b"map")).is_err());
     }
 
     #[test]

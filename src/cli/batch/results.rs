@@ -7,7 +7,7 @@ use hsad::{io::read_whole, shown};
 use serde_json::Value;
 
 use super::{
-    super::names::REPORT,
+    super::{earlier_set::UNFINISHED, names::REPORT},
     frame::Frame,
     inputs::{Other, Recorded},
     pair::Pair,
@@ -63,7 +63,7 @@ impl Results<'_> {
         }
     }
 
-    /// The report of the results of this name, of whatever inputs, if all of their files are there.
+    /// The report of the results of this name, of whatever inputs, if all of their files are there, and of one set.
     fn report(&self, name: &str) -> Option<Value> {
         let folder = self.folder.join(name);
         let path = folder.join(REPORT);
@@ -71,7 +71,7 @@ impl Results<'_> {
             return None;
         }
         let report: Value = serde_json::from_slice(&read_whole(&path, MOST).ok()?).ok()?;
-        let files = report["files"].as_array()?;
+        let files = report["files"].as_array().filter(|_| report[UNFINISHED] != true)?;
         let are_there = files.iter().all(|file| file.as_str().is_some_and(|name| folder.join(name).is_file()));
         are_there.then_some(report)
     }

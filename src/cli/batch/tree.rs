@@ -83,16 +83,17 @@ pub fn folders_of_views(folder: &Path) -> Option<[PathBuf; 2]> {
 fn folder_per_scene(folder: &Path) -> Result<Listing> {
     let mut listing = Listing::default();
     for scene in entries(folder)?.into_iter().filter(|entry| entry.is_dir()) {
+        let sequence = folders_of_views(&scene);
         let both = FILES.map(|both| both.map(|file| scene.join(file)));
         let is_whole = |both: &&[PathBuf; 2]| both.iter().all(|file| file.is_file());
-        let is_part = |both: &&[PathBuf; 2]| both.iter().any(|file| file.is_file());
-        let Some(both) = both.iter().find(is_whole).or_else(|| both.iter().find(is_part)).cloned() else {
-            if let Some(both) = folders_of_views(&scene) {
-                let name = text(scene.file_name(), &scene)?;
-                same_names(both, &format!("{name}/"), &mut listing)?;
-            }
-            continue;
-        };
+        // A single picture beside a sequence is none of its views.
+        let is_part = |both: &&[PathBuf; 2]| sequence.is_none() && both.iter().any(|file| file.is_file());
+        let found = both.iter().find(is_whole).or_else(|| both.iter().find(is_part)).cloned();
+        if let Some(both) = sequence {
+            let name = text(scene.file_name(), &scene)?;
+            same_names(both, &format!("{name}/"), &mut listing)?;
+        }
+        let Some(both) = found else { continue };
         let are_there = both.each_ref().map(|file| file.is_file());
         let [left, right] = both;
         match are_there {
@@ -193,6 +194,10 @@ mod tests {
         assert_eq!(names(&drives).expect("raw KITTI"), ["1/7", "2/7"]);
         let sequences = ["b/cam0/data/7.png", "b/cam1/data/7.png", "a/left.png", "a/right.png"];
         assert_eq!(names(&sequences).expect("a sequence beside a pair"), ["a", "b/7"]);
+        let with_thumbnail = [&sequences[..], &["b/left.png"]].concat();
+        assert_eq!(names(&with_thumbnail).expect("a sequence with a picture"), ["a", "b/7"]);
+        let with_pair = [&with_thumbnail[..], &["b/right.png"]].concat();
+        assert_eq!(names(&with_pair).expect("a sequence and a pair"), ["a", "b/7", "b"]);
     }
 
     #[test]
