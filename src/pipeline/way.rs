@@ -192,10 +192,17 @@ impl Task<'_> {
             None => rectify_async(self.backend, self.views).await,
         };
         let refused = match pair {
-            Ok(pair) if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 => {
-                return Ok(as_taken(self.as_it_is(force).await?));
-            }
             Ok(pair) => {
+                let mut why = why;
+                if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 {
+                    // To a first look, parallax across the rows is like a distortion.
+                    match self.as_it_is(force).await {
+                        Err(Error::NotRectified { diagnosis }) => {
+                            why = format!("the pair is not rectified: {diagnosis}")
+                        }
+                        outcome => return Ok(as_taken(outcome?)),
+                    }
+                }
                 let mut found = self.along_rows_of(pair).await?;
                 found
                     .warnings

@@ -10,6 +10,7 @@
 mod calibrated;
 mod catmull_rom;
 pub(crate) mod cholesky;
+mod climb;
 mod curve;
 pub mod epipolar;
 pub(crate) mod fit;
@@ -26,6 +27,7 @@ mod warp;
 pub use calibrated::{CalibratedRectification, RectifiedView};
 pub use catmull_rom::SUBPIXEL_BITS;
 pub(crate) use catmull_rom::weights;
+pub(crate) use climb::Climb;
 pub(crate) use frame::AGREEMENT;
 pub use frame::Correspondence;
 pub(crate) use map::NONE;

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     image::Size,
     matching::Seed,
-    rectify::{AGREEMENT, Correspondence, RowKind, RowModel, Slant, fit::RowFit},
+    rectify::{AGREEMENT, Climb, Correspondence, RowKind, RowModel, Slant, fit::RowFit},
 };
 
 /// Smallest share of the inliers of a fit that agree with the rows as they are, for these to be preferred where most seeds
@@ -46,6 +46,9 @@ pub struct Rectification {
     /// Change of the disparity per row that most surfaces share, where rows correspond: as where the columns of the right view lean. 0 unless
     /// it is clear.
     pub lean: f32,
+    /// Row difference per pixel of disparity, where the baseline of the cameras slants in the pictures: no warp of the rows brings these
+    /// together, and [`Self::verdict`] is [`Verdict::NotRectified`]. 0 unless it is clear.
+    pub climb: f32,
     /// Number of inliers, seeds that agree with the fit; for [`Verdict::Vertical`], with a fit of columns.
     pub agreeing: usize,
     /// Number of all seeds.
@@ -81,6 +84,7 @@ impl Rectification {
         unexplained: 0.0,
         largest: 0.0,
         lean: 0.0,
+        climb: 0.0,
         agreeing: 0,
         seeds: 0,
     };
@@ -92,7 +96,11 @@ impl Rectification {
         let agreeing = errors.len();
         let seeds = fit.errors.len();
         let rotation = fit.model.rotation() as f32;
-        let verdict = if fit.model.kind() == RowKind::AsIs {
+        let climb = Climb::of(points, &fit.errors).filter(Climb::is_clear);
+        let climb = climb.map_or(0.0, |climb| climb.rows as f32);
+        let verdict = if climb != 0.0 {
+            Verdict::NotRectified
+        } else if fit.model.kind() == RowKind::AsIs {
             Verdict::Rectified
         } else if !is_majority(agreeing, seeds) {
             Verdict::NotRectified
@@ -110,6 +118,7 @@ impl Rectification {
             remaining: errors.get(agreeing * 95 / 100).copied().unwrap_or(0.0),
             unexplained: if aligned { fit.unexplained as f32 } else { 0.0 },
             lean: if aligned { lean(&fit, points) } else { 0.0 },
+            climb,
             residual: median(errors).map_or(0.0, |spread| super::DEVIATIONS * spread),
             agreeing,
             seeds,

@@ -51,6 +51,14 @@ impl fmt::Display for Rectification {
                 self.placement(f)?;
                 write!(f, ", so that rows differ by up to {largest:.1} px")?;
             }
+            Verdict::NotRectified if self.climb != 0.0 => {
+                write!(
+                    f,
+                    "the cameras do not stand side by side in the pictures, rows differ by {:.2} px per pixel of disparity: rectify both \
+                     views first",
+                    self.climb.abs()
+                )?;
+            }
             Verdict::NotRectified if self.most_agree() => {
                 f.write_str("the right view ")?;
                 self.placement(f)?;

@@ -65,6 +65,26 @@ fn a_right_view_with_leaning_columns_is_matched() {
     assert_eq!(asked.range().min, -40);
 }
 
+/// Both views turned alike, as from a hand that moved up and to the right: rows differ by the disparity, which no warp of the rows mends, and
+/// which a plane through the parallax hides from most points.
+#[test]
+fn a_baseline_that_slants_in_the_pictures_is_rectified() {
+    let pair = Pair::shipped("planes");
+    for degrees in [-12.0_f64, 15.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let turned = |picture: &Picture| {
+            resampled(picture, |x, y| {
+                let (x, y) = (x - 169.5, y - 127.0);
+                (cos * x - sin * y + 169.5, sin * x + cos * y + 127.0)
+            })
+        };
+        let slanting = Pair { left: turned(&pair.left), right: turned(&pair.right), ..pair.clone() };
+        let run = slanting.matched(&[]).ends(0, &["do not stand side by side"]);
+        assert_eq!(run.report()["rectified"]["method"], "uncalibrated", "{degrees}");
+        slanting.matched(&["--rectify", "never"]).ends(3, &["do not stand side by side"]);
+    }
+}
+
 /// The distortion r (1 + k r^2) of a lens with k = -0.2 moves corners by a tenth of their distance from the centre.
 #[test]
 fn a_distorted_lens_is_told() {
