@@ -15,7 +15,7 @@ const MOST: f64 = 0.3;
 const FEW: usize = 200;
 /// Smallest climb that is clear, and how many times as many pairs must agree with it as with none: nine scenes as they are, and two of them
 /// scaled, sheared, cropped, seen through lenses and in perspective have up to 0.14 and 1.04, five with both views turned by 10 degrees at
-/// least 0.10 and 1.13, by 5 degrees 0.05 and 1.04.
+/// least 0.10 and 1.13, by 5 degrees 0.05 and 1.04 (measured with 1500 points and affine rows).
 const CLEAR: f64 = 0.05;
 const GAIN: f64 = 1.1;
 
