@@ -78,7 +78,11 @@ fn by_calibration(found: &CalibratedRectification) -> String {
 
 fn by_matches(found: &Uncalibrated) -> String {
     let Evidence { inliers, points, .. } = found.evidence;
-    let lens = if found.k1 == 0.0 { "".into() } else { format!(", distortion k1 {:.3} removed", found.k1) };
+    let lens = match found.k1 {
+        [0.0, 0.0] => "".into(),
+        [left, right] if left == right => format!(", distortion k1 {left:.3} removed"),
+        [left, right] => format!(", distortion k1 {left:.3} and {right:.3} removed"),
+    };
     let what = match found.model {
         Model::Right(RowKind::AsIs) => "rows correspond as they are".into(),
         Model::Right(kind) => format!("the right view was resampled ({})", kind.name()),
@@ -113,7 +117,7 @@ fn write_yaml(out: &mut impl Write, found: &Uncalibrated) -> io::Result<()> {
         let (unit, [x, y]) = (found.mean_side(view), [width, height].map(|side| (f64::from(side) - 1.0) / 2.0));
         let homography = found.homographies[view].transpose().to_cols_array();
         write_matrix(out, &format!("M{number}"), 3, &[unit, 0.0, x, 0.0, unit, y, 0.0, 0.0, 1.0])?;
-        write_matrix(out, &format!("D{number}"), 1, &[found.k1, 0.0, 0.0, 0.0, 0.0])?;
+        write_matrix(out, &format!("D{number}"), 1, &[found.k1[view], 0.0, 0.0, 0.0, 0.0])?;
         write_matrix(out, &format!("H{number}"), 3, &homography)?;
     }
     Ok(())

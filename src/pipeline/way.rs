@@ -194,7 +194,7 @@ impl Task<'_> {
         let refused = match pair {
             Ok(pair) => {
                 let mut why = why;
-                if matches!(as_is, Ok(None)) && pair.rectification.distortion() == 0.0 {
+                if matches!(as_is, Ok(None)) && pair.rectification.distortion() == [0.0; 2] {
                     // To a first look, parallax across the rows is like a distortion.
                     match self.as_it_is(force).await {
                         Err(Error::NotRectified { diagnosis }) => {

@@ -43,11 +43,11 @@ impl StereoRectification {
         }
     }
 
-    /// The radial distortion of both lenses that was found from the matches, [`Uncalibrated::k1`]; 0 with a calibration, which has its
-    /// own.
-    pub fn distortion(&self) -> f64 {
+    /// The radial distortions of the left and the right lens that were found from the matches, [`Uncalibrated::k1`]; 0 with a
+    /// calibration, which has its own.
+    pub fn distortion(&self) -> [f64; 2] {
         match self {
-            Self::Calibrated(_) => 0.0,
+            Self::Calibrated(_) => [0.0; 2],
             Self::Uncalibrated(found) => found.k1,
         }
     }
@@ -56,7 +56,7 @@ impl StereoRectification {
     pub fn keeps_left(&self) -> bool {
         match self {
             Self::Calibrated(_) => false,
-            Self::Uncalibrated(found) => matches!(found.model, Model::Right(_)) && found.k1 == 0.0,
+            Self::Uncalibrated(found) => matches!(found.model, Model::Right(_)) && found.k1 == [0.0; 2],
         }
     }
 

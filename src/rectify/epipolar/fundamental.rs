@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     frame::{AGREEMENT, Frame, PRECISION},
-    lens::Lens,
+    lenses::Lenses,
     linear::{null_space, rotation, singular},
     minimise::{minimise, sum_of_logarithms},
     sample::Samples,
@@ -74,9 +74,9 @@ impl Fundamental {
         refined.or(Some(start))
     }
 
-    /// The matrix of the places without the distortion of `lens`, refined, and its inliers among them.
-    pub fn behind(self, lens: Lens, points: &[Correspondence], frame: &Frame) -> (Self, Vec<Correspondence>) {
-        let straight = lens.straight(points, frame);
+    /// The matrix of the places without the distortion of `lenses`, refined, and its inliers among them.
+    pub fn behind(self, lenses: Lenses, points: &[Correspondence], frame: &Frame) -> (Self, Vec<Correspondence>) {
+        let straight = lenses.straight(points, frame);
         let near = |found: &Self, pixels: f64| found.inliers(&straight, pixels / frame.unit);
         let refined = [2.0 * AGREEMENT, AGREEMENT, AGREEMENT]
             .into_iter()
@@ -86,19 +86,24 @@ impl Fundamental {
         (refined, inliers)
     }
 
-    /// The matrix of least cost around this one, of rank 2: `U diag(cos t, sin t, 0) V'`. `None` for fewer than seven points.
+    /// The matrices of rank 2 around this one, `U diag(cos t, sin t, 0) V'`, by seven parameters, which are 0 for this one.
+    pub fn around(&self) -> impl Fn(&[f64]) -> Self {
+        let (u, values, v) = singular(self.0);
+        let angle = libm::atan2(values[1], values[0]);
+        move |by| {
+            let (sin, cos) = libm::sincos(angle + by[6]);
+            let middle = DMat3::from_diagonal(DVec3::new(cos, sin, 0.0));
+            let (u, v) = (u * rotation(DVec3::from_slice(by)), v * rotation(DVec3::from_slice(&by[3..])));
+            Self(u * middle * v.transpose())
+        }
+    }
+
+    /// The matrix of least cost around this one. `None` for fewer than seven points.
     pub fn refined(&self, points: &[Correspondence], unit: f64) -> Option<Self> {
         if points.len() < 7 {
             return None;
         }
-        let (u, values, v) = singular(self.0);
-        let angle = libm::atan2(values[1], values[0]);
-        let matrix = |&[a, b, c, d, e, f, t]: &[f64; 7]| {
-            let (sin, cos) = libm::sincos(angle + t);
-            let middle = DMat3::from_diagonal(DVec3::new(cos, sin, 0.0));
-            let (u, v) = (u * rotation(DVec3::new(a, b, c)), v * rotation(DVec3::new(d, e, f)));
-            Self(u * middle * v.transpose())
-        };
+        let matrix = self.around();
         let found = minimise([0.0; 7], |parameters, errors| {
             let found = matrix(parameters);
             errors.robust.extend(points.iter().map(|point| found.error(point) * unit / PRECISION));

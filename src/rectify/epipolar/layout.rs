@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2};
 
 use super::{
     frame::{Frame, mapped},
-    lens::Lens,
+    lenses::Lenses,
     shape::edge,
 };
 use crate::{image::Size, rectify::Correspondence};
@@ -65,12 +65,12 @@ impl Layout {
     /// All of the left view that the right one shows in the same rows, and what of the right view can correspond to it; around the
     /// `points` alone where the views reach further than a picture should. `maps` lead from units to pixels of the rectified plane.
     /// `None` if the views have no row in common.
-    pub fn of_both(frame: &Frame, maps: &[DMat3; 2], lens: Lens, points: &[Correspondence]) -> Option<Self> {
+    pub fn of_both(frame: &Frame, maps: &[DMat3; 2], lenses: Lenses, points: &[Correspondence]) -> Option<Self> {
         let shift = shift(maps, points, f64::from(frame.sizes[0].width));
         let places = |view: usize| {
             let right_by = DVec2::new(if view == 0 { 0.0 } else { shift }, 0.0);
-            let straight =
-                edge(frame, view).map(|pixel| lens.undistorted(frame.place(view, pixel), frame.mean_side(view)));
+            let straight = edge(frame, view)
+                .map(|pixel| lenses.0[view].undistorted(frame.place(view, pixel), frame.mean_side(view)));
             let seen: Vec<_> = straight.map(|place| Some(mapped(&maps[view], place)? + right_by)).collect();
             let around: Vec<DVec2> = points
                 .iter()

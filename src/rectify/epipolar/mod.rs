@@ -1,7 +1,7 @@
 //! Rectification without calibration, from matched points alone.
 //!
 //! ```text
-//! points -> fundamental -> evidence -> lens -> rows or rotations -> layout -> maps
+//! points -> fundamental -> evidence -> lenses -> rows or rotations -> layout -> maps
 //! ```
 //!
 //! All arithmetic is in double precision on the host, and random samples come in a fixed sequence: the same points give the same
@@ -14,6 +14,7 @@ mod fundamental;
 mod homography;
 mod layout;
 mod lens;
+mod lenses;
 mod linear;
 mod minimise;
 mod refusal;
@@ -39,6 +40,7 @@ use frame::{AGREEMENT, Frame};
 use fundamental::Fundamental;
 use layout::Layout;
 use lens::Lens;
+use lenses::Lenses;
 use rotations::Cameras;
 
 use super::{Correspondence, Residual, RowKind, Slant, WarpMap, map::TOLERANCE};
@@ -89,9 +91,9 @@ pub struct Uncalibrated {
     pub evidence: Evidence,
     /// What is done to the views.
     pub model: Model,
-    /// Radial distortion of both views: a place `x` from the centre of a picture appears at `x (1 + k1 r^2)`, `r` in units of the
-    /// mean of width and height; 0 unless the points show a distortion.
-    pub k1: f64,
+    /// Radial distortions of the left and the right view: a place `x` from the centre of a picture appears at `x (1 + k1 r^2)`, `r` in
+    /// units of the mean of width and height; 0 unless the points show a distortion, and the same unless they show two lenses.
+    pub k1: [f64; 2],
     /// Maps from pixels of the left and the right view, without their distortion, to pixels of the rectified pictures.
     pub homographies: [DMat3; 2],
     /// Width and height of both rectified pictures, in pixels.
@@ -132,18 +134,24 @@ impl Uncalibrated {
         };
         let inliers = found.inliers(&used, AGREEMENT / frame.unit);
         let evidence = Evidence::new(&used, &inliers, &found, &frame);
+        // Of lenses that differ, hardly any points agree before the distortion is undone.
+        let lenses = match evidence.relation {
+            Relation::Parallax | Relation::Unrelated => Lenses::shown(&used, &found, &frame),
+            _ => return Err(Refusal::Relation(evidence)),
+        };
+        let (lenses, found, inliers, evidence) = match lenses {
+            Lenses::NONE => (lenses, found, inliers, evidence),
+            shown => {
+                let lenses = shown.of_parallel_cameras(&found.behind(shown, &used, &frame).0, &used, &frame);
+                let (found, inliers) = found.behind(lenses, &used, &frame);
+                let straight = lenses.straight(&used, &frame);
+                let evidence = Evidence::new(&straight, &inliers, &found, &frame);
+                (lenses, found, inliers, evidence)
+            }
+        };
         if evidence.relation != Relation::Parallax {
             return Err(Refusal::Relation(evidence));
         }
-        let lens = Lens::shown(&used, &found, &frame);
-        let (lens, found, inliers) = match lens {
-            Lens::NONE => (lens, found, inliers),
-            shown => {
-                let lens = shown.of_parallel_cameras(&found.behind(shown, &used, &frame).0, &used, &frame);
-                let (found, inliers) = found.behind(lens, &used, &frame);
-                (lens, found, inliers)
-            }
-        };
 
         let chosen = Chosen::new(&found, &inliers, &frame);
         // Where a camera turned by little, most rows nearly correspond, and matrices that turn both views explain the others.
@@ -151,15 +159,15 @@ impl Uncalibrated {
         if let Some(relation) = is_warped.then(|| evidence::flat(&inliers, &frame)).flatten() {
             return Err(Refusal::Relation(Evidence { relation, ..evidence }));
         }
-        let residual = row_errors(&chosen.maps, &lens.straight(&unused, &frame), &frame);
-        Self::bounded(evidence, &chosen, lens, &inliers, residual, frame)
+        let residual = row_errors(&chosen.maps, &lenses.straight(&unused, &frame), &frame);
+        Self::bounded(evidence, &chosen, lenses, &inliers, residual, frame)
     }
 
     /// The rectification by the chosen maps, if it leaves the views recognisable and their rows equal.
     fn bounded(
         evidence: Evidence,
         &Chosen { model, maps, keeps_columns }: &Chosen,
-        lens: Lens,
+        lenses: Lenses,
         inliers: &[Correspondence],
         residual: Residual,
         frame: Frame,
@@ -174,20 +182,20 @@ impl Uncalibrated {
             return Err(evidence.without_rows().map_or(Refusal::Rows(fit.mean), Refusal::Relation));
         }
         let layout = match model {
-            Model::Right(_) if lens == Lens::NONE => Layout::of_left(&frame, &maps, inliers),
-            _ => Layout::of_both(&frame, &maps, lens, inliers).ok_or(torn)?,
+            Model::Right(_) if lenses == Lenses::NONE => Layout::of_left(&frame, &maps, inliers),
+            _ => Layout::of_both(&frame, &maps, lenses, inliers).ok_or(torn)?,
         };
         let homographies = [0, 1].map(|view| {
             DMat3::from_translation(-layout.origins[view]) * maps[view] * frame.map_to_pixels(view).inverse()
         });
         let shift = layout.origins[0].x - layout.origins[1].x;
-        let (k1, size) = (lens.k1, layout.size);
+        let (k1, size) = (lenses.k1(), layout.size);
         Ok(Self { evidence, model, k1, homographies, size, shift, keeps_columns, distortion, residual, frame })
     }
 
     /// The pixel of a rectified picture that shows a pixel of a view, 0 for the left one; `None` beyond the horizon.
     pub fn rectified(&self, view: usize, pixel: DVec2) -> Option<DVec2> {
-        let (frame, lens) = (&self.frame, Lens { k1: self.k1 });
+        let (frame, lens) = (&self.frame, Lens { k1: self.k1[view] });
         let straight = lens.undistorted(frame.place(view, pixel), frame.mean_side(view));
         frame::mapped(&self.homographies[view], frame.pixel(view, straight))
     }
@@ -198,7 +206,7 @@ impl Uncalibrated {
     }
 
     fn source(&self, view: usize, inverse: &DMat3, pixel: DVec2) -> Option<DVec2> {
-        let (frame, lens) = (&self.frame, Lens { k1: self.k1 });
+        let (frame, lens) = (&self.frame, Lens { k1: self.k1[view] });
         let place = frame.place(view, frame::mapped(inverse, pixel)?);
         Some(frame.pixel(view, lens.distorted(place, frame.mean_side(view))?))
     }

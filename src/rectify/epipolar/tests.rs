@@ -16,14 +16,20 @@ struct Rig {
     place: DVec3,
     /// Focal lengths over 900 px.
     zooms: [f64; 2],
-    k1: f64,
+    /// Distortions of the left and the right lens.
+    k1: [f64; 2],
     /// Depth of the scene in metres, nearest and furthest.
     depths: [f64; 2],
 }
 
 /// Cameras side by side, 20 cm apart.
-const SIDE_BY_SIDE: Rig =
-    Rig { turns: [DVec3::ZERO; 2], place: DVec3::new(0.2, 0.0, 0.0), zooms: [1.0; 2], k1: 0.0, depths: [2.0, 6.0] };
+const SIDE_BY_SIDE: Rig = Rig {
+    turns: [DVec3::ZERO; 2],
+    place: DVec3::new(0.2, 0.0, 0.0),
+    zooms: [1.0; 2],
+    k1: [0.0; 2],
+    depths: [2.0, 6.0],
+};
 
 impl Rig {
     fn turned(right: [f64; 3]) -> Self {
@@ -37,7 +43,7 @@ impl Rig {
         let straight = place.truncate() / place.z * FOCAL * self.zooms[view];
         let centre = DVec2::new(399.5, 299.5);
         let side = 700.0;
-        let pixel = centre + straight * (1.0 + self.k1 * straight.length_squared() / (side * side));
+        let pixel = centre + straight * (1.0 + self.k1[view] * straight.length_squared() / (side * side));
         let inside = (pixel - centre).abs().cmple(centre).all();
         (place.z > 0.0 && inside).then_some(pixel)
     }
@@ -128,7 +134,7 @@ fn rows_of_one_view_are_enough_for_turns_of_the_right_camera() {
         let (found, off) = Rig::turned(turn).rectified();
         assert_eq!(found.model, Model::Right(kind), "{turn:?}");
         assert!(off < 0.4, "{turn:?}: {off}");
-        assert_eq!((found.k1, found.size), (0.0, SIZE));
+        assert_eq!((found.k1, found.size), ([0.0; 2], SIZE));
         let corner = DVec2::new(12.0, 34.0);
         assert!(found.rectified(0, corner).unwrap().abs_diff_eq(corner, 1e-9), "the left view stays");
         assert!(found.distortion.aspect < 1.2 && found.residual.most < 1.0, "{:?}", found.residual);
@@ -248,24 +254,43 @@ fn both_views_are_turned_where_neither_has_level_epipolar_lines() {
 #[test]
 fn the_distortion_of_the_lens_is_found_and_undone() {
     for k1 in [-0.2, 0.1] {
-        let rig = Rig { k1, turns: [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)], depths: [1.0, 4.0], ..SIDE_BY_SIDE };
+        let rig =
+            Rig { k1: [k1; 2], turns: [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)], depths: [1.0, 4.0], ..SIDE_BY_SIDE };
         let (found, off) = rig.rectified();
-        assert!((found.k1 - k1).abs() < 0.03 && off < 0.5, "{k1}: {} {off}", found.k1);
+        assert!(
+            found.k1[0] == found.k1[1] && (found.k1[0] - k1).abs() < 0.03 && off < 0.5,
+            "{k1}: {:?} {off}",
+            found.k1
+        );
     }
 }
 
 #[test]
 fn a_distortion_of_parallel_cameras_is_not_taken_for_a_perspective() {
     for k1 in [-0.25, -0.15] {
-        let (found, off) = Rig { k1, depths: [1.0, 4.0], ..SIDE_BY_SIDE }.rectified();
+        let (found, off) = Rig { k1: [k1; 2], depths: [1.0, 4.0], ..SIDE_BY_SIDE }.rectified();
         assert!(matches!(found.model, Model::Right(RowKind::AsIs | RowKind::Shift)), "{:?}", found.model);
-        assert!((found.k1 - k1).abs() < 0.015 && off < 0.3, "{k1}: {} {off}", found.k1);
+        assert!(
+            found.k1[0] == found.k1[1] && (found.k1[0] - k1).abs() < 0.015 && off < 0.3,
+            "{k1}: {:?} {off}",
+            found.k1
+        );
+    }
+}
+
+#[test]
+fn lenses_that_differ_are_told_apart() {
+    for (k1, turn) in [([0.0, -0.2], DVec3::ZERO), ([-0.15, 0.0], DVec3::Z * 5.0), ([-0.2, 0.05], DVec3::ZERO)] {
+        let rig = Rig { k1, turns: [DVec3::ZERO, turn], depths: [1.0, 4.0], ..SIDE_BY_SIDE };
+        let (found, off) = rig.rectified();
+        let error = [0, 1].map(|view| (found.k1[view] - k1[view]).abs());
+        assert!(error.iter().all(|&error| error < 0.02) && off < 0.5, "{k1:?}: {:?} {off}", found.k1);
     }
 }
 
 #[test]
 fn a_pixel_goes_there_and_back() {
-    let rig = Rig { k1: -0.15, turns: [DVec3::Z * 8.0, DVec3::new(1.0, 2.0, -9.0)], ..SIDE_BY_SIDE };
+    let rig = Rig { k1: [-0.15; 2], turns: [DVec3::Z * 8.0, DVec3::new(1.0, 2.0, -9.0)], ..SIDE_BY_SIDE };
     let (found, _) = rig.rectified();
     for view in [0, 1] {
         for pixel in [DVec2::ZERO, DVec2::new(700.0, 100.0), DVec2::new(333.0, 599.0)] {
