@@ -114,9 +114,9 @@ pub enum Error {
     },
 
     /// The rows of the views do not correspond: a search along rows would find noise.
-    #[error("the pair is not rectified: {diagnosis}, or search along rows all the same")]
+    #[error("the pair is not rectified: {diagnosis}; rectify both views first, or search along rows all the same")]
     NotRectified {
-        /// How rows differ, and what to do about them.
+        /// How rows differ.
         diagnosis: String,
     },
 

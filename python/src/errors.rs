@@ -21,7 +21,8 @@ pub fn raised(error: Error) -> PyErr {
         Error::Format { .. } => FormatError::new_err(sentence),
         Error::Io { source, .. } => std::io::Error::new(source.kind(), sentence).into(),
         Error::NotRectified { diagnosis } => NotRectifiedError::new_err(format!(
-            "the pair is not rectified: {diagnosis}; hsad.rectify rectifies pairs, or search along rows all the same with force=True"
+            "the pair is not rectified: {}; hsad.rectify rectifies pairs, or search along rows all the same with force=True",
+            diagnosis.replace('`', "")
         )),
         Error::NotRectifiable { .. } => NotRectifiedError::new_err(sentence),
         Error::NoRange { reason } => NoRangeError::new_err(format!(

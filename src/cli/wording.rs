@@ -9,7 +9,8 @@ use hsad::{Error, Options};
 pub fn in_options(error: &Error) -> String {
     match error {
         Error::NotRectified { diagnosis } => {
-            format!("the pair is not rectified: {diagnosis}, or search along rows all the same with --force")
+            let diagnosis = in_words_of_options(diagnosis);
+            format!("the pair is not rectified: {diagnosis}; --force searches along rows all the same")
         }
         Error::NoRange { reason } => {
             format!("the disparity range could not be found: {reason}; name it with --min-disparity and --disparities")

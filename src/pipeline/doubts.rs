@@ -39,6 +39,8 @@ pub fn not_trusted(outcome: &Outcome, calibration: Option<&Calibration>) -> Opti
         "hardly any interest point was found in both views"
     } else if outcome.repetition > 4 {
         "disparities come in steps of many pixels"
+    } else if outcome.seeding.rectification.is_distorted() {
+        "rows do not correspond in parts of the picture, as with a distorted lens"
     } else {
         "the views correspond in too little of the picture"
     };

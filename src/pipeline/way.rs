@@ -65,7 +65,9 @@ impl Task<'_> {
     /// Matches the pair on its way.
     pub(super) async fn on_its_way(&self) -> Result<Found> {
         match self.way {
-            Way::AsIs => Ok(as_taken(self.as_it_is(self.config.force).await?)),
+            Way::AsIs => {
+                self.as_it_is(self.config.force).await.map(as_taken).map_err(|error| kept(error, "`rectify` never"))
+            }
             Way::AsNeeded => self.as_needed().await,
             Way::Uncalibrated => {
                 (self.begin)(Activity::Rectifying);
@@ -142,7 +144,7 @@ impl Task<'_> {
     async fn as_needed(&self) -> Result<Found> {
         let force = self.config.force;
         if !self.config.align {
-            return Ok(as_taken(self.as_it_is(force).await?));
+            return self.as_it_is(force).await.map(as_taken).map_err(|error| kept(error, "`no_align`"));
         }
         let mut looked = self.first_look().await?;
         let mut leaning = looked.take_if(|pair| leans(pair));
@@ -301,6 +303,16 @@ fn is_as_good((trust, coverage): (f32, f64), (other_trust, other_coverage): (f32
 /// The outcome of a pair that was matched as it was taken.
 fn as_taken(outcome: Outcome) -> Found {
     Found { outcome, rectified: None, warnings: Vec::new() }
+}
+
+/// The error of a pair that `option` keeps from being rectified.
+fn kept(error: Error, option: &str) -> Error {
+    match error {
+        Error::NotRectified { diagnosis } => {
+            Error::NotRectified { diagnosis: format!("{diagnosis}; {option} keeps the pair from being rectified") }
+        }
+        error => error,
+    }
 }
 
 /// Whether a map is not to be trusted since nothing tells whether rows correspond.

@@ -54,17 +54,16 @@ impl fmt::Display for Rectification {
             Verdict::NotRectified if self.climb != 0.0 => {
                 write!(
                     f,
-                    "the cameras do not stand side by side in the pictures, rows differ by {:.2} px per pixel of disparity: rectify both \
-                     views first",
+                    "the cameras do not stand side by side in the pictures, rows differ by {:.2} px per pixel of disparity",
                     self.climb.abs()
                 )?;
             }
             Verdict::NotRectified if self.most_agree() => {
                 f.write_str("the right view ")?;
                 self.placement(f)?;
-                write!(f, ", so that rows differ by up to {largest:.1} px: rectify both views first")?;
+                write!(f, ", so that rows differ by up to {largest:.1} px")?;
             }
-            Verdict::NotRectified => f.write_str("rows correspond in no common way: rectify both views first")?,
+            Verdict::NotRectified => f.write_str("rows correspond in no common way")?,
             Verdict::UpsideDown => f.write_str("the right view is upside down: turn the right view by 180 degrees")?,
             Verdict::Vertical => {
                 f.write_str("the cameras stand above each other: turn both views by 90 degrees")?;
@@ -139,14 +138,9 @@ mod tests {
             (
                 Verdict::NotRectified,
                 30,
-                "the right view lies 1.2 px higher and is 2.0 % larger, so that rows differ by up to 6.0 px: rectify both \
-                 views first (30 of 40 points agree)",
+                "the right view lies 1.2 px higher and is 2.0 % larger, so that rows differ by up to 6.0 px (30 of 40 points agree)",
             ),
-            (
-                Verdict::NotRectified,
-                16,
-                "rows correspond in no common way: rectify both views first (16 of 40 points agree)",
-            ),
+            (Verdict::NotRectified, 16, "rows correspond in no common way (16 of 40 points agree)"),
             (Verdict::Unknown, 3, "unknown: 3 of 40 points agree on how rows correspond, too few to tell"),
         ] {
             assert_eq!(text(verdict, agreeing), expected);

@@ -182,18 +182,19 @@ fn a_pair_that_is_not_rectified_is_diagnosed() {
     let [left, lower] = ["left.png", "lower.png"].map(|name| temporary.path().join(name));
     grey_png(&left, &picture);
     grey_png(&lower, &Plane::from_fn((340, 255), |x, y| picture.get_clamped(i64::from(x), i64::from(y) - 40)));
-    let words = "points agree), or search along rows all the same with --force";
+    let words =
+        "points agree); --rectify never keeps the pair from being rectified; --force searches along rows all the same";
     pair_fails(&left, &lower, &["--rectify", "never"], 3, words);
+    pair_fails(&left, &lower, &["--no-align"], 3, "--no-align keeps the pair from being rectified");
     // One picture twice shows no depth by which it could be rectified.
-    pair_fails(&left, &lower, &[], 3, "the views show a plane");
-    pair_fails(&left, &lower, &[], 3, words);
+    pair_fails(&left, &lower, &[], 3, "no warp that matches tell helps, since the views show a plane");
 
     // A rotation by 90 degrees, which only features with orientations match.
     let [square, turned] = ["square.png", "turned.png"].map(|name| temporary.path().join(name));
     grey_png(&square, &Plane::from_fn((255, 255), |x, y| picture.get(x, y)));
     grey_png(&turned, &Plane::from_fn((255, 255), |x, y| picture.get(y, 254 - x)));
     pair_fails(&square, &turned, &[], 3, "is turned 90.0");
-    pair_fails(&square, &turned, &[], 3, "rectify both views first");
+    pair_fails(&square, &turned, &[], 3, "; --force searches along rows all the same");
 
     let upside_down = temporary.path().join("upside_down.png");
     grey_png(&upside_down, &Plane::from_fn((340, 255), |x, y| picture.get(339 - x, 254 - y)));
