@@ -34,7 +34,7 @@ def calibrate(folder, out):
     files = [sorted(glob.glob(f"{folder}/{view}*.jpg")) for view in ("left", "right")]
     pairs = [pair for pair in zip(*files) if all(corners(cv2.imread(path, 0)) is not None for path in pair)]
     places = [[corners(cv2.imread(pair[view], 0))[:, None] for pair in pairs] for view in (0, 1)]
-    points, size = [grid] * len(pairs), cv2.imread(files[0][0], 0).shape[::-1]
+    points, size = [grid] * len(pairs), cv2.imread(pairs[0][0], 0).shape[::-1]
     (_, M1, D1, *_), (_, M2, D2, *_) = [cv2.calibrateCamera(points, view, size, None, None) for view in places]
     rms, M1, D1, M2, D2, R, T, *_ = cv2.stereoCalibrate(
         points, *places, M1, D1, M2, D2, size, flags=cv2.CALIB_USE_INTRINSIC_GUESS

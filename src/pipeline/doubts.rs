@@ -33,7 +33,9 @@ pub fn not_trusted(outcome: &Outcome, calibration: Option<&Calibration>) -> Opti
     if outcome.trust >= TRUSTED {
         return calibration.and_then(|calibration| behind(outcome, calibration));
     }
-    let reason = if outcome.seeding.rectification.verdict == Verdict::Unknown {
+    let reason = if let Some(reason) = without_detail(outcome.points_found) {
+        reason
+    } else if outcome.seeding.rectification.verdict == Verdict::Unknown {
         "nothing tells whether the rows of the views correspond"
     } else if outcome.seeding.seeds.len() < FEW {
         "hardly any interest point was found in both views"
@@ -45,6 +47,16 @@ pub fn not_trusted(outcome: &Outcome, calibration: Option<&Calibration>) -> Opti
         "the views correspond in too little of the picture"
     };
     Some(format!("the map is not to be trusted (trust {:.2} of 1): {reason}", outcome.trust))
+}
+
+/// Views that show nothing, by the number of interest points in each, in words.
+const fn without_detail(points: [usize; 2]) -> Option<&'static str> {
+    match points {
+        [0, 0] => Some("neither view shows any detail"),
+        [0, _] => Some("the left view shows no detail"),
+        [_, 0] => Some("the right view shows no detail"),
+        _ => None,
+    }
 }
 
 /// Why depth does not follow from a map whose surfaces lie behind the cameras by the calibration, if most do.

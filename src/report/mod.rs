@@ -265,6 +265,7 @@ fn rectification(found: &Rectification) -> Value {
             ("unexplained_px", found.unexplained),
             ("largest_px", found.largest),
             ("lean", found.lean),
+            ("climb", found.climb),
         ] {
             value[name] = number(figure);
         }

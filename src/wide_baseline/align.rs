@@ -220,7 +220,8 @@ impl Similarity {
         let in_steps = |value: f64, step: f64| (value / step).round() * step;
         let turn = most + median(alike.iter().map(|pair| half_turn(turn(pair) - most)).collect())?;
         let scale = median(alike.iter().map(|pair| growth(pair)).collect())?;
-        let found = Self { turn: in_steps(turn, STEPS.0), scale: libm::exp(in_steps(scale, STEPS.1)), dy: 0.0 };
+        let found =
+            Self { turn: in_steps(half_turn(turn), STEPS.0), scale: libm::exp(in_steps(scale, STEPS.1)), dy: 0.0 };
         let undone = found.undone(centres[0], centres[1]);
         let place = |feature: &Feature| DVec2::new(feature.x.into(), feature.y.into());
         let rows = alike.iter().map(|(a, b)| undone.transform_point2(place(b)).y - place(a).y);

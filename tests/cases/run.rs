@@ -125,6 +125,21 @@ impl Run {
         })
     }
 
+    /// What the disparities are larger than the truth by in the median, in pixels, and the share of them that are wrong by over 2 px beside
+    /// it, 0 to 1.
+    pub fn wrong_but_for_a_constant(&self, truth: &Plane<f32>) -> (f32, f64) {
+        let map = self.disparity();
+        assert_eq!(map.size(), truth.size());
+        let pairs = map.data().iter().zip(truth.data());
+        let mut off: Vec<f32> = pairs.filter_map(|(&d, truth)| Some(disparity::pixels(d)? - truth)).collect();
+        off.retain(|off| off.is_finite());
+        assert!(off.len() * 10 > truth.data().len() * 7, "{} known", off.len());
+        off.sort_by(f32::total_cmp);
+        let constant = off[off.len() / 2];
+        let wrong = off.iter().filter(|&&off| (off - constant).abs() > 2.0).count();
+        (constant, wrong as f64 / off.len() as f64)
+    }
+
     /// Why trust is on the wrong side of 0.5, if it is: more than 30 % of the disparities are wrong by over 2 px and
     /// trusted, or fewer than 10 % and not trusted.
     pub fn misjudgement(&self, truth: &Plane<f32>) -> Option<String> {

@@ -112,3 +112,12 @@ fn pictures_enlarged_without_interpolation_are_told() {
     assert_eq!(run.report()["repetition"], 2);
     assert_eq!(Pair::shipped("planes").matched(&[]).report()["repetition"], 1);
 }
+
+#[test]
+fn a_view_that_shows_nothing_is_named() {
+    let pair = Pair::shipped("planes");
+    let blank = |picture: &Picture| Picture::filled(picture.size(), [128, 128, 128, 255]);
+    let run = pair.clone().with_right(blank).matched(&[]);
+    run.ends(4, &["the right view shows no detail"]);
+    pair.with(|picture, _| blank(&picture)).matched(&[]).ends(4, &["neither view shows any detail"]);
+}
