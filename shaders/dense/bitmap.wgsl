@@ -7,6 +7,7 @@
 //
 // A last bitmap, along rows, has the holes that are shown, which shall be filled.
 
+#import bitmap_rows
 #import words
 
 // Constants:
@@ -63,12 +64,6 @@ fn shown_of(word: u32, y: u32) -> u32 {
     return result;
 }
 
-// The bits of word `word` that lie in the picture.
-fn in_picture(word: u32) -> u32 {
-    let pixels = params.width - 32u * word;
-    return select((1u << (pixels % 32u)) - 1u, 0xffffffffu, pixels >= 32u);
-}
-
 // One thread makes one word, or two along a row; threads along x make words of different rows, or of different columns.
 @compute @workgroup_size(WORKGROUP_WIDTH, WORKGROUP_HEIGHT)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -81,7 +76,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             let word = id.x * row_words + id.y;
             bitmaps[word] = found;
             let holes = params.height * row_words + 3u * blocks * columns;
-            bitmaps[holes + word] = ~found & in_picture(id.y) & shown_of(id.y, id.x);
+            bitmaps[holes + word] = ~found & in_picture(i32(id.y)) & shown_of(id.y, id.x);
         }
     } else if id.x < columns && id.y < blocks {
         let first = vec2<i32>(i32(id.x) - MARGIN, 32 * i32(id.y));

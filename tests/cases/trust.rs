@@ -1,6 +1,6 @@
 //! Trust in a map, and what follows from too little of it.
 
-use hsad::{eval::conditions::Kind, image::Plane};
+use hsad::{eval::conditions::Kind, image::Plane, io::Picture};
 
 use crate::{
     pair::{Pair, changed},
