@@ -1,5 +1,6 @@
 // Semi-global matching, one path through cells with ranges of their own: the path costs along all lines of one direction.
-// One thread per line; a diagonal line that leaves the picture at one side starts anew at the other side.
+// One thread per line; a diagonal line that leaves the picture at one side starts anew at the other side. Long lines are
+// followed in parts, by a dispatch each.
 //
 // The path costs of the last pixel are read back from the volume, at an offset of whole words where its range begins
 // elsewhere: each vector is put together from two. A disparity that the last pixel does not have has the largest path cost
@@ -20,8 +21,11 @@ struct Params {
     // Index in `paths`, in u32, where the band begins in the volume of this path, and where the row before it is.
     path_start: u32,
     halo_start: u32,
-    // 1: lines continue from the row before the band.
+    // 1: lines continue, from the row before the band or from the part before.
     goes_on: u32,
+    // The part: pixels of a line before it, and in it.
+    skipped: u32,
+    steps: u32,
     // Step to the next pixel of a line, -1, 0 or 1 each.
     dx: i32,
     dy: i32,
@@ -66,10 +70,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= select(params.width, params.rows, along_rows) {
         return;
     }
-    var x = i32(id.x);
-    var y = select(0, i32(params.rows) - 1, params.dy < 0);
+    let skipped = i32(params.skipped);
+    let width = i32(params.width);
+    var x = (i32(id.x) + params.dx * (skipped % width) + width) % width;
+    var y = select(skipped, i32(params.rows) - 1 - skipped, params.dy < 0);
     if along_rows {
-        x = select(0, i32(params.width) - 1, params.dx < 0);
+        x = select(skipped, width - 1 - skipped, params.dx < 0);
         y = i32(id.x);
     }
     // The last pixel: its words in `paths`, luma and least path cost. At the start of a line it has no disparities, and a
@@ -79,10 +85,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var least = 0u;
     var starts = true;
     let came_from = x - params.dx;
-    if !along_rows && params.goes_on != 0u && came_from >= 0 && came_from < i32(params.width) {
-        last = in_row(u32(came_from), u32(i32(params.top) + y - params.dy));
-        last.start += params.halo_start;
-        last_luma = reference[u32((i32(params.first_row) + y - params.dy) * i32(params.width) + came_from)].x & 255u;
+    if params.goes_on != 0u && came_from >= 0 && came_from < width {
+        let row = u32(i32(params.top) + y - params.dy);
+        last = in_row(u32(came_from), row);
+        last.start += select(params.path_start + word_at(row), params.halo_start, skipped == 0);
+        last_luma = reference[u32((i32(params.first_row) + y - params.dy) * width + came_from)].x & 255u;
         var lowest = vec4<u32>(UNREACHABLE);
         for (var k = 0u; k < last.count; k += 4u) {
             let packed = vector_at(last, k);
@@ -93,7 +100,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         least = least_of(lowest);
         starts = false;
     }
-    for (var i = 0u; i < select(params.rows, params.width, along_rows); i++) {
+    for (var i = 0u; i < params.steps; i++) {
         let luma = reference[(params.first_row + u32(y)) * params.width + u32(x)].x & 255u;
         let jump = select(least + penalty(luma, last_luma), 0u, starts);
         let span = span_at(u32(x), params.top + u32(y));
@@ -129,8 +136,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         starts = false;
         x += params.dx;
         y += params.dy;
-        if params.dx != 0 && params.dy != 0 && (x < 0 || x >= i32(params.width)) {
-            x -= params.dx * i32(params.width);
+        if params.dx != 0 && params.dy != 0 && (x < 0 || x >= width) {
+            x -= params.dx * width;
             last.count = 0u;
             least = 0u;
             starts = true;

@@ -40,6 +40,10 @@ pub const REQUIRED_LIMITS: &[Limit] = &[
     limit!(max_compute_workgroups_per_dimension, 65_535),
 ];
 
+/// The most turns that all loops of a thread may take together. lavapipe ends every loop of a thread after 65,535
+/// (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa) without an error: what the thread had still to write stays as it was.
+pub(crate) const MOST_TURNS: u32 = 65_000;
+
 /// Names of the limits on the size of a storage buffer.
 pub(crate) const BUFFER_LIMITS: &str = "max_storage_buffer_binding_size and max_buffer_size";
 

@@ -18,6 +18,8 @@ pub struct CellLayout {
     pub(super) words: WordTexture,
     pub(super) columns: u32,
     pub(super) cells: u32,
+    /// The most words of a pixel.
+    pub(super) most_words: u32,
     /// Words of each row of pixels.
     row_words: Vec<u32>,
 }
@@ -62,7 +64,8 @@ impl CellLayout {
         }
         let texture = WordTexture::new(gpu, "layout of the cells", words.len() as u64)?;
         texture.write(gpu, words);
-        Ok(Self { words: texture, columns: table.cells.width(), cells: height, row_words })
+        let most_words = table.cells.data().iter().map(|cell| cell.words).max().unwrap_or(0);
+        Ok(Self { words: texture, columns: table.cells.width(), cells: height, most_words, row_words })
     }
 
     /// Words of `rows` of the level.

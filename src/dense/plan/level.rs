@@ -288,7 +288,9 @@ impl LevelPlan<'_> {
         });
         let [reference, _] = self.transform.of(self.view);
         let lines = LineBuffers { reference, costs: &self.costs, paths: &self.paths };
-        plan.run(self.kernels.path.prepare(&self.band(index), direction, lines, start as u32, halo));
+        for part in self.kernels.path.prepare(&self.band(index), direction, lines, start as u32, halo) {
+            plan.run(part);
+        }
     }
 
     /// Keeps row `row` of a path through band `index` as row number `place` of `to`.

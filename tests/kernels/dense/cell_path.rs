@@ -41,6 +41,19 @@ fn bands_leave_no_trace() {
 }
 
 #[test]
+fn a_line_takes_more_turns_than_lavapipe_counts() {
+    for (dx, dy) in [(-1, 0), (1, 0), (0, 1), (1, -1)] {
+        let direction = Direction { dx, dy };
+        let size = if dy == 0 { Size::new(4000, 1) } else { Size::new(3, 4000) };
+        let table = table(size, 576);
+        let vectors: u32 = (0..4000).map(|i| table.at(i.min(size.width - 1), i.min(size.height - 1)).words / 4).sum();
+        assert!(vectors > 1 << 16, "{vectors}");
+        let long = CellPathTrial { costs: volume(&table, 77, 127), ..trial(size, direction, size.height) };
+        assert_twin(&format!("{direction:?}"), &long);
+    }
+}
+
+#[test]
 fn with_one_range_a_path_is_that_of_the_whole_range() {
     let size = Size::new(40, 35);
     let table = CellTable::whole(size, DisparityRange::new(0, 16).unwrap());

@@ -189,8 +189,8 @@ impl Trial for CellPathTrial {
             let lines = LineBuffers { reference: &view, costs: &costs, paths: &paths };
             let (top, first_row) = (rows.start, rows.start);
             let band = LevelBand { layout: &layout, width, top, first_row, rows: rows.len() as u32 };
-            let dispatch = kernel.prepare(&band, *direction, lines, band_start as u32, halo);
-            bench.run(|encoder| dispatch.record(encoder));
+            let parts = kernel.prepare(&band, *direction, lines, band_start as u32, halo);
+            bench.run(|encoder| parts.iter().for_each(|part| part.record(encoder)));
             let followed = bench.download::<u32>(&paths)?[band_start..band_start + count].to_vec();
             let last = if direction.dy < 0 { rows.start } else { rows.end - 1 };
             let kept = words_of(rows.start..last);
