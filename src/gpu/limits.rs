@@ -1,7 +1,10 @@
 //! Limits of wgpu that a device must have, independent of the size of pictures.
 
 use super::Gpu;
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result, check},
+    image::Size,
+};
 
 /// A limit of [`wgpu::Limits`] that the kernels need.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +46,17 @@ pub const REQUIRED_LIMITS: &[Limit] = &[
 /// The most turns that all loops of a thread may take together. lavapipe ends every loop of a thread after 65,535
 /// (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa) without an error: what the thread had still to write stays as it was.
 pub(crate) const MOST_TURNS: u32 = 65_000;
+
+/// Checks that a loop over the pixels of a row or a column of a picture of `size` does not take too many turns on the device.
+///
+/// # Errors
+/// [`Error::Parameter`] with the ways out.
+pub(crate) fn check_turns(gpu: &Gpu, size: Size) -> Result<()> {
+    let longest = size.width.max(size.height);
+    let expected =
+        format!("lavapipe follows lines of at most {MOST_TURNS} px: match the picture in tiles, or on another device");
+    check(longest <= MOST_TURNS || !gpu.is_lavapipe(), "the longest side of the picture in pixels", longest, expected)
+}
 
 /// Names of the limits on the size of a storage buffer.
 pub(crate) const BUFFER_LIMITS: &str = "max_storage_buffer_binding_size and max_buffer_size";

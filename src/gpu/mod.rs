@@ -52,7 +52,7 @@ pub(crate) use guard::{guarded, try_recording};
 pub use handle::Gpu;
 pub use kernel::DispatchSize;
 pub(crate) use kernel::{Bindable, Dispatch, Kernel, record_run};
-pub(crate) use limits::{BUFFER_LIMITS, MOST_TURNS, check_limits};
+pub(crate) use limits::{BUFFER_LIMITS, MOST_TURNS, check_limits, check_turns};
 pub use limits::{Limit, REQUIRED_LIMITS};
 #[cfg(all(feature = "files", not(target_arch = "wasm32")))]
 pub use pipeline_file::PipelineFile;

@@ -26,7 +26,7 @@ use crate::{
     },
     disparity::DisparityRange,
     error::{Error, Result},
-    gpu::{BUFFER_LIMITS, Gpu},
+    gpu::{BUFFER_LIMITS, Gpu, check_turns},
     image::Size,
 };
 
@@ -40,6 +40,7 @@ pub(in crate::dense) fn plan(
     pair: &UploadedPair,
     limits: BandLimits,
 ) -> Result<Plan> {
+    check_turns(gpu, size)?;
     let width = size.width;
     let range = config.searched(width)?;
     let bands = Bands::new(gpu, size, range, costs, limits)?;

@@ -315,6 +315,18 @@ fn a_pair_too_large_for_one_buffer() {
 }
 
 #[test]
+fn lines_that_lavapipe_would_not_follow_to_their_end_are_refused() {
+    let is_lavapipe = gpu().info().driver == "llvmpipe";
+    let config = Preset::Balanced.dense_config(DisparityRange::new(0, 16).unwrap());
+    for size in [Size::new(65_001, 5), Size::new(5, 65_001)] {
+        let view = Luma::filled(size, 90);
+        let error = block_on(dense::compute(gpu(), &view, &view, &config)).err().map(|error| error.to_string());
+        assert_eq!(error.is_some(), is_lavapipe, "{error:?}");
+        assert!(error.is_none_or(|error| error.contains("65001") && error.contains("in tiles, or on another device")));
+    }
+}
+
+#[test]
 fn no_preset_trusts_pairs_that_show_nothing() {
     let noise = |seed| Luma::from_fn((41, 30), |x, y| picture((1, 1), seed + 41 * y + x).get(0, 0));
     let pairs = [
