@@ -103,10 +103,11 @@ impl KamencayParameters {
     /// Checks the parameters: see [`KamencayConfig::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         let Self { mean_shift, segmentation, cost, smoothness, links, levels, turns, conclusion } = self;
+        // Of the largest window 65 turns are what loops on every device may take: `MOST_TURNS`.
         for (name, value, first, last) in [
             ("the radius of mean shift", mean_shift.radius, 1, 15),
             ("the range of mean shift", mean_shift.range, 1, 255),
-            ("the turns of mean shift", mean_shift.turns, 1, 100),
+            ("the turns of mean shift", mean_shift.turns, 1, 65),
             ("the joining difference of segments", segmentation.join, 0, 441),
             ("the radius of the window", cost.radius, 0, 7),
             ("the weight of the colour", cost.color.weight, 0, 4096),

@@ -18,7 +18,7 @@ pub struct ModeSeeking {
     pub radius: u32,
     /// Largest distance of two similar colours in RGB, 1 to 255 grey levels; 10 by default.
     pub range: u32,
-    /// Most iterations per pixel, 1 to 100; 10 by default.
+    /// Most iterations per pixel, 1 to 65; 10 by default.
     pub turns: u32,
 }
 

@@ -28,7 +28,7 @@ fn the_twin_filters_the_same() {
         compare(&format!("{width}x{height}"), &pixels, ModeSeeking { radius: 1, range: 60, turns: 3 });
     }
     let pixels = words(&colours((64, 48), 4));
-    compare("all there is", &pixels, ModeSeeking { radius: 15, range: 255, turns: 100 });
+    compare("all there is", &pixels, ModeSeeking { radius: 15, range: 255, turns: 65 });
     for (name, photograph) in photographs().into_iter().take(2) {
         compare(&name, &words(&photograph), ModeSeeking { radius: 3, range: 8, turns: 5 });
     }
