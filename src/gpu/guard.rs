@@ -26,24 +26,38 @@ fn is_lost(_: &wgpu::Device) -> bool {
 /// turns errors of the device into an [`Error`] instead of a call of the application's error handler. The kernels are kept
 /// for other builds if there was no error.
 pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
-    let ((built, new, mut errors, lost), reports) = scoped(&gpu.device, || {
-        let (built, new) = collect(|| refusing_other_instances(what, build));
-        let errors = if built.is_ok() { compile(gpu, &new) } else { Vec::new() };
-        (built, new, errors, is_lost(&gpu.device))
-    });
-    for error in reports {
-        errors.extend(error.await);
-    }
-    if errors.iter().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
-        return Err(Error::OutOfMemory(what.into()));
-    }
-    // A lost device comes before the validation errors that follow from it.
-    if lost {
-        return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
-    }
-    match errors.into_iter().next() {
-        Some(error) => Err(Error::Unsupported(format!("{what}: {}", innermost(&error)))),
-        None => built.inspect(|_| gpu.pipelines.keep(new)),
+    let mut built = None;
+    let errors = reported(gpu, what, Box::new(|| build().map(|result| built = Some(result))));
+    errors.await?;
+    Ok(built.expect("the result of a build without an error"))
+}
+
+/// [`guarded`] for builds of any type: code that is compiled once, and not for each of a program's futures.
+fn reported<'a>(
+    gpu: &'a Gpu,
+    what: &'a str,
+    build: Box<dyn FnOnce() -> Result<()> + '_>,
+) -> impl Future<Output = Result<()>> + use<'a> {
+    let scopes = Scopes::open(&gpu.device);
+    let (built, new) = collect(|| refusing_other_instances(what, build));
+    let mut errors = if built.is_ok() { compile(gpu, &new) } else { Vec::new() };
+    let lost = is_lost(&gpu.device);
+    let reports = scopes.close();
+    async move {
+        for error in reports {
+            errors.extend(error.await);
+        }
+        if errors.iter().any(|error| matches!(error, wgpu::Error::OutOfMemory { .. })) {
+            return Err(Error::OutOfMemory(what.into()));
+        }
+        // A lost device comes before the validation errors that follow from it.
+        if lost {
+            return Err(Error::DeviceLost(format!("{what}: nothing can be created on it any more")));
+        }
+        match errors.into_iter().next() {
+            Some(error) => Err(Error::Unsupported(format!("{what}: {}", innermost(&error)))),
+            None => built.map(|()| gpu.pipelines.keep(new)),
+        }
     }
 }
 
@@ -52,8 +66,9 @@ pub(crate) async fn guarded<T>(gpu: &Gpu, what: &str, build: impl FnOnce() -> Re
 fn compile(gpu: &Gpu, pipelines: &[Arc<Pipeline>]) -> Vec<wgpu::Error> {
     // Error scopes belong to threads, and their reports are ready at once.
     let errors_of = |pipeline: &Arc<Pipeline>| {
-        let (_, reports) = scoped(&gpu.device, || _ = pipeline.compiled(gpu));
-        reports.into_iter().filter_map(super::block_on).collect::<Vec<_>>()
+        let scopes = Scopes::open(&gpu.device);
+        pipeline.compiled(gpu);
+        scopes.close().into_iter().filter_map(super::block_on).collect::<Vec<_>>()
     };
     pipelines.par_iter().with_max_len(1).flat_map_iter(errors_of).collect()
 }
@@ -75,7 +90,7 @@ fn innermost(error: &dyn std::error::Error) -> &dyn std::error::Error {
 
 /// Runs `build`, with an [`Error`] for a resource of another [`wgpu::Instance`], for which wgpu panics.
 #[cfg(not(target_arch = "wasm32"))]
-fn refusing_other_instances<T>(what: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+fn refusing_other_instances(what: &str, build: Box<dyn FnOnce() -> Result<()> + '_>) -> Result<()> {
     use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
     // Nothing that `build` leaves half done is used afterwards.
@@ -93,18 +108,26 @@ fn refusing_other_instances<T>(what: &str, build: impl FnOnce() -> Result<T>) ->
 
 /// The same. In a browser there is one instance.
 #[cfg(target_arch = "wasm32")]
-fn refusing_other_instances<T>(_: &str, build: impl FnOnce() -> Result<T>) -> Result<T> {
+fn refusing_other_instances(_: &str, build: Box<dyn FnOnce() -> Result<()> + '_>) -> Result<()> {
     build()
 }
 
-/// Returns the result of `build`, and futures of the device's errors. The scopes are closed before those futures are
-/// awaited, so that they catch no error of other work.
-fn scoped<T>(device: &wgpu::Device, build: impl FnOnce() -> T) -> (T, [impl Future<Output = Option<wgpu::Error>>; 3]) {
-    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let built = build();
-    (built, [internal.pop(), memory.pop(), validation.pop()])
+/// Error scopes of the thread, of which the inner ones come first.
+struct Scopes([wgpu::ErrorScopeGuard; 3]);
+
+impl Scopes {
+    fn open(device: &wgpu::Device) -> Self {
+        let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+        Self([internal, memory, validation])
+    }
+
+    /// Futures of the device's errors. The scopes are closed before those futures are awaited, so that they catch no error of
+    /// other work.
+    fn close(self) -> [impl Future<Output = Option<wgpu::Error>>; 3] {
+        self.0.map(wgpu::ErrorScopeGuard::pop)
+    }
 }
 
 /// Records commands that are never submitted, so that validation errors come here and not when a caller records them. A

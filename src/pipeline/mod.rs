@@ -144,7 +144,18 @@ pub fn run(
     backend: &Backend,
     views: (&Picture, &Picture),
     config: &Config,
-    begin: impl FnMut(Step),
+    mut begin: impl FnMut(Step),
+) -> Result<Outcome> {
+    blocking(backend, views, config, &mut begin)
+}
+
+/// [`run`] for any `begin`: code that is compiled once, and not for each call.
+#[cfg(not(target_arch = "wasm32"))]
+fn blocking(
+    backend: &Backend,
+    views: (&Picture, &Picture),
+    config: &Config,
+    begin: &mut dyn FnMut(Step),
 ) -> Result<Outcome> {
     block_on(run_async(backend, views, config, begin))
 }

@@ -76,8 +76,10 @@ impl Staged {
     /// # Errors
     /// As [`write_whole`].
     pub fn write<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> Result<(Self, T)> {
-        let failed = |source| Error::Io { path: path.into(), source };
-        let (file, written) = stage(path, write).map_err(failed)?;
+        let mut written = None;
+        let staged = stage(path, Box::new(|out| write(out).map(|result| written = Some(result))));
+        let file = staged.map_err(|source| Error::Io { path: path.into(), source })?;
+        let written = written.expect("the result of a content without an error");
         Ok((Self { path: path.into(), file, is_synced: false }, written))
     }
 
@@ -133,12 +135,16 @@ pub fn sync_all(staged: &mut [Staged]) -> Result<()> {
 /// The temporary file and its target path; `None` if the target was written to directly.
 type Temporary = Option<(tempfile::NamedTempFile, PathBuf)>;
 
-fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<(Temporary, T)> {
+/// What writes the content of a file.
+type Content<'a> = Box<dyn FnOnce(&mut BufWriter<&File>) -> io::Result<()> + 'a>;
+
+fn stage(path: &Path, write: Content<'_>) -> io::Result<Temporary> {
     let old = fs::metadata(path).ok();
     match &old {
         Some(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
         Some(old) if !old.is_file() => {
-            return Ok((None, fill(&OpenOptions::new().write(true).open(path)?, write)?));
+            fill(&OpenOptions::new().write(true).open(path)?, write)?;
+            return Ok(None);
         }
         Some(old) if old.permissions().readonly() => {
             return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
@@ -147,11 +153,11 @@ fn stage<T>(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     }
     let target = if old.is_some() { fs::canonicalize(path)? } else { path.into() };
     let temporary = temporary_in(&folder(&target))?;
-    let written = fill(temporary.as_file(), write)?;
+    fill(temporary.as_file(), write)?;
     if let Some(old) = old {
         temporary.as_file().set_permissions(permissions_of(&old))?;
     }
-    Ok((Some((temporary, target)), written))
+    Ok(Some((temporary, target)))
 }
 
 /// The permissions of a file that replaces one with this metadata.
@@ -165,11 +171,10 @@ fn permissions_of(old: &fs::Metadata) -> fs::Permissions {
     old.permissions()
 }
 
-fn fill<T>(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<T>) -> io::Result<T> {
+fn fill(file: &File, write: Content<'_>) -> io::Result<()> {
     let mut writer = BufWriter::new(file);
-    let written = write(&mut writer)?;
-    writer.flush()?;
-    Ok(written)
+    write(&mut writer)?;
+    writer.flush()
 }
 
 /// The parent folder of `path`.
