@@ -1,11 +1,11 @@
 //! Pairs with known disparities.
 
-use std::path::Path;
+use std::{fs::File, path::Path};
 
 use hsad::{
     eval::conditions::{Condition, Kind},
     image::{Plane, Size},
-    io::{Picture, load, pfm},
+    io::{Picture, load, pfm, png},
 };
 
 use crate::run::Run;
@@ -53,8 +53,7 @@ impl Pair {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let paths = ["left.png", "right.png"].map(|file| folder.path().join(file));
         for (picture, path) in [&self.left, &self.right].into_iter().zip(&paths) {
-            let Size { width, height } = picture.size();
-            image::save_buffer(path, picture.rgba(), width, height, image::ColorType::Rgba8).expect("a PNG");
+            png::write_rgba8(&mut File::create(path).expect("a file"), picture).expect("a PNG");
         }
         Run::of(&paths[0], &paths[1], args)
     }

@@ -1,8 +1,11 @@
 //! Pixels that do not show the scene: no disparity, no confidence, no colour, no point, and no influence on the rest.
 
+use std::fs::File;
+
 use hsad::{
     eval::conditions::Kind,
     image::{Plane, Size},
+    io::png,
 };
 
 use crate::{
@@ -111,8 +114,7 @@ fn masks_are_not_seen() {
     let (pair, folder) = (wrong_texture(255), tempfile::tempdir().unwrap());
     let paths = [0, 1].map(|view| {
         let path = folder.path().join(format!("{view}.png"));
-        let Size { width, height } = pair.size();
-        image::save_buffer(&path, mask(inside, view, pair.size()).data(), width, height, image::ColorType::L8).unwrap();
+        png::write_grey8(&mut File::create(&path).unwrap(), &mask(inside, view, pair.size())).unwrap();
         path.display().to_string()
     });
     let args = [&CALIBRATION[..], &["--mask", &paths[0], &paths[1]]].concat();

@@ -9,6 +9,7 @@ use hsad::{
     io::{disparities, disparity_png, load, pfm},
     options::Kind,
 };
+use image::codecs::png::PngEncoder;
 use predicates::{prelude::PredicateBooleanExt, str::contains};
 use serde_json::{Value, json};
 
@@ -467,7 +468,8 @@ fn a_png_holds_negative_disparities_by_an_offset() {
     let told = report(out)["disparity_png"].clone();
     let [scale, offset] = ["px_per_value", "offset_px"].map(|name| told[name].as_f64().unwrap());
     assert!(offset <= -50.0, "{told}");
-    let values = image::open(out.join("disparity.png")).unwrap().into_luma16().into_raw();
+    let values =
+        image::load_from_memory(&fs::read(out.join("disparity.png")).unwrap()).unwrap().into_luma16().into_raw();
     for (&value, &d) in values.iter().zip(map.data()) {
         assert!(if d == NONE { value == 0 } else { f64::from(value) * scale + offset == f64::from(d) / 256.0 });
     }
@@ -492,8 +494,8 @@ fn other_kinds_of_pictures_are_read() {
     let deep = image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([u16::from(luma.get(x, y)) * 257]));
     let alpha = image::ImageBuffer::from_fn(width, height, |x, y| image::LumaA([luma.get(x, y), x as u8 | 1]));
     let [deep_path, alpha_path] = ["deep.png", "alpha.png"].map(|name| temporary.path().join(name));
-    image::DynamicImage::ImageLuma16(deep).save(&deep_path).unwrap();
-    image::DynamicImage::ImageLumaA8(alpha).save(&alpha_path).unwrap();
+    deep.write_with_encoder(PngEncoder::new(fs::File::create(&deep_path).unwrap())).unwrap();
+    alpha.write_with_encoder(PngEncoder::new(fs::File::create(&alpha_path).unwrap())).unwrap();
     // Both files decode to the same grey values.
     match_on_cpu(&deep_path, &alpha_path, temporary.path()).assert().code(4).stderr(contains("the same picture"));
 }

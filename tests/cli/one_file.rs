@@ -27,7 +27,7 @@ fn write(path: &Path, picture: &Picture) {
 fn jpeg(picture: &Path) -> Vec<u8> {
     let mut bytes = Vec::new();
     let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 95);
-    image::open(picture).unwrap().to_rgb8().write_with_encoder(encoder).unwrap();
+    image::load_from_memory(&fs::read(picture).unwrap()).unwrap().to_rgb8().write_with_encoder(encoder).unwrap();
     bytes
 }
 

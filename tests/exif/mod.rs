@@ -1,8 +1,6 @@
 //! JPEG with an EXIF orientation.
 
-use std::io::Cursor;
-
-use image::{GrayImage, ImageFormat, Luma};
+use image::{GrayImage, Luma, codecs::jpeg::JpegEncoder};
 
 /// A grey JPEG whose EXIF, a TIFF directory with one entry (0x112, a short), has `orientation`, 1 to 8.
 pub fn turned_jpeg(width: u32, height: u32, orientation: u8) -> Vec<u8> {
@@ -10,7 +8,7 @@ pub fn turned_jpeg(width: u32, height: u32, orientation: u8) -> Vec<u8> {
     exif[24] = orientation;
     let mut bytes = Vec::new();
     let picture = GrayImage::from_fn(width, height, |x, y| Luma([(x * y) as u8]));
-    picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Jpeg).expect("a JPEG in memory");
+    JpegEncoder::new(&mut bytes).encode_image(&picture).expect("a JPEG in memory");
     let length = (exif.len() as u16 + 2).to_be_bytes();
     bytes.splice(2..2, [&[0xff, 0xe1], &length[..], &exif].concat());
     bytes
