@@ -148,6 +148,17 @@ pub fn of_rectified(pair: &RectifiedPair) -> Option<String> {
     })
 }
 
+/// A warning if the pair was rectified as one of two lenses that differ.
+pub fn of_lenses(pair: &RectifiedPair) -> Option<String> {
+    let [left, right] = pair.rectification.distortion();
+    (left != right).then(|| {
+        format!(
+            "the lenses of the views differ by the matches (k1 {left:.2} and {right:.2}), with their centres in the middle of the pictures: \
+             of a cropped picture rows are off; calibrate the cameras for certainty"
+        )
+    })
+}
+
 /// The reason for which a pair fails of which one view is a mirror image.
 pub fn mirrored(sides: Mirrored) -> String {
     format!("one view is a mirror image of the other, {sides} exchanged: mirror one of the views back")

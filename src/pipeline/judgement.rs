@@ -38,7 +38,7 @@ impl Judgement {
     pub fn of_rectified(outcome: &Outcome, pair: &RectifiedPair, config: &Config, mirrored: Option<Mirrored>) -> Self {
         let ([left, right], calibration) = (&pair.pictures, pair.rectification.calibration().copied());
         let mut judgement = Self::of_map(outcome, (left, right), Some(pair), calibration, config, mirrored);
-        judgement.warnings.splice(0..0, doubts::of_rectified(pair));
+        judgement.warnings.splice(0..0, doubts::of_rectified(pair).into_iter().chain(doubts::of_lenses(pair)));
         if let Some(doubt) = doubts::misfit(outcome, pair) {
             judgement.warnings.push(doubt);
             judgement.calibration = calibration.filter(|_| config.force);

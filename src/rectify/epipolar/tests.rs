@@ -280,12 +280,19 @@ fn a_distortion_of_parallel_cameras_is_not_taken_for_a_perspective() {
 
 #[test]
 fn lenses_that_differ_are_told_apart() {
-    for (k1, turn) in [([0.0, -0.2], DVec3::ZERO), ([-0.15, 0.0], DVec3::Z * 5.0), ([-0.2, 0.05], DVec3::ZERO)] {
+    for (k1, turn) in [([0.0, -0.2], DVec3::ZERO), ([-0.15, 0.0], DVec3::Z * 5.0), ([-0.2, -0.05], DVec3::ZERO)] {
         let rig = Rig { k1, turns: [DVec3::ZERO, turn], depths: [1.0, 4.0], ..SIDE_BY_SIDE };
         let (found, off) = rig.rectified();
         let error = [0, 1].map(|view| (found.k1[view] - k1[view]).abs());
         assert!(error.iter().all(|&error| error < 0.02) && off < 0.5, "{k1:?}: {:?} {off}", found.k1);
     }
+}
+
+#[test]
+fn lenses_of_opposite_senses_are_not_believed() {
+    let rig = Rig { k1: [-0.2, 0.15], depths: [1.0, 4.0], ..SIDE_BY_SIDE };
+    let found = Uncalibrated::new(&rig.matched(), [SIZE; 2], 1);
+    assert!(found.as_ref().map_or(true, |found| found.k1[0] == found.k1[1]), "{found:?}");
 }
 
 #[test]
