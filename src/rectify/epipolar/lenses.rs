@@ -154,8 +154,7 @@ impl Fit {
         for round in 0..ROUNDS {
             let near = two.near(points, frame);
             let first = &near[..near.len().min(FIRST)];
-            let start = Self { cost: 0.0, ..two };
-            two = WIDTHS.into_iter().fold(start, |two, width| two.refined::<9>(first, width, frame));
+            two = WIDTHS.into_iter().fold(two, |two, width| two.refined::<9>(first, width, frame));
             // What one lens explains as well is that of one.
             if round == 0 && !two.is_better_than(&self.refined::<8>(first, PRECISION, frame)) {
                 return None;
